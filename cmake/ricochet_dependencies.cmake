@@ -1,0 +1,16 @@
+# Embree and OpenMesh must be asked for without a version: Embree's version file accepts only its own major number,
+# OpenMesh ships none.
+find_package(embree CONFIG REQUIRED)
+if(EMBREE_VERSION VERSION_LESS 3.13 OR EMBREE_VERSION VERSION_GREATER_EQUAL 5)
+  message(FATAL_ERROR "Embree 3.13 to 4.x is needed, found ${EMBREE_VERSION}")
+endif()
+find_package(TBB CONFIG REQUIRED COMPONENTS tbb)
+find_package(OpenMesh CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(fmt CONFIG REQUIRED)
+if(RICOCHET_BUILD_APPS)
+  find_package(CLI11 CONFIG REQUIRED)
+endif()
+if(RICOCHET_BUILD_TESTS)
+  find_package(GTest CONFIG REQUIRED)
+endif()

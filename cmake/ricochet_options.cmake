@@ -1,0 +1,16 @@
+# Compile settings that every target of the project shares.
+
+# The same bits everywhere: no fused multiply-add behind our back, no fast-math.
+add_library(ricochet_options INTERFACE)
+target_compile_features(ricochet_options INTERFACE cxx_std_20)
+target_compile_options(ricochet_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(RICOCHET_WARNINGS_AS_ERRORS)
+  target_compile_options(ricochet_options INTERFACE -Werror)
+endif()
+if(RICOCHET_SANITIZE)
+  target_compile_options(ricochet_options INTERFACE -fsanitize=${RICOCHET_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(ricochet_options INTERFACE -fsanitize=${RICOCHET_SANITIZE})
+  if(RICOCHET_SANITIZE MATCHES "undefined")
+    target_compile_options(ricochet_options INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+endif()

@@ -1,0 +1,53 @@
+#include "ricochet/core/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/version.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace ricochet {
+
+struct ThreadLimit::Impl {
+    explicit Impl(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
+    tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : impl_(threads > 0 ? std::make_unique<Impl>(static_cast<std::size_t>(threads)) : nullptr) {}
+ThreadLimit::~ThreadLimit() = default;
+
+int thread_count() {
+    return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+void parallel_for_blocks(std::size_t count, std::size_t block_size,
+                         const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
+    if (count == 0) return;
+    const std::size_t blocks = (count + block_size - 1) / block_size;
+    const auto run_block = [&](std::size_t block) {
+        body(block, block * block_size, std::min(count, (block + 1) * block_size));
+    };
+    if (blocks == 1) {
+        run_block(0);
+        return;
+    }
+    tbb::parallel_for(std::size_t{0}, blocks, run_block);
+}
+
+double ordered_sum(std::size_t count, std::size_t block_size,
+                   const std::function<double(std::size_t, std::size_t)>& block_sum) {
+    const std::size_t blocks = (count + block_size - 1) / block_size;
+    std::vector<double> partial(blocks, 0.0);
+    parallel_for_blocks(count, block_size, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        partial[block] = block_sum(begin, end);
+    });
+    return std::accumulate(partial.begin(), partial.end(), 0.0);
+}
+
+const char* thread_library_version() { return TBB_runtime_version(); }
+
+}  // namespace ricochet

@@ -1,0 +1,45 @@
+/// \file
+/// Index-list meshes. The index list is the truth that particles collide with; half-edge topology is derived from it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// Three indices into the vertex list, in the file's winding (counter-clockwise seen from outside).
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles over shared vertices. Non-manifold, open and inconsistently wound meshes are all allowed.
+struct TriangleMesh {
+    std::vector<Vec3> vertices;       ///< positions, finite
+    std::vector<Triangle> triangles;  ///< indices below vertices.size()
+};
+
+/// Faces of any valence as a file lists them, before triangulation.
+struct PolygonMesh {
+    std::vector<Vec3> vertices;  ///< positions, finite
+    std::vector<std::uint32_t>
+        face_offsets;                    ///< face f has corners [face_offsets[f], face_offsets[f + 1]); size faces + 1
+    std::vector<std::uint32_t> corners;  ///< vertex index of every corner
+    std::vector<std::uint32_t> face_groups;  ///< index into group_names per face; empty when the file names no groups
+    std::vector<std::string> group_names;    ///< OBJ g/o/usemtl names in order of first use
+
+    [[nodiscard]] std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
+};
+
+/// Box of the vertices that triangles use (unused vertices do not widen it). Empty for a mesh without triangles.
+[[nodiscard]] Box3 bounds(const TriangleMesh& mesh);
+/// Sum of triangle areas, m^2.
+[[nodiscard]] double surface_area(const TriangleMesh& mesh);
+/// Signed volume by the divergence theorem, m^3; meaningful when the mesh is closed. Positive when wound outward.
+[[nodiscard]] double signed_volume(const TriangleMesh& mesh);
+/// True when the corners of a triangle are exactly collinear or coincide (decided with exact arithmetic).
+[[nodiscard]] bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace ricochet

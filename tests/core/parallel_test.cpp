@@ -1,0 +1,46 @@
+#include "ricochet/core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace ricochet {
+namespace {
+
+TEST(Parallel, EveryIndexIsVisitedOnce) {
+    std::vector<std::atomic<int>> visits(10007);
+    parallel_for_blocks(visits.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    for (const auto& v : visits) ASSERT_EQ(v.load(), 1);
+}
+
+TEST(Parallel, AnOrderedSumHasTheSameBitsForAnyThreadCount) {
+    const auto sum = [] {
+        return ordered_sum(100003, 512, [](std::size_t begin, std::size_t end) {
+            double s = 0;
+            for (std::size_t i = begin; i < end; ++i) s += std::sqrt(static_cast<double>(i)) * 1e-3;
+            return s;
+        });
+    };
+    const ThreadLimit one(1);
+    const double serial = sum();
+    for (int threads : {2, 3, 7}) {
+        const ThreadLimit limit(threads);
+        EXPECT_EQ(sum(), serial);
+    }
+}
+
+TEST(Parallel, AnExceptionReachesTheCaller) {
+    EXPECT_THROW(parallel_for_blocks(1000, 10,
+                                     [](std::size_t, std::size_t begin, std::size_t) {
+                                         if (begin == 500) throw std::runtime_error("stop");
+                                     }),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,60 @@
+#include "ricochet/core/atomic_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+// Two writers of one file, in one process or in two, never share a temporary name.
+std::filesystem::path temporary_name(const std::filesystem::path& target) {
+    static std::atomic<unsigned> counter{0};
+    std::filesystem::path name = target;
+    name += fmt::format(".{}-{}.partial", ::getpid(), counter++);
+    return name;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& target, const char* what) {
+    throw RunError(fmt::format("{}: cannot {} the file ({})", target.string(), what, std::strerror(errno)));
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)), temporary_(temporary_name(target_)) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: not a regular file, choose another output name", target_.string()));
+    }
+    file_ = std::fopen(temporary_.c_str(), "wb");
+    if (file_ == nullptr) fail(target_, "create");
+}
+
+AtomicFile::~AtomicFile() {
+    if (file_ == nullptr) return;
+    (void)std::fclose(file_);
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(target_, "write");
+}
+
+void AtomicFile::commit() {
+    if (std::fflush(file_) != 0) fail(target_, "write");
+    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "name");
+    const int closed = std::fclose(file_);
+    file_ = nullptr;
+    if (closed != 0) fail(target_, "close");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,32 @@
+/// \file
+/// Output files that appear under their name only when they are complete.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace ricochet {
+
+/// Writes to a temporary name beside the target and renames it in commit(); without commit() nothing is left behind and
+/// an older file of that name stays as it was. One thread at a time.
+class AtomicFile {
+public:
+    /// Throws InputError when the target is a folder or a device, RunError when it cannot be created.
+    explicit AtomicFile(std::filesystem::path target);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Appends bytes. Throws RunError when the disk does not take them.
+    void write(std::string_view bytes);
+    /// Closes the file and gives it its name. Throws RunError when that fails. To be called once, at the end.
+    void commit();
+
+private:
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace ricochet

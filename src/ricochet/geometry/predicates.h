@@ -24,7 +24,8 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 /// points to, -1 on the other side, 0 in the plane (or when a, b, c are collinear).
 [[nodiscard]] int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The value whose sign orient3d gives, six times the signed volume, with a relative error below 2^-90 (exactly 0 when 0).
+/// The value whose sign orient3d gives, six times the signed volume, with a relative error below 2^-90 (exactly 0 when
+/// 0).
 [[nodiscard]] DoubleDouble orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// True when a, b and c are exactly collinear (coincident points included).

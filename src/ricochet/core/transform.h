@@ -1,0 +1,34 @@
+/// \file
+/// Placement of a collider or emitter in the world: scale, then rotate, then move.
+#pragma once
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// How a shape in its own coordinates stands in the world, as a scene file says it.
+struct Placement {
+    Vec3 position;                  ///< m
+    Vec3 rotation_axis{0, 0, 1};    ///< need not be of unit length; not zero
+    double rotation_degrees = 0.0;  ///< right-hand rule about rotation_axis
+    Vec3 scale{1, 1, 1};            ///< per axis, not zero; negative mirrors
+};
+
+/// An affine map x -> M x + t. Named by direction: `world_from_local`.
+struct AffineMap {
+    Vec3 row_x{1, 0, 0};
+    Vec3 row_y{0, 1, 0};
+    Vec3 row_z{0, 0, 1};
+    Vec3 translation;
+
+    [[nodiscard]] Vec3 point(const Vec3& p) const { return direction(p) + translation; }
+    [[nodiscard]] Vec3 direction(const Vec3& d) const { return {dot(row_x, d), dot(row_y, d), dot(row_z, d)}; }
+    [[nodiscard]] double determinant() const { return dot(row_x, cross(row_y, row_z)); }
+    /// True when the map turns a right hand into a left hand: triangle windings must be flipped.
+    [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
+};
+
+/// The map of a placement. Multiples of 90 degrees about a coordinate axis are exact.
+[[nodiscard]] AffineMap world_from_local(const Placement& placement);
+
+}  // namespace ricochet

@@ -1,0 +1,57 @@
+/// \file
+/// Forces as composable objects.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ricochet/dynamics/particles.h"
+
+namespace ricochet {
+
+/// What a force may look at: one particle's own state at a time.
+struct ForceInput {
+    Vec3 position;  ///< m
+    Vec3 velocity;  ///< m/s
+    double mass;    ///< kg
+    double radius;  ///< m
+    double time;    ///< s
+};
+
+/// One force on particles. Implementations are pure: same input, same bits, from any thread.
+class Force {
+public:
+    virtual ~Force() = default;
+    /// Force divided by mass, m/s^2.
+    [[nodiscard]] virtual Vec3 acceleration(const ForceInput& input) const = 0;
+    /// Potential energy of the particle in this force, J. Dissipative forces store none and return 0; a force without a
+    /// potential returns nothing.
+    [[nodiscard]] virtual std::optional<double> potential_energy(const ForceInput& input) const = 0;
+    /// True when the acceleration depends on neither position, velocity nor time.
+    [[nodiscard]] virtual bool is_uniform() const { return false; }
+};
+
+/// Uniform gravity: the given acceleration, m/s^2.
+[[nodiscard]] std::unique_ptr<Force> make_gravity(const Vec3& acceleration);
+/// Linear (viscous) drag F = -coefficient v; coefficient in kg/s, >= 0.
+[[nodiscard]] std::unique_ptr<Force> make_linear_drag(double coefficient);
+/// Any callable as a force: returns the force in newton. It must be pure; it has no potential.
+[[nodiscard]] std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force);
+
+/// A sum of forces, added in the order given.
+class ForceField {
+public:
+    ForceField() = default;
+    explicit ForceField(std::vector<std::unique_ptr<Force>> forces);
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const;
+    /// Sum of the potentials, J; nothing when one force has none.
+    [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const;
+    [[nodiscard]] bool empty() const { return forces_.empty(); }
+
+private:
+    std::vector<std::unique_ptr<Force>> forces_;
+};
+
+}  // namespace ricochet

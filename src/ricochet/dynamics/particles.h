@@ -1,0 +1,50 @@
+/// \file
+/// The particles: a structure of arrays, one entry a living particle.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// Everything that one particle carries, as a value: what emitters and scenes make and what forces see.
+struct Particle {
+    std::uint64_t id = 0;                                       ///< unique in a run, given in the order of creation
+    Vec3 position;                                              ///< m
+    Vec3 velocity;                                              ///< m/s
+    double mass = 1.0;                                          ///< kg, > 0
+    double radius = 0.0;                                        ///< m, >= 0; 0 is a point
+    double birth_time = 0.0;                                    ///< s, simulation time
+    double lifetime = std::numeric_limits<double>::infinity();  ///< s after birth at which it is retired
+};
+
+/// Structure of arrays. All vectors have the same length; entry i of each is particle i.
+class Particles {
+public:
+    std::vector<std::uint64_t> id;
+    std::vector<Vec3> position;
+    std::vector<Vec3> velocity;
+    std::vector<double> mass;
+    std::vector<double> radius;
+    std::vector<double> birth_time;
+    std::vector<double> lifetime;
+    std::vector<double> unsimulated_time;  ///< s that the bounce budget cut off, summed over the particle's life
+    std::vector<std::uint32_t> contacts;   ///< impacts so far (saturating)
+    std::vector<std::uint8_t> resting;     ///< 1 when the particle ended the last step at rest on a surface
+
+    [[nodiscard]] std::size_t size() const { return id.size(); }
+    [[nodiscard]] bool empty() const { return id.empty(); }
+    void append(const Particle& particle);
+    /// Value of entry i.
+    [[nodiscard]] Particle at(std::size_t i) const;
+    /// Keeps the entries whose flag is not 0, in their order. keep.size() == size().
+    void compact(const std::vector<std::uint8_t>& keep);
+    /// Indices of the entries in the order of their ids.
+    [[nodiscard]] std::vector<std::uint32_t> order_by_id() const;
+};
+
+}  // namespace ricochet

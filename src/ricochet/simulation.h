@@ -1,0 +1,101 @@
+/// \file
+/// The simulation: particles, forces, emitters and colliders, stepped in time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/collision/collider.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/response/material.h"
+
+namespace ricochet {
+
+/// How time is stepped and how impacts are answered.
+struct SimulationOptions {
+    double time_step = 1.0 / 60.0;  ///< s, > 0
+    double duration = 1.0;          ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
+    IntegratorKind integrator = IntegratorKind::ballistic;
+    std::uint64_t seed = 0;
+    /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
+    double resting_speed = 1e-3;
+    std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
+};
+
+/// Everything a simulation is made from.
+struct SimulationSetup {
+    SimulationOptions options;
+    std::vector<std::unique_ptr<Force>> forces;
+    std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
+    std::vector<ColliderDescription> colliders;
+    std::vector<EmitterDescription> emitters;
+    std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
+    std::optional<Box3> bounds;       ///< particles outside are retired
+};
+
+/// Counters over the whole run so far. Every one is the same for any thread count.
+struct SimulationStatistics {
+    std::uint64_t steps = 0;
+    std::uint64_t particle_steps = 0;  ///< sum over steps of the particles moved
+    std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
+    std::uint64_t expired = 0;         ///< retired at the end of their lifetime
+    std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
+    std::uint64_t contacts = 0;        ///< impacts
+    std::uint32_t bounces_per_step_max = 0;
+    std::uint64_t resting = 0;           ///< particles at rest after the last step
+    double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
+    std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
+    std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
+    std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
+    std::uint64_t frozen = 0;            ///< particles stopped because their state was not finite or absurd
+};
+
+/// Per-triangle totals of one mesh collider, since the start.
+struct TriangleTotals {
+    std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
+    std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
+};
+
+/// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count.
+class Simulation {
+public:
+    /// Builds the colliders. Throws InputError when the setup cannot work (degenerate placement, extent too large,
+    /// ...).
+    explicit Simulation(SimulationSetup setup);
+    ~Simulation();
+    Simulation(Simulation&&) noexcept;
+    Simulation& operator=(Simulation&&) noexcept;
+
+    /// Advances by one time step (the last one may be shorter). No effect when finished().
+    void step();
+    [[nodiscard]] bool finished() const;
+    [[nodiscard]] double time() const;               ///< s
+    [[nodiscard]] std::uint64_t step_index() const;  ///< steps done
+    [[nodiscard]] std::uint64_t step_count() const;  ///< steps in all
+
+    [[nodiscard]] const SimulationOptions& options() const;
+    [[nodiscard]] const Particles& particles() const;
+    [[nodiscard]] const SimulationStatistics& statistics() const;
+    [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
+    /// World-space mesh of collider i (placement baked in); nothing for planes.
+    [[nodiscard]] const TriangleMesh* collider_mesh(std::size_t i) const;
+    [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
+
+    [[nodiscard]] double kinetic_energy() const;                   ///< J
+    [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential
+    /// StateHash over id, position and velocity in id order.
+    [[nodiscard]] std::uint64_t state_hash() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,66 @@
+/// \file
+/// Every tolerance of the library, with its unit, its reason, and what breaks if it changes.
+/// None of them decides whether a particle crosses a surface: that is left to exact predicates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// Gap between a parked particle and the surface it has just hit, in ulp of the contact point's largest coordinate.
+/// Reason: large enough that rounding of the parked point cannot put it on the surface, small enough to be invisible.
+/// Smaller: parking fails more often and falls back to the path. Larger: each impact adds g * gap to an elastic ball's
+/// energy per mass.
+inline constexpr double kParkingGapUlps = 16.0;
+
+/// Smallest parking gap, m; only matters for contacts at the very origin. Must stay above kSmallestExactCoordinate.
+inline constexpr double kSmallestParkingGap = 0x1p-240;
+
+/// How often a parking gap that fails its certificate is widened, and the factor. 16 * 4^3 ulp stays far inside
+/// kCandidateSlack, so the candidates already gathered cover every place that is tried.
+inline constexpr int kParkingAttempts = 4;
+inline constexpr double kParkingWidening = 4.0;
+
+/// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
+/// before the triangle is dropped. Reason: covers the parking displacement and the rounding of points on the path (a
+/// few ulp). Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact
+/// tests.
+inline constexpr double kCandidateSlack = 0x1p-40;
+
+/// Boxes handed to the ray library grow by this many units of 2^-24 times the scene's largest centred coordinate.
+/// Reason: covers rounding of the ray's origin, direction and of t * direction in single precision on each axis, and
+/// the candidate slack. Smaller than about 8: a touched triangle might not be presented, and particles could leak.
+inline constexpr double kBoxPaddingUnits = 16.0;
+
+/// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
+inline constexpr double kSimultaneousUlps = 4.0;
+
+/// Depth to which a path is halved while its chords are being certified. 2^-52 of the path is below the rounding of its
+/// points; a chord that still meets a triangle there is taken as an impact at that place.
+inline constexpr int kCertificateDepth = 52;
+
+/// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
+/// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
+inline constexpr double kLargestCoordinate = 1e75;
+
+/// Unit of the per-triangle impulse totals, N s. They are 128-bit integers in this unit, so that sums do not depend on
+/// the order; the largest total is 2^27 N s = 1.3e8 N s (then the total saturates).
+inline constexpr double kImpulseUnit = 0x1p-100;
+
+/// Distance from x to the next larger double magnitude.
+[[nodiscard]] inline double ulp(double x) {
+    const double magnitude = std::fabs(x);
+    return std::nextafter(magnitude, std::numeric_limits<double>::infinity()) - magnitude;
+}
+
+/// The parking gap at a contact point, m: depends on the point's own coordinates only, so that a wall of two or two
+/// million triangles gives the same bits.
+[[nodiscard]] inline double parking_gap(const Vec3& contact) {
+    return std::max(kParkingGapUlps * ulp(max_abs(contact)), kSmallestParkingGap);
+}
+
+}  // namespace ricochet

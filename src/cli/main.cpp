@@ -1,0 +1,73 @@
+// The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code when it ran.
+// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh. Errors are one line on stderr.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongInput = 2;
+
+/// Adds one subcommand; its callback sets exit_code and throws InputError or RunError.
+using AddCommand = void (*)(CLI::App& app, int& exit_code);
+
+// One line a command.
+const std::vector<AddCommand>& commands() {
+    static const std::vector<AddCommand> list = {};
+    return list;
+}
+
+std::string version_text() { return fmt::format("ricochet {}\nTBB {}", RICOCHET_VERSION, thread_library_version()); }
+
+int report_error(std::string message, int exit_code) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fmt::print(stderr, "ricochet: {}\n", message);
+    return exit_code;
+}
+
+int parse_and_run(int argc, char** argv) {
+    CLI::App app("Particles against triangle meshes, exactly", "ricochet");
+    app.set_version_flag("--version", version_text());
+    app.require_subcommand(1);
+    int exit_code = kDone;
+    for (const AddCommand add : commands()) add(app, exit_code);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+        return app.exit(help_or_version);
+    } catch (const CLI::ParseError& error) {
+        return report_error(fmt::format("{} (ricochet --help lists commands and options)", error.what()), kWrongInput);
+    }
+    return exit_code;
+}
+
+int run(int argc, char** argv) {
+    try {
+        const int exit_code = parse_and_run(argc, argv);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw RunError("standard output cannot be written");
+        return exit_code;
+    } catch (const InputError& error) {
+        return report_error(error.what(), kWrongInput);
+    } catch (const std::bad_alloc&) {
+        return report_error("out of memory", kFailed);
+    } catch (const std::exception& error) {
+        return report_error(error.what(), kFailed);
+    }
+}
+
+}  // namespace
+}  // namespace ricochet
+
+int main(int argc, char** argv) { return ricochet::run(argc, argv); }

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "ricochet/core/transform.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/triangle_mesh.h"
 
@@ -72,24 +74,37 @@ struct EmitterDescription {
 /// The births of one emitter in time order.
 class Emitter {
 public:
-    /// seed: the scene's seed; stream: this emitter's number in the scene.
+    /// seed: the scene's seed; stream: this emitter's number in the scene, below 2^24.
+    /// Throws InputError when the description is outside the ranges stated there, naming the member.
     Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t stream);
 
     /// Particles born in [from, to), in birth order, with birth_time, position, velocity, mass and lifetime set and id
-    /// left 0. Calls must go on where the last one ended.
+    /// left 0. Calls must go on where the last one ended, the first one begins at 0. How the time is cut into calls
+    /// changes no bit. The burst is born at `start`; after that birth k happens when the integral of the rate since
+    /// `start` passes k + 1/2. The rate is drawn anew for every whole second since `start` (negative draws count as 0).
     [[nodiscard]] std::vector<Particle> births(double from, double to);
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
 
 private:
+    struct Launch {
+        Vec3 position;
+        Vec3 direction;  ///< the shape's own, of unit length
+    };
     [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
+    [[nodiscard]] Launch launch_from(RandomSequence& random) const;
+    [[nodiscard]] Launch launch_from_mesh(const TriangleMesh& mesh, RandomSequence& random) const;
+    [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
     [[nodiscard]] double rate_in_second(std::uint64_t second) const;
-    void append_rate_births(double from, double to, std::vector<Particle>& births);
+    void append_births(std::uint64_t count, double time, std::vector<Particle>& births);
+    void append_steady_births(double to, std::vector<Particle>& births);
+    void append_redrawn_births(double to, std::vector<Particle>& births);
 
     EmitterDescription description_;
     std::uint64_t seed_;
     std::uint32_t stream_;
     std::vector<double> cumulative_area_;  ///< of a mesh shape's triangles
+    double cone_height_ = 0.0;             ///< 1 - cos(cone angle)
     std::uint64_t born_ = 0;
     bool burst_done_ = false;
     std::uint64_t second_ = 0;  ///< whole seconds since start that are accounted for in expected_

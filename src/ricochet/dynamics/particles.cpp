@@ -1,0 +1,59 @@
+#include "ricochet/dynamics/particles.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ricochet {
+namespace {
+
+template <typename T>
+void compact_array(std::vector<T>& values, const std::vector<std::uint8_t>& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (keep[i] != 0) values[kept++] = values[i];
+    }
+    values.resize(kept);
+}
+
+}  // namespace
+
+void Particles::append(const Particle& particle) {
+    id.push_back(particle.id);
+    position.push_back(particle.position);
+    velocity.push_back(particle.velocity);
+    mass.push_back(particle.mass);
+    radius.push_back(particle.radius);
+    birth_time.push_back(particle.birth_time);
+    lifetime.push_back(particle.lifetime);
+    unsimulated_time.push_back(0.0);
+    contacts.push_back(0);
+    resting.push_back(0);
+}
+
+Particle Particles::at(std::size_t i) const {
+    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i]};
+}
+
+void Particles::compact(const std::vector<std::uint8_t>& keep) {
+    compact_array(id, keep);
+    compact_array(position, keep);
+    compact_array(velocity, keep);
+    compact_array(mass, keep);
+    compact_array(radius, keep);
+    compact_array(birth_time, keep);
+    compact_array(lifetime, keep);
+    compact_array(unsimulated_time, keep);
+    compact_array(contacts, keep);
+    compact_array(resting, keep);
+}
+
+std::vector<std::uint32_t> Particles::order_by_id() const {
+    std::vector<std::uint32_t> order(size());
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    if (!std::is_sorted(id.begin(), id.end())) {
+        std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
+    }
+    return order;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,92 @@
+#include "ricochet/dynamics/force.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+const ForceInput kState{{1, 2, 3}, {4, -5, 6}, 2.0, 0.0, 0.5};
+
+TEST(Gravity, AcceleratesEveryMassAlike) {
+    const auto gravity = make_gravity({0, -9.81, 0});
+    EXPECT_EQ(gravity->acceleration(kState), (Vec3{0, -9.81, 0}));
+    EXPECT_TRUE(gravity->is_uniform());
+}
+
+TEST(Gravity, HasThePotentialMGH) {
+    // Height 2 m, 2 kg.
+    EXPECT_DOUBLE_EQ(*make_gravity({0, -9.81, 0})->potential_energy(kState), 2.0 * 9.81 * 2.0);
+}
+
+TEST(Gravity, IsMinusTheGradientOfItsPotential) {
+    const auto gravity = make_gravity({1.5, -9.81, 0.25});
+    for (int axis = 0; axis < 3; ++axis) {
+        ForceInput before = kState;
+        ForceInput after = kState;
+        before.position[axis] -= 0.5;
+        after.position[axis] += 0.5;
+        const double gradient = *gravity->potential_energy(after) - *gravity->potential_energy(before);
+        EXPECT_NEAR(-gradient / kState.mass, gravity->acceleration(kState)[axis], 1e-13);
+    }
+}
+
+TEST(LinearDrag, PullsAgainstTheVelocityInProportion) {
+    // F = -c v with c = 0.5 kg/s on 2 kg.
+    EXPECT_EQ(make_linear_drag(0.5)->acceleration(kState), (Vec3{-1, 1.25, -1.5}));
+    EXPECT_FALSE(make_linear_drag(0.5)->is_uniform());
+}
+
+TEST(LinearDrag, StoresNoEnergyAndOnlyTakesIt) {
+    const auto drag = make_linear_drag(0.5);
+    EXPECT_EQ(*drag->potential_energy(kState), 0.0);
+    EXPECT_LT(dot(drag->acceleration(kState), kState.velocity), 0.0);
+}
+
+TEST(LinearDrag, RefusesANegativeOrUndefinedCoefficient) {
+    EXPECT_THROW((void)make_linear_drag(-0.1), InputError);
+    EXPECT_THROW((void)make_linear_drag(std::numeric_limits<double>::quiet_NaN()), InputError);
+    EXPECT_THROW((void)make_linear_drag(std::numeric_limits<double>::infinity()), InputError);
+}
+
+TEST(CallableForce, IsDividedByTheMassAndHasNoPotential) {
+    const auto spring = make_force([](const ForceInput& input) { return -4.0 * input.position; });
+    EXPECT_EQ(spring->acceleration(kState), (Vec3{-2, -4, -6}));
+    EXPECT_FALSE(spring->potential_energy(kState).has_value());
+    EXPECT_THROW((void)make_force(nullptr), InputError);
+}
+
+TEST(ForceField, AddsInTheOrderGiven) {
+    // (1 + 2^53) - 2^53 is 0 in doubles, (2^53 - 2^53) + 1 is 1: the order is visible.
+    const auto sum = [](double first, double second, double third) {
+        std::vector<std::unique_ptr<Force>> forces;
+        for (const double x : {first, second, third}) forces.push_back(make_gravity({x, 0, 0}));
+        return ForceField(std::move(forces)).acceleration(kState).x;
+    };
+    EXPECT_EQ(sum(1.0, 0x1p53, -0x1p53), 0.0);
+    EXPECT_EQ(sum(0x1p53, -0x1p53, 1.0), 1.0);
+}
+
+TEST(ForceField, HasAPotentialOnlyWhenEveryForceHasOne) {
+    std::vector<std::unique_ptr<Force>> forces;
+    forces.push_back(make_gravity({0, -10, 0}));
+    forces.push_back(make_linear_drag(1.0));
+    EXPECT_DOUBLE_EQ(*ForceField(std::move(forces)).potential_energy(kState), 40.0);
+    std::vector<std::unique_ptr<Force>> with_callable;
+    with_callable.push_back(make_gravity({0, -10, 0}));
+    with_callable.push_back(make_force([](const ForceInput&) { return Vec3{}; }));
+    EXPECT_FALSE(ForceField(std::move(with_callable)).potential_energy(kState).has_value());
+}
+
+TEST(ForceField, WithoutForcesIsFreeFlight) {
+    const ForceField none;
+    EXPECT_TRUE(none.empty());
+    EXPECT_EQ(none.acceleration(kState), Vec3{});
+    EXPECT_EQ(*none.potential_energy(kState), 0.0);
+}
+
+}  // namespace
+}  // namespace ricochet

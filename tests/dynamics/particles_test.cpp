@@ -1,0 +1,66 @@
+#include "ricochet/dynamics/particles.h"
+
+#include <gtest/gtest.h>
+
+namespace ricochet {
+namespace {
+
+Particle numbered(std::uint64_t id) {
+    const double x = static_cast<double>(id);
+    return {id, {x, 1, 2}, {3, x, 4}, 1.0 + x, 0.5 * x, 0.25 * x, 10.0 + x};
+}
+
+Particles with_ids(const std::vector<std::uint64_t>& ids) {
+    Particles particles;
+    for (const std::uint64_t id : ids) particles.append(numbered(id));
+    return particles;
+}
+
+TEST(Particles, GiveBackWhatWasAppended) {
+    const Particles particles = with_ids({7, 3});
+    ASSERT_EQ(particles.size(), 2U);
+    const Particle second = particles.at(1);
+    EXPECT_EQ(second.id, 3U);
+    EXPECT_EQ(second.position, (Vec3{3, 1, 2}));
+    EXPECT_EQ(second.velocity, (Vec3{3, 3, 4}));
+    EXPECT_EQ(second.mass, 4.0);
+    EXPECT_EQ(second.radius, 1.5);
+    EXPECT_EQ(second.birth_time, 0.75);
+    EXPECT_EQ(second.lifetime, 13.0);
+}
+
+TEST(Particles, StartWithoutAHistory) {
+    const Particles particles = with_ids({1});
+    EXPECT_EQ(particles.contacts[0], 0U);
+    EXPECT_EQ(particles.resting[0], 0U);
+    EXPECT_EQ(particles.unsimulated_time[0], 0.0);
+}
+
+TEST(Particles, CompactKeepsTheFlaggedOnesInTheirOrderInEveryArray) {
+    Particles particles = with_ids({0, 1, 2, 3, 4});
+    for (std::size_t i = 0; i < 5; ++i) {
+        particles.contacts[i] = static_cast<std::uint32_t>(10 + i);
+        particles.resting[i] = static_cast<std::uint8_t>(i);
+        particles.unsimulated_time[i] = static_cast<double>(i);
+    }
+    particles.compact({0, 1, 0, 1, 1});
+    ASSERT_EQ(particles.id, (std::vector<std::uint64_t>{1, 3, 4}));
+    EXPECT_EQ(particles.contacts, (std::vector<std::uint32_t>{11, 13, 14}));
+    EXPECT_EQ(particles.resting, (std::vector<std::uint8_t>{1, 3, 4}));
+    EXPECT_EQ(particles.unsimulated_time, (std::vector<double>{1, 3, 4}));
+    EXPECT_EQ(particles.position[1].x, 3.0);
+    EXPECT_EQ(particles.velocity[1].y, 3.0);
+    EXPECT_EQ(particles.mass[2], 5.0);
+    EXPECT_EQ(particles.radius.size(), 3U);
+    EXPECT_EQ(particles.birth_time.size(), 3U);
+    EXPECT_EQ(particles.lifetime.size(), 3U);
+}
+
+TEST(Particles, OrderByIdListsEveryEntryOnce) {
+    EXPECT_EQ(with_ids({5, 2, 9, 0}).order_by_id(), (std::vector<std::uint32_t>{3, 1, 0, 2}));
+    EXPECT_EQ(with_ids({1, 4, 6}).order_by_id(), (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_TRUE(Particles{}.order_by_id().empty());
+}
+
+}  // namespace
+}  // namespace ricochet

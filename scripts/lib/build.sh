@@ -1,0 +1,26 @@
+# Configuring and building. Sourced after common.sh.
+
+cache_value() { sed -n "s/^$2:[A-Z]*=//p" "$1/CMakeCache.txt"; }
+
+# configure PRESET FOLDER [CMAKE-ARGUMENT...]: from a preset of CMakePresets.json into FOLDER (below the root).
+# A folder that was configured for another place or with another generator is configured anew.
+configure() {
+    local preset="$1" folder="$root/$2"
+    local -a fresh=()
+    shift 2
+    if [[ -f "$folder/CMakeCache.txt" ]]; then
+        if [[ "$(cache_value "$folder" CMAKE_HOME_DIRECTORY)" != "$root" ]] ||
+            [[ "$(cache_value "$folder" CMAKE_GENERATOR)" != Ninja ]]; then
+            say "$folder was configured for another folder or generator: configuring it anew"
+            fresh=(--fresh)
+        fi
+    fi
+    (cd "$root" && cmake --preset "$preset" -B "$folder" "${fresh[@]}" "$@" </dev/null)
+}
+
+# build FOLDER JOBS [CMAKE-BUILD-ARGUMENT...]
+build() {
+    local folder="$root/$1" jobs="$2"
+    shift 2
+    cmake --build "$folder" --parallel "$jobs" "$@" </dev/null
+}

@@ -1,0 +1,30 @@
+# What every script here shares: the repository's root, messages, and the number of jobs. Sourced, never run.
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)"
+# One locale for every tool, present on every system: messages and sort order are the same everywhere.
+export LC_ALL=C
+unset CDPATH
+
+say() { printf '==> %s\n' "$*"; }
+warn() { printf 'warning: %s\n' "$*" >&2; }
+# die MESSAGE [EXIT-CODE]: one line on stderr; 1 = failed while working, 2 = wrong arguments or missing packages.
+die() {
+    printf '%s: %s\n' "$(basename "$0")" "$1" >&2
+    exit "${2:-1}"
+}
+
+# Jobs that fit the processors and the memory: a compiler instance takes up to about 1.5 GB here.
+default_jobs() {
+    local processors memory_kib by_memory
+    processors="$(nproc)"
+    memory_kib="$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo)"
+    by_memory=$((memory_kib / 1572864))
+    if ((by_memory < 1)); then by_memory=1; fi
+    echo $((processors < by_memory ? processors : by_memory))
+}
+
+# need_value OPTION COUNT: refuses an option whose value is missing.
+need_value() { (($2 >= 2)) || die "$1 needs a value (see --help)" 2; }
+
+# positive_number OPTION TEXT: refuses anything but 1, 2, 3, ...
+positive_number() { [[ "$2" =~ ^[1-9][0-9]{0,3}$ ]] || die "$1 needs a whole number from 1 on, got '$2'" 2; }

@@ -1,0 +1,99 @@
+# The style gate: clang-format on every file, clang-tidy on every compiled one. Sourced after common.sh.
+#
+# Another release of these tools formats and complains differently, so one release is the reference: that of Debian 12.
+# Where it is not at hand the gate is left out and says so.
+lint_release=14
+
+# reference_tool NAME: the command of the reference release; fails when there is none.
+reference_tool() {
+    local command
+    for command in "$1-$lint_release" "$1"; do
+        if "$command" --version 2>/dev/null | grep --quiet "version $lint_release\."; then
+            echo "$command"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# Every source file of the project, relative to the root.
+source_files() {
+    (
+        cd "$root"
+        local folder
+        for folder in src tests meshes bench; do
+            if [[ -d "$folder" ]]; then find "$folder" -name '*.cpp' -o -name '*.h'; fi
+        done | sort
+    )
+}
+
+# compiled_files FOLDER: those of them that the build in FOLDER compiles.
+compiled_files() {
+    sed -n "s|^ *\"file\": \"$root/\(.*\)\",\{0,1\}\$|\1|p" "$root/$1/compile_commands.json" |
+        grep -E '^(src|tests|meshes|bench)/' | sort -u
+}
+
+# tidy_keys TOOL FOLDER: for every compiled file its name and a hash of all that the verdict depends on: the file, the
+# project's headers that it includes (directly or not), the settings and the tool.
+tidy_keys() {
+    local tool="$1" folder="$2" settings file material
+    settings="$( (cd "$root" && find . -name .clang-tidy -not -path './build*' | sort | xargs cat) | sha256sum)"
+    settings+="$("$tool" --version)"
+    cd "$root"
+    {
+        source_files | xargs sha256sum
+        echo "--"
+        source_files | xargs grep --with-filename '^#include "'
+        echo "--"
+        compiled_files "$folder"
+    } | awk -f "$root/scripts/lib/include_closure.awk" | while read -r file material; do
+        echo "$file $(printf '%s %s' "$settings" "$material" | sha256sum | cut -d' ' -f1)"
+    done
+}
+
+# tidy_one TOOL FOLDER FILE KEY: checks one file and keeps the key as a stamp when it is clean.
+tidy_one() {
+    local stamp="$root/$2/lint/$3.stamp"
+    if "$1" -p "$root/$2" --quiet "$root/$3" >"$stamp.log" 2>&1; then
+        echo "$4" >"$stamp"
+    else
+        # Only what was found: not the count of warnings that system headers would have given.
+        grep --invert-match -E '^[0-9]+ warnings? (and [0-9]+ errors? )?generated|^Suppressed |^Use -header-filter' \
+            "$stamp.log" >&2
+        return 1
+    fi
+}
+
+lint_format() {
+    local tool="$1"
+    say "clang-format: $(source_files | wc -l) files"
+    (cd "$root" && source_files | xargs "$tool" --dry-run --Werror) ||
+        die "clang-format found differences (to mend them: $tool -i FILE)"
+}
+
+lint_tidy() {
+    local tool="$1" folder="$2" jobs="$3" file key
+    local -a todo=()
+    while read -r file key; do
+        mkdir -p "$root/$folder/lint/$(dirname "$file")"
+        if [[ "$(cat "$root/$folder/lint/$file.stamp" 2>/dev/null)" != "$key" ]]; then todo+=("$file" "$key"); fi
+    done < <(tidy_keys "$tool" "$folder")
+    say "clang-tidy: $((${#todo[@]} / 2)) files new or changed"
+    if ((${#todo[@]} == 0)); then return 0; fi
+    export root
+    export -f tidy_one
+    printf '%s\0' "${todo[@]}" |
+        xargs -0 -n 2 -P "$jobs" bash -c 'tidy_one "$@"' tidy_one "$tool" "$folder" ||
+        die "clang-tidy found something (above)"
+}
+
+# lint_all FOLDER JOBS
+lint_all() {
+    local format tidy
+    if ! format="$(reference_tool clang-format)" || ! tidy="$(reference_tool clang-tidy)"; then
+        say "Format and style are not checked here: that takes clang-format and clang-tidy $lint_release (Debian 12)"
+        return 0
+    fi
+    lint_format "$format"
+    lint_tidy "$tidy" "$1" "$2"
+}

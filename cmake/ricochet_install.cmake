@@ -1,0 +1,38 @@
+# Installation: the library with its headers, the tool, the CMake package, the pkg-config file; and CPack's .deb.
+include(CMakePackageConfigHelpers)
+
+set(ricochet_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ricochet)
+install(TARGETS ricochet EXPORT ricochet_targets FILE_SET HEADERS)
+install(EXPORT ricochet_targets FILE ricochet-targets.cmake NAMESPACE ricochet:: DESTINATION ${ricochet_cmake_dir})
+
+get_target_property(ricochet_library_type ricochet TYPE)
+configure_package_config_file(cmake/ricochet-config.cmake.in ricochet-config.cmake
+  INSTALL_DESTINATION ${ricochet_cmake_dir})
+# While the major number is 0 a new minor number may change the interface.
+write_basic_package_version_file(ricochet-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/ricochet-config.cmake
+  ${PROJECT_BINARY_DIR}/ricochet-config-version.cmake
+  DESTINATION ${ricochet_cmake_dir})
+
+string(REGEX MATCH "^[0-9]+" embree_major "${EMBREE_VERSION}")
+set(ricochet_private_libraries "-lembree${embree_major} -lOpenMeshCore -ltbb -lfmt")
+if(ricochet_library_type STREQUAL "STATIC_LIBRARY")
+  set(ricochet_public_libraries "-lricochet ${ricochet_private_libraries}")
+else()
+  set(ricochet_public_libraries "-lricochet")
+endif()
+file(RELATIVE_PATH ricochet_prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/ricochet.pc.in ricochet.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/ricochet.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+install(FILES LICENSE THIRD_PARTY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_PACKAGE_VENDOR "The Ricochet authors")
+set(CPACK_PACKAGE_CONTACT "The Ricochet authors")
+set(CPACK_GENERATOR DEB)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libembree-dev, libopenmesh-dev, libtbb-dev, libfmt-dev")
+set(CPACK_STRIP_FILES ON)
+include(CPack)

@@ -1,0 +1,25 @@
+/// \file
+/// Everything that the library offers. Installed headers can also be included one by one.
+#pragma once
+
+#include "ricochet/collision/collider.h"
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/core/transform.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/mesh_format.h"
+#include "ricochet/geometry/mesh_writer.h"
+#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/response/material.h"
+#include "ricochet/simulation.h"

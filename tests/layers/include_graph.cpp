@@ -1,0 +1,197 @@
+#include "layers/include_graph.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+
+namespace ricochet::layers {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kUmbrella = "src/ricochet/ricochet.h";
+const std::string kLibrary = "src/ricochet/";
+
+/// What each layer of the library may include besides itself.
+const std::map<std::string, std::set<std::string>>& allowed_layers() {
+    static const std::map<std::string, std::set<std::string>> table = {
+        {"core", {}},
+        {"geometry", {"core"}},
+        {"collision", {"core", "geometry"}},
+        {"dynamics", {"core", "geometry"}},
+        {"response", {"core", "geometry", "collision", "dynamics"}},
+        {"simulation", {"core", "geometry", "collision", "dynamics", "response"}},
+        {"io", {"core", "geometry", "collision", "dynamics", "response", "simulation"}},
+        {"render", {"core", "geometry", "collision", "dynamics", "response", "simulation"}},
+        {"cli", {"core", "geometry", "collision", "dynamics", "response", "simulation", "io", "render"}},
+    };
+    return table;
+}
+
+/// A third-party library: how its headers begin, and the files (as a regular expression) that may include them.
+struct Door {
+    const char* headers;
+    const char* files;
+};
+
+/// Everything that is not ours and not the C++ standard library.
+constexpr std::array kDoors = {
+    Door{"embree[34]/", "src/ricochet/geometry/embree\\.h"},
+    Door{"ricochet/geometry/embree\\.h",
+         "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|bench/.*\\.cpp"},
+    Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
+    Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
+    Door{"nlohmann/", "src/ricochet/io/.*\\.cpp|tests/.*"},
+    Door{"CLI/", "src/cli/.*"},
+    Door{"fmt/", ".*\\.cpp"},
+    Door{"stb/", "src/ricochet/render/image\\.cpp"},
+    Door{"(gtest|gmock)/", "tests/.*"},
+    Door{"benchmark/", "bench/.*"},
+    Door{"boost/", "tests/.*"},
+    Door{"(unistd|fcntl|signal)\\.h|sys/", ".*\\.cpp|tests/.*"},
+};
+
+bool matches(const std::string& text, const std::string& pattern) {
+    return std::regex_match(text, std::regex(pattern));
+}
+
+/// The layer of a file of the library or the tool; nothing for other files and the umbrella header.
+std::optional<std::string> layer_of(const std::string& path) {
+    if (path == kUmbrella) return std::nullopt;
+    if (path.starts_with("src/cli/")) return "cli";
+    if (!path.starts_with(kLibrary)) return std::nullopt;
+    const std::string below = path.substr(kLibrary.size());
+    const std::size_t slash = below.find('/');
+    return slash == std::string::npos ? "simulation" : below.substr(0, slash);
+}
+
+bool is_header(const std::string& path) { return path.ends_with(".h"); }
+
+/// A header that an installation contains.
+bool is_public_header(const SourceTree& tree, const std::string& path) {
+    return is_header(path) && path.starts_with(kLibrary) && !tree.private_headers.contains(path);
+}
+
+/// The file of the tree that an include line names; nothing when it is somebody else's.
+std::optional<std::string> resolve(const std::set<std::string>& paths, const SourceFile& from,
+                                   const std::string& name) {
+    const std::string beside = from.path.substr(0, from.path.rfind('/') + 1) + name;
+    for (const std::string& candidate : {"src/" + name, "tests/" + name, beside}) {
+        if (paths.contains(candidate)) return candidate;
+    }
+    return std::nullopt;
+}
+
+std::vector<Include> read_includes(const fs::path& file) {
+    static const std::regex pattern(R"re(^\s*#\s*include\s*["<]([^">]+)[">].*)re");
+    std::vector<Include> includes;
+    std::ifstream stream(file);
+    std::string text;
+    for (int line = 1; std::getline(stream, text); ++line) {
+        std::smatch match;
+        if (std::regex_match(text, match, pattern)) includes.push_back({line, match[1]});
+    }
+    return includes;
+}
+
+std::set<std::string> read_private_headers(const fs::path& root) {
+    std::set<std::string> headers;
+    std::ifstream stream(root / kLibrary / "private_headers.txt");
+    std::string text;
+    while (std::getline(stream, text)) {
+        if (!text.empty() && !text.starts_with('#')) headers.insert(kLibrary + text);
+    }
+    return headers;
+}
+
+/// What is wrong with an include of one of our own files; nothing when it is allowed.
+std::optional<std::string> wrong_layer(const SourceTree& tree, const SourceFile& from, const std::string& target) {
+    const auto layer = layer_of(from.path);
+    if (is_public_header(tree, from.path) && tree.private_headers.contains(target)) {
+        return "a public header includes the private header " + target;
+    }
+    if (!layer) return std::nullopt;
+    const auto row = allowed_layers().find(*layer);
+    if (row == allowed_layers().end()) return "the folder " + *layer + " is no layer";
+    const auto below = layer_of(target);
+    if (!below) return "the library includes " + target + ", which stands outside its layers";
+    if (*below == *layer || row->second.contains(*below)) return std::nullopt;
+    return *layer + " must not include " + *below + " (" + target + ")";
+}
+
+/// What is wrong with an include of a library's header.
+std::optional<std::string> wrong_door(const SourceTree& tree, const SourceFile& from, const std::string& name) {
+    const auto door = std::find_if(kDoors.begin(), kDoors.end(),
+                                   [&](const Door& d) { return matches(name, std::string("(") + d.headers + ").*"); });
+    if (door == kDoors.end()) return std::nullopt;
+    if (is_public_header(tree, from.path)) return "a public header includes the third-party header " + name;
+    if (matches(from.path, door->files)) return std::nullopt;
+    return name + " may be included only in " + door->files;
+}
+
+bool is_standard(const std::string& name) { return name.find_first_of("./") == std::string::npos; }
+
+std::optional<std::string> wrong(const SourceTree& tree, const std::set<std::string>& paths, const SourceFile& from,
+                                 const std::string& name) {
+    if (auto reason = wrong_door(tree, from, name)) return reason;
+    if (const auto target = resolve(paths, from, name)) return wrong_layer(tree, from, *target);
+    const bool behind_a_door = std::any_of(kDoors.begin(), kDoors.end(), [&](const Door& d) {
+        return matches(name, std::string("(") + d.headers + ").*");
+    });
+    if (is_standard(name) || behind_a_door) return std::nullopt;
+    return name + " is neither a file of this project nor of a library that it knows";
+}
+
+}  // namespace
+
+SourceTree read_source_tree(const fs::path& root) {
+    SourceTree tree;
+    tree.private_headers = read_private_headers(root);
+    for (const char* folder : {"src", "tests", "meshes", "bench"}) {
+        if (!fs::is_directory(root / folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            const auto extension = entry.path().extension();
+            if (extension != ".h" && extension != ".cpp") continue;
+            tree.files.push_back({fs::relative(entry.path(), root).generic_string(), read_includes(entry.path())});
+        }
+    }
+    std::sort(tree.files.begin(), tree.files.end(),
+              [](const SourceFile& a, const SourceFile& b) { return a.path < b.path; });
+    return tree;
+}
+
+std::vector<std::string> broken_rules(const SourceTree& tree) {
+    std::set<std::string> paths;
+    for (const SourceFile& file : tree.files) paths.insert(file.path);
+    std::vector<std::string> broken;
+    for (const SourceFile& file : tree.files) {
+        for (const Include& include : file.includes) {
+            if (const auto reason = wrong(tree, paths, file, include.name)) {
+                broken.push_back(file.path + ":" + std::to_string(include.line) + ": " + *reason);
+            }
+        }
+    }
+    for (const std::string& header : tree.private_headers) {
+        if (!paths.contains(header)) broken.push_back("private_headers.txt names " + header + ", which does not exist");
+    }
+    return broken;
+}
+
+std::vector<std::string> missing_from_umbrella(const SourceTree& tree) {
+    std::set<std::string> included;
+    for (const SourceFile& file : tree.files) {
+        if (file.path != kUmbrella) continue;
+        for (const Include& include : file.includes) included.insert("src/" + include.name);
+    }
+    std::vector<std::string> missing;
+    for (const SourceFile& file : tree.files) {
+        const bool wanted = is_public_header(tree, file.path) && file.path != kUmbrella;
+        if (wanted && !included.contains(file.path)) missing.push_back(file.path);
+    }
+    return missing;
+}
+
+}  // namespace ricochet::layers

@@ -1,0 +1,121 @@
+#include "layers/include_graph.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace ricochet::layers {
+namespace {
+
+/// A tree of two files: `path` with the one include line `name`, and, when it is ours, the file that the line names.
+SourceTree planted(const std::string& path, const std::string& name) {
+    SourceTree tree;
+    tree.files.push_back({path, {{7, name}}});
+    if (name.starts_with("ricochet/") || name.starts_with("cli/")) tree.files.push_back({"src/" + name, {}});
+    if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
+    tree.private_headers = {"src/ricochet/geometry/embree.h"};
+    if (name != "ricochet/geometry/embree.h") tree.files.push_back({"src/ricochet/geometry/embree.h", {}});
+    return tree;
+}
+
+struct Case {
+    std::string file;
+    std::string include;
+};
+
+TEST(IncludeGraph, OfThisRepositoryKeepsTheLayers) {
+    const SourceTree tree = read_source_tree(RICOCHET_SOURCE_DIR);
+    EXPECT_GT(tree.files.size(), 20U);
+    EXPECT_EQ(broken_rules(tree), std::vector<std::string>{});
+}
+
+TEST(IncludeGraph, OfThisRepositoryHasEveryPublicHeaderInTheUmbrella) {
+    EXPECT_EQ(missing_from_umbrella(read_source_tree(RICOCHET_SOURCE_DIR)), std::vector<std::string>{})
+        << "add them to src/ricochet/ricochet.h or, when they are private, to src/ricochet/private_headers.txt";
+}
+
+TEST(IncludeGraph, FindsAPlantedViolation) {
+    const std::vector<Case> cases = {
+        {"src/ricochet/core/vec3.h", "ricochet/geometry/path.h"},           // upward
+        {"src/ricochet/geometry/path.cpp", "ricochet/dynamics/force.h"},    // upward
+        {"src/ricochet/collision/x.cpp", "ricochet/dynamics/particles.h"},  // siblings
+        {"src/ricochet/dynamics/x.h", "ricochet/collision/collider.h"},     // siblings, the other way
+        {"src/ricochet/io/x.cpp", "ricochet/render/image.h"},               // siblings
+        {"src/ricochet/response/x.cpp", "ricochet/simulation.h"},           // upward to the library's top
+        {"src/ricochet/simulation.cpp", "ricochet/io/scene.h"},             // upward
+        {"src/ricochet/simulation.cpp", "cli/run.h"},                       // the library knows no tool
+        {"src/ricochet/core/error.cpp", "ricochet/ricochet.h"},             // the umbrella is for users
+        {"src/ricochet/core/error.cpp", "support/counts.h"},                // the library knows no test
+        {"src/ricochet/geometry/path.cpp", "OpenMesh/Core/IO/MeshIO.hh"},   // outside the door
+        {"src/ricochet/geometry/triangle_bvh.cpp", "embree4/rtcore.h"},     // the door is embree.h
+        {"src/ricochet/geometry/path.cpp", "ricochet/geometry/embree.h"},   // and only two files open it
+        {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},              // outside the door
+        {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},       // by its other name
+        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                   // in a public header
+        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},             // in a public header, of the right layer
+        {"src/ricochet/geometry/triangle_bvh.h", "ricochet/geometry/embree.h"},  // public includes private
+        {"src/ricochet/core/error.h", "fmt/core.h"},                             // in a public header
+        {"src/ricochet/core/error.cpp", "Eigen/Core"},                           // a library nobody has declared
+        {"src/ricochet/core/error.cpp", "core/missing.h"},                       // names no file
+        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},                   // a folder that is no layer
+        {"src/cli/main.cpp", "gtest/gtest.h"},                                   // tests only
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(fmt::format("{} includes {}", c.file, c.include));
+        const auto broken = broken_rules(planted(c.file, c.include));
+        ASSERT_EQ(broken.size(), 1U) << fmt::format("{}", fmt::join(broken, "\n"));
+        EXPECT_TRUE(broken.front().starts_with(c.file + ":7: ")) << broken.front();
+    }
+}
+
+TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
+    const std::vector<Case> cases = {
+        {"src/ricochet/core/vec3.h", "cmath"},
+        {"src/ricochet/geometry/path.h", "ricochet/core/vec3.h"},
+        {"src/ricochet/dynamics/emitter.h", "ricochet/geometry/triangle_mesh.h"},
+        {"src/ricochet/response/bounce.cpp", "ricochet/collision/collider.h"},
+        {"src/ricochet/response/bounce.cpp", "ricochet/dynamics/particles.h"},
+        {"src/ricochet/io/scene.cpp", "ricochet/simulation.h"},
+        {"src/ricochet/io/scene.cpp", "nlohmann/json.hpp"},
+        {"src/ricochet/geometry/triangle_bvh.cpp", "ricochet/geometry/embree.h"},
+        {"src/ricochet/geometry/embree.h", "embree4/rtcore.h"},
+        {"src/ricochet/geometry/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
+        {"src/ricochet/core/parallel.cpp", "tbb/parallel_for.h"},
+        {"src/ricochet/core/error.cpp", "fmt/core.h"},
+        {"src/cli/main.cpp", "CLI/CLI.hpp"},
+        {"src/cli/main.cpp", "cli/run.h"},
+        {"tests/core/vec3_test.cpp", "support/counts.h"},
+        {"tests/core/vec3_test.cpp", "ricochet/simulation.h"},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(fmt::format("{} includes {}", c.file, c.include));
+        EXPECT_EQ(broken_rules(planted(c.file, c.include)), std::vector<std::string>{});
+    }
+}
+
+TEST(IncludeGraph, MissesAHeaderThatTheUmbrellaLeavesOut) {
+    SourceTree tree = planted("src/ricochet/core/vec3.h", "cmath");
+    tree.files.push_back({"src/ricochet/ricochet.h", {{1, "ricochet/core/box3.h"}}});
+    EXPECT_EQ(missing_from_umbrella(tree), std::vector<std::string>{"src/ricochet/core/vec3.h"});
+}
+
+TEST(IncludeGraph, IsReadFromFilesWithLineNumbersAndWithoutComments) {
+    const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "ricochet_include_graph";
+    std::filesystem::create_directories(root / "src/ricochet/core");
+    std::ofstream(root / "src/ricochet/core/a.h")
+        << "#pragma once\n// #include <tbb/tbb.h>\n  # include \"x/y.h\" // z\n";
+    std::ofstream(root / "src/ricochet/private_headers.txt") << "# comment\ncore/a.h\n";
+    const SourceTree tree = read_source_tree(root);
+    std::filesystem::remove_all(root);
+    ASSERT_EQ(tree.files.size(), 1U);
+    EXPECT_EQ(tree.files[0].path, "src/ricochet/core/a.h");
+    ASSERT_EQ(tree.files[0].includes.size(), 1U);
+    EXPECT_EQ(tree.files[0].includes[0].line, 3);
+    EXPECT_EQ(tree.files[0].includes[0].name, "x/y.h");
+    EXPECT_EQ(tree.private_headers, std::set<std::string>{"src/ricochet/core/a.h"});
+}
+
+}  // namespace
+}  // namespace ricochet::layers

@@ -1,0 +1,68 @@
+# Installs the library as `kind` (static or shared) into an empty folder, then builds and runs the consumer against it.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# The prefix has a space in its name on purpose.
+set(prefix "${work_dir}/installed tree")
+file(REMOVE_RECURSE ${prefix} ${work_dir}/consumer)
+
+# The build at hand serves for its own kind; the other kind is built beside it, unoptimised.
+if((kind STREQUAL "shared" AND build_shared) OR (kind STREQUAL "static" AND NOT build_shared))
+  set(library_build ${build_dir})
+else()
+  set(library_build ${work_dir}/library)
+  if(kind STREQUAL "shared")
+    set(shared ON)
+  else()
+    set(shared OFF)
+  endif()
+  run(${CMAKE_COMMAND} -S ${source_dir} -B ${library_build} -G ${generator}
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS_DEBUG=-O0
+    -D BUILD_SHARED_LIBS=${shared} -D RICOCHET_BUILD_TESTS=OFF -D RICOCHET_BUILD_APPS=OFF)
+  run(${CMAKE_COMMAND} --build ${library_build})
+endif()
+run(${CMAKE_COMMAND} --install ${library_build} --prefix ${prefix})
+
+file(GLOB_RECURSE header_files RELATIVE "${prefix}/include" "${prefix}/include/*.h")
+file(STRINGS ${source_dir}/src/ricochet/private_headers.txt private_headers REGEX "^[^#]")
+foreach(header IN LISTS private_headers)
+  if("ricochet/${header}" IN_LIST header_files)
+    message(FATAL_ERROR "the private header ${header} was installed")
+  endif()
+endforeach()
+
+function(check_output program)
+  execute_process(COMMAND ${program} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT output STREQUAL "sum 1000\n")
+    message(FATAL_ERROR "${program} printed '${output}'")
+  endif()
+endfunction()
+
+# By find_package.
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${work_dir}/consumer -G ${generator}
+  -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=${build_type} -D CMAKE_PREFIX_PATH=${prefix})
+file(STRINGS ${work_dir}/consumer/CMakeCache.txt found REGEX "^ricochet_DIR:")
+string(FIND "${found}" "${prefix}" position)
+if(position EQUAL -1)
+  message(FATAL_ERROR "the consumer found another installation: ${found}")
+endif()
+run(${CMAKE_COMMAND} --build ${work_dir}/consumer)
+check_output(${work_dir}/consumer/consumer)
+
+# By pkg-config.
+if(NOT pkg_config)
+  message(STATUS "pkg-config is not installed: not tried")
+  return()
+endif()
+file(GLOB_RECURSE pc_file "${prefix}/*/ricochet.pc")
+execute_process(COMMAND ${pkg_config} --cflags --libs "${pc_file}"
+  OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+cmake_path(GET pc_file PARENT_PATH library_dir)
+cmake_path(GET library_dir PARENT_PATH library_dir)
+run(${compiler} -std=c++20 ${CMAKE_CURRENT_LIST_DIR}/consumer/main.cpp -o ${work_dir}/by_pkg_config ${flags}
+  "-Wl,-rpath,${library_dir}")
+check_output(${work_dir}/by_pkg_config)

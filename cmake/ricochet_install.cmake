@@ -3,6 +3,11 @@ include(CMakePackageConfigHelpers)
 
 set(ricochet_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ricochet)
 install(TARGETS ricochet EXPORT ricochet_targets FILE_SET HEADERS)
+if(RICOCHET_BUILD_APPS)
+  file(RELATIVE_PATH bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(ricochet_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
+  install(TARGETS ricochet_cli)
+endif()
 install(EXPORT ricochet_targets FILE ricochet-targets.cmake NAMESPACE ricochet:: DESTINATION ${ricochet_cmake_dir})
 
 get_target_property(ricochet_library_type ricochet TYPE)

@@ -1,3 +1,5 @@
+# shellcheck shell=bash
+# shellcheck disable=SC2034,SC2154  # shared names: set here, used there
 # What every script here shares: the repository's root, messages, and the number of jobs. Sourced, never run.
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)"

@@ -1,3 +1,5 @@
+# shellcheck shell=bash
+# shellcheck disable=SC2034,SC2154  # shared names: set here, used there
 # The style gate: clang-format on every file, clang-tidy on every compiled one. Sourced after common.sh.
 #
 # Another release of these tools formats and complains differently, so one release is the reference: that of Debian 12.
@@ -19,7 +21,7 @@ reference_tool() {
 # Every source file of the project, relative to the root.
 source_files() {
     (
-        cd "$root"
+        cd "$root" || exit
         local folder
         for folder in src tests meshes bench; do
             if [[ -d "$folder" ]]; then find "$folder" -name '*.cpp' -o -name '*.h'; fi
@@ -39,7 +41,7 @@ tidy_keys() {
     local tool="$1" folder="$2" settings file material
     settings="$( (cd "$root" && find . -name .clang-tidy -not -path './build*' | sort | xargs cat) | sha256sum)"
     settings+="$("$tool" --version)"
-    cd "$root"
+    cd "$root" || return
     {
         source_files | xargs sha256sum
         echo "--"
@@ -72,13 +74,15 @@ lint_format() {
 }
 
 lint_tidy() {
-    local tool="$1" folder="$2" jobs="$3" file key
+    local tool="$1" folder="$2" jobs="$3" file key seen=0
     local -a todo=()
     while read -r file key; do
+        seen=$((seen + 1))
         mkdir -p "$root/$folder/lint/$(dirname "$file")"
         if [[ "$(cat "$root/$folder/lint/$file.stamp" 2>/dev/null)" != "$key" ]]; then todo+=("$file" "$key"); fi
     done < <(tidy_keys "$tool" "$folder")
-    say "clang-tidy: $((${#todo[@]} / 2)) files new or changed"
+    if ((seen == 0)); then die "clang-tidy: no compiled source file found in $folder/compile_commands.json"; fi
+    say "clang-tidy: $((${#todo[@]} / 2)) of $seen files are new or changed"
     if ((${#todo[@]} == 0)); then return 0; fi
     export root
     export -f tidy_one

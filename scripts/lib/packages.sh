@@ -1,3 +1,5 @@
+# shellcheck shell=bash
+# shellcheck disable=SC2034,SC2154  # shared names: set here, used there
 # The one list of packages, and how the missing ones are installed. Sourced after common.sh.
 
 packages_build=(

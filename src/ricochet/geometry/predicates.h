@@ -2,10 +2,13 @@
 /// Exact geometric predicates: the sign returned is the sign of the real-number expression, always.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-/// Discrete & Computational Geometry 18, 1997: a floating-point filter with a proven error bound, then expansions.
+/// Discrete & Computational Geometry 18, 1997: a floating-point filter with a proven error bound, then double-double
+/// with its own bound, then expansions.
 /// Exact as long as no intermediate product leaves the range of doubles: coordinates are multiples of 2^-340 and below
 /// 2^300 in magnitude; flush_tiny() and the readers' extent check see to it.
 #pragma once
+
+#include <cmath>
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
@@ -35,16 +38,74 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 /// coplanar segments, a segment that is a point, triangles that are a segment or a point.
 [[nodiscard]] bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// True when p lies on the closed triangle. Exact.
+/// True when p lies on the closed triangle, which may be degenerate. Exact.
 [[nodiscard]] bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Fraction t in [0, 1] at which p + t (q - p) crosses the plane of (a, b, c), for p and q whose exact orientations
-/// differ (not both zero). The result is within 2 ulp of the exact rational, whatever the triangle's shape.
+/// differ in sign (one of them may be zero). The result is within 2 ulp of the exact rational, whatever the triangle's
+/// shape.
 [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Unit normal of (a, b, c) by the counter-clockwise rule. Every component is within 2^-51 of the exact one, also for
 /// slender triangles (the cross product is recomputed in higher precision when it cancels); an axis-aligned triangle
-/// gives exactly an axis. The triangle must not be degenerate.
+/// gives exactly an axis, its zeros positive. The triangle must not be degenerate.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
+
+// The filters are inline because they decide nearly every call of the innermost loop.
+namespace detail {
+
+/// A cross product u x v in plain doubles with, for its error bound, the sums of the magnitudes of its terms.
+struct FilteredCross {
+    Vec3 value;
+    Vec3 magnitude;
+};
+
+[[nodiscard]] inline FilteredCross filtered_cross(const Vec3& u, const Vec3& v) {
+    const double yz = u.y * v.z, zy = u.z * v.y;
+    const double zx = u.z * v.x, xz = u.x * v.z;
+    const double xy = u.x * v.y, yx = u.y * v.x;
+    return {{yz - zy, zx - xz, xy - yx},
+            {std::fabs(yz) + std::fabs(zy), std::fabs(zx) + std::fabs(xz), std::fabs(xy) + std::fabs(yx)}};
+}
+
+/// Error of filtered_sign's determinant relative to its magnitude. With u = 2^-53, each of the six terms passes at most
+/// 8 roundings (3 differences, 2 products, 1 subtraction, 2 additions), so the error is at most (1 + u)^8 - 1 times the
+/// sum of the terms' exact magnitudes; the computed magnitude is at least (1 - u)^8 of that sum, and its product with
+/// this constant loses at most another factor 1 - u. Together below (8 + 100 u) u; 8.5 u = 0x1.1p-50 is used.
+/// Underflow changes nothing: every term is a multiple of 2^-1020, and sums below 2^-967 of such numbers are exact.
+inline constexpr double kDeterminantFilter = 0x1.1p-50;
+
+/// Sign of (u x v) . w when the error bound allows to tell it, else 0. All of u, v, w are rounded differences of
+/// points.
+[[nodiscard]] inline int filtered_sign(const FilteredCross& cross, const Vec3& w) {
+    const double determinant = cross.value.x * w.x + cross.value.y * w.y + cross.value.z * w.z;
+    const double magnitude =
+        cross.magnitude.x * std::fabs(w.x) + cross.magnitude.y * std::fabs(w.y) + cross.magnitude.z * std::fabs(w.z);
+    const double bound = kDeterminantFilter * magnitude;
+    return static_cast<int>(determinant > bound) - static_cast<int>(determinant < -bound);
+}
+
+/// orient3d when the filter does not decide.
+[[nodiscard]] int orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// segment_meets_triangle when the filter has not put both ends on the same side; p_side and q_side are what it found
+/// (0: not decided).
+[[nodiscard]] bool segment_meets_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                                        const Vec3& c, int p_side, int q_side);
+
+}  // namespace detail
+
+inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const int filtered = detail::filtered_sign(detail::filtered_cross(b - a, c - a), d - a);
+    return filtered != 0 ? filtered : detail::orient3d_beyond_filter(a, b, c, d);
+}
+
+inline bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
+    const int p_side = detail::filtered_sign(normal, p - a);
+    const int q_side = detail::filtered_sign(normal, q - a);
+    if (p_side * q_side > 0) return false;
+    return detail::segment_meets_triangle_beyond_filter(p, q, a, b, c, p_side, q_side);
+}
 
 }  // namespace ricochet

@@ -155,13 +155,28 @@ bool coplanar_segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a
 
 bool have_opposite_signs(int a, int b, int c) { return a * b < 0 || b * c < 0 || c * a < 0; }
 
+/// True when squares, products of two and their rounding errors stay far inside the range of doubles.
+bool is_moderate(double x) { return std::fabs(x) > 0x1p-400 && std::fabs(x) < 0x1p400; }
+
+/// The double nearest to x / y, up to 2^-100 of it; x not zero. Large and small numbers are scaled by powers of two, so
+/// that the intermediate products stay inside the range.
+double quotient(const DoubleDouble& x, const DoubleDouble& y) {
+    if (is_moderate(x.hi) && is_moderate(y.hi)) return (x / y).hi;
+    const int x_exponent = std::ilogb(x.hi);
+    const int y_exponent = std::ilogb(y.hi);
+    return std::ldexp((scaled(x, -x_exponent) / scaled(y, -y_exponent)).hi, x_exponent - y_exponent);
+}
+
 /// n / length(n) for n not zero, within 0.51 units in the last place of the largest component.
 Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
-    // A power of two keeps the squares inside the range; components lost to underflow are below 2^-1000 of the result.
-    const int exponent = -std::ilogb(max_abs({x.hi, y.hi, z.hi}));
-    x = scaled(x, exponent);
-    y = scaled(y, exponent);
-    z = scaled(z, exponent);
+    const double largest = max_abs({x.hi, y.hi, z.hi});
+    if (!is_moderate(largest)) {
+        const int exponent = -std::ilogb(largest);
+        x = scaled(x, exponent);
+        y = scaled(y, exponent);
+        z = scaled(z, exponent);
+    }
+    // What components much smaller than the largest lose to underflow is below 2^-200 of the result.
     const DoubleDouble length = sqrt(x * x + y * y + z * z);
     // Adding zero turns -0 into +0.
     return {(x / length).hi + 0.0, (y / length).hi + 0.0, (z / length).hi + 0.0};
@@ -229,15 +244,10 @@ double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
     const BoundedCross normal(u, v);
-    DoubleDouble numerator = volume(normal, u, v, ExactDifference(p, a), kAccuracy);
-    DoubleDouble denominator = numerator - volume(normal, u, v, ExactDifference(q, a), kAccuracy);
-    if (numerator.hi == 0.0) return 0.0;
-    // Scaled by powers of two, so that the quotient's intermediate products stay inside the range.
-    const int numerator_exponent = std::ilogb(numerator.hi);
-    const int denominator_exponent = std::ilogb(denominator.hi);
-    numerator = scaled(numerator, -numerator_exponent);
-    denominator = scaled(denominator, -denominator_exponent);
-    return std::ldexp((numerator / denominator).hi, numerator_exponent - denominator_exponent);
+    const DoubleDouble from_p = volume(normal, u, v, ExactDifference(p, a), kAccuracy);
+    if (from_p.hi == 0.0) return 0.0;
+    const DoubleDouble from_q = volume(normal, u, v, ExactDifference(q, a), kAccuracy);
+    return quotient(from_p, from_p - from_q);
 }
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {

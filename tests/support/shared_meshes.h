@@ -1,0 +1,29 @@
+/// \file
+/// Real meshes for tests: scans and CAD parts that are not part of the project. The folder that holds them is named by
+/// the environment variable RICOCHET_SHARED_MESHES, else it is ../shared/meshes beside the source tree.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace ricochet::testing {
+
+/// The folder looked into, whether it exists or not.
+[[nodiscard]] std::filesystem::path shared_mesh_folder();
+
+/// The path of a file there; nothing when it is missing.
+[[nodiscard]] std::optional<std::filesystem::path> shared_mesh(const std::string& name);
+
+/// One sentence for a skipped test.
+[[nodiscard]] std::string missing_mesh_sentence(const std::string& name);
+
+}  // namespace ricochet::testing
+
+/// Declares `path` as the path of the shared mesh `name`, or skips the test with a sentence.
+#define RICOCHET_SHARED_MESH_OR_SKIP(path, name)                                         \
+    const auto path##_found = ::ricochet::testing::shared_mesh(name);                    \
+    if (!path##_found) GTEST_SKIP() << ::ricochet::testing::missing_mesh_sentence(name); \
+    const std::filesystem::path& path = *path##_found

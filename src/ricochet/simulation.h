@@ -26,6 +26,7 @@ struct SimulationOptions {
     std::uint64_t seed = 0;
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;
+    bool triangle_totals = true;         ///< keep hits and impulse per triangle (56 bytes each)
     std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
 };
 
@@ -54,6 +55,7 @@ struct SimulationStatistics {
     std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
     std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
     std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
+    std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
     std::uint64_t frozen = 0;            ///< particles stopped because their state was not finite or absurd
 };
 
@@ -85,8 +87,13 @@ public:
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes.
-    [[nodiscard]] const TriangleMesh* collider_mesh(std::size_t i) const;
+    [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
+    /// Totals of collider i, one entry a triangle (one in all for a plane); empty without options.triangle_totals.
     [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
+    /// Triangles of all mesh colliders together, degenerate ones included.
+    [[nodiscard]] std::size_t triangle_count() const;
+    /// Triangles without area, which take no part in collisions.
+    [[nodiscard]] std::size_t degenerate_triangles() const;
 
     [[nodiscard]] double kinetic_energy() const;                   ///< J
     [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential

@@ -25,6 +25,11 @@ inline constexpr double kSmallestParkingGap = 0x1p-240;
 inline constexpr int kParkingAttempts = 4;
 inline constexpr double kParkingWidening = 4.0;
 
+/// A surface counts as touched while the particle is within this many parking gaps of its plane, and sliding goes on
+/// until the particle is as far beyond the triangle's rim. Smaller: sliding is cut into more, shorter stretches.
+/// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
+inline constexpr double kTouchingGaps = 8.0;
+
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
 /// before the triangle is dropped. Reason: covers the parking displacement and the rounding of points on the path (a
 /// few ulp). Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact

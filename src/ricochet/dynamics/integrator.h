@@ -24,19 +24,27 @@ enum class IntegratorKind {
 
 /// What a particle does until the end of the step, or until something is in its way.
 struct Flight {
-    Path path;            ///< where it goes
-    Vec3 acceleration;    ///< what the forces do at the start, m/s^2
-    Vec3 velocity;        ///< velocity before the step's forces, m/s
-    bool kicked = false;  ///< the velocity along the path already contains the whole step's force
+    Path path;          ///< where it goes
+    Vec3 acceleration;  ///< what the forces do at the start, m/s^2
+    double kick_duration =
+        0.0;  ///< s of force that the velocity along the path already contains (0: none, it builds up)
 };
 
 /// The flight that starts at the beginning of a step (or at birth), over `duration` seconds.
+///
+/// symplectic_euler is a splitting: one kick with the whole step's force, then force-free drift; an impact turns the
+/// drift and the forces do not act again in that step. Kick and drift are each exact flows (with elastic walls the
+/// drift is a billiard), so the method stays symplectic with bounces and an elastic ball's height stays bounded.
+/// Kicking again after each impact would lose energy at every bounce in the order of g * dt * speed. Source: E. Hairer,
+/// C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3 (splitting).
+///
+/// ballistic holds the acceleration of the step's start over the step, and evaluates it anew after each impact.
 [[nodiscard]] Flight begin_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state,
                                   double duration);
-/// The flight that goes on after an impact at flight time `elapsed` with the reflected velocity in `state`.
+/// The flight that goes on after an impact, with the reflected velocity in `state`.
 [[nodiscard]] Flight resume_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state,
                                    const Flight& before, double duration);
-/// Velocity at flight time s, as the integrator's own step of that length gives it (what is reflected, what is stored).
+/// Velocity at flight time s: what is reflected at an impact and stored at the end.
 [[nodiscard]] Vec3 velocity_at(const Flight& flight, double s);
 
 }  // namespace ricochet

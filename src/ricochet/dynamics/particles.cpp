@@ -27,6 +27,7 @@ void Particles::append(const Particle& particle) {
     lifetime.push_back(particle.lifetime);
     unsimulated_time.push_back(0.0);
     contacts.push_back(0);
+    frozen.push_back(0);
     resting.push_back(0);
 }
 
@@ -44,6 +45,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(lifetime, keep);
     compact_array(unsimulated_time, keep);
     compact_array(contacts, keep);
+    compact_array(frozen, keep);
     compact_array(resting, keep);
 }
 

@@ -34,6 +34,7 @@ public:
     std::vector<double> lifetime;
     std::vector<double> unsimulated_time;  ///< s that the bounce budget cut off, summed over the particle's life
     std::vector<std::uint32_t> contacts;   ///< impacts so far (saturating)
+    std::vector<std::uint8_t> frozen;      ///< 1 when the state left the range of the arithmetic: it no longer moves
     std::vector<std::uint8_t> resting;     ///< 1 when the particle ended the last step at rest on a surface
 
     [[nodiscard]] std::size_t size() const { return id.size(); }

@@ -1,5 +1,7 @@
 #include "ricochet/geometry/path.h"
 
+#include "ricochet/geometry/predicates.h"
+
 namespace ricochet {
 
 Vec3 Path::position(double s) const {
@@ -7,7 +9,7 @@ Vec3 Path::position(double s) const {
     if (s >= duration) return end;
     Vec3 p = c[static_cast<std::size_t>(degree)];
     for (int k = degree - 1; k >= 0; --k) p = c[static_cast<std::size_t>(k)] + s * p;
-    return p;
+    return flush_tiny(p);
 }
 
 Vec3 Path::velocity(double s) const { return c[1] + s * (2.0 * c[2] + (3.0 * s) * c[3]); }
@@ -26,7 +28,7 @@ Path line_path(const Vec3& x, const Vec3& v, double duration) {
     path.c = {x, v, Vec3{}, Vec3{}};
     path.degree = 1;
     path.duration = duration;
-    path.end = x + duration * v;
+    path.end = flush_tiny(x + duration * v);
     return path;
 }
 
@@ -36,7 +38,7 @@ Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration)
     path.c = {x, v, 0.5 * a, Vec3{}};
     path.degree = 2;
     path.duration = duration;
-    path.end = x + duration * (v + (0.5 * duration) * a);
+    path.end = flush_tiny(x + duration * (v + (0.5 * duration) * a));
     return path;
 }
 

@@ -1,0 +1,120 @@
+/// \file
+/// All static colliders of a scene in world coordinates, as surfaces in one total order.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/collider.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/geometry/sweep.h"
+#include "ricochet/geometry/triangle_bvh.h"
+
+namespace ricochet {
+
+/// Number of a surface (a plane or one triangle of a mesh). Ascending in (collider, triangle): the order that breaks
+/// ties.
+using SurfaceId = std::uint32_t;
+
+/// Which collider, and which triangle of it (0 for a plane), a surface is.
+struct SurfaceName {
+    std::uint32_t collider;
+    std::uint32_t triangle;
+};
+
+/// Immutable after construction; safe from any number of threads.
+class CollisionWorld {
+public:
+    /// Bakes every placement into world coordinates and builds the broad phase. Throws InputError that names the
+    /// collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
+    explicit CollisionWorld(std::vector<ColliderDescription> colliders);
+    CollisionWorld(const CollisionWorld&) = delete;  // the broad phase refers to the arrays
+    CollisionWorld& operator=(const CollisionWorld&) = delete;
+
+    [[nodiscard]] const std::vector<ColliderDescription>& colliders() const { return colliders_; }
+    [[nodiscard]] std::size_t surface_count() const { return surface_count_; }
+    [[nodiscard]] SurfaceName name_of(SurfaceId surface) const;
+
+    /// The infinite planes, with their surface numbers.
+    struct PlaneSurface {
+        Plane plane;
+        SurfaceId surface;
+    };
+    [[nodiscard]] std::span<const PlaneSurface> planes() const { return planes_; }
+
+    /// Broad phase over the triangles of all meshes. It speaks of triangles by their place in triangles().
+    [[nodiscard]] const TriangleBvh& bvh() const { return bvh_; }
+    [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
+    [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }
+    /// True for triangles of no area, which take no part in collisions: their neighbours' edges cover them.
+    [[nodiscard]] bool is_left_out(std::uint32_t triangle) const {
+        return degenerate_count_ != 0 && degenerate_[triangle] != 0;
+    }
+    [[nodiscard]] SurfaceId surface_of_triangle(std::uint32_t triangle) const;
+
+    [[nodiscard]] bool is_plane(SurfaceId surface) const;
+
+    /// The corners of a surface that is a triangle.
+    struct Corners {
+        const Vec3& a;
+        const Vec3& b;
+        const Vec3& c;
+    };
+    [[nodiscard]] Corners corners_of_triangle(std::uint32_t triangle) const {
+        const Triangle& t = triangles_[triangle];
+        return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+    }
+
+    /// Unit normal of a surface (the plane's own, or the triangle's by the counter-clockwise rule).
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface) const;
+    /// Signed distance from a surface's plane, m.
+    [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
+    /// Time that a path along a surface stays over it, see time_over_triangle(); the whole duration for a plane.
+    [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
+    /// Exact: does the closed segment [p, q] meet the surface?
+    [[nodiscard]] bool segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const;
+    /// Exact: does the point lie on the surface?
+    [[nodiscard]] bool point_on(SurfaceId surface, const Vec3& p) const { return segment_meets(surface, p, p); }
+
+    /// World-space mesh of a collider with all its triangles, degenerate ones included; nothing for planes.
+    [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
+    /// Triangles of a collider; 1 for a plane.
+    [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;
+    /// First surface of a collider.
+    [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return ranges_[collider].first_surface; }
+    /// Box of all mesh colliders.
+    [[nodiscard]] const Box3& bounds() const { return bounds_; }
+    /// Triangles that take no part in collisions.
+    [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
+
+private:
+    /// What a collider owns of the shared arrays.
+    struct Range {
+        SurfaceId first_surface = 0;
+        std::uint32_t first_triangle = 0;
+        std::uint32_t first_vertex = 0;
+        std::uint32_t plane = 0;
+        bool is_plane = false;
+    };
+
+    void add_plane(const ColliderDescription& collider, const PlaneShape& shape);
+    void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
+    void flag_degenerate_triangles();
+    [[nodiscard]] double curvature_allowance() const;
+    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;
+
+    std::vector<ColliderDescription> colliders_;
+    std::vector<Range> ranges_;
+    std::vector<PlaneSurface> planes_;
+    std::vector<Vec3> vertices_;
+    std::vector<Triangle> triangles_;
+    std::vector<std::uint8_t> degenerate_;
+    std::size_t degenerate_count_ = 0;
+    std::size_t surface_count_ = 0;
+    Box3 bounds_;
+    TriangleBvh bvh_;
+};
+
+}  // namespace ricochet

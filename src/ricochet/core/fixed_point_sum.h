@@ -1,0 +1,55 @@
+/// \file
+/// A sum whose bits do not depend on the order of its terms, added to from any number of threads.
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+
+namespace ricochet {
+
+/// A 128-bit two's complement integer counter of `unit`s. Terms are rounded to the unit when they are added; everything
+/// after that is exact, so the total depends on the set of terms alone. Terms beyond 2^126 units and NaN are refused
+/// (the caller is told), totals wrap beyond 2^127 units.
+class FixedPointSum {
+public:
+    /// Adds a term; thread-safe. Returns false, and adds nothing, when the term cannot be represented.
+    bool add(double term, double unit) {
+        const double scaled = term / unit;
+        if (!(std::fabs(scaled) < 0x1p126)) return false;
+        // Split into a multiple of 2^63 and the rest, each exact.
+        const double high_part = std::floor(scaled * 0x1p-63);
+        const double low_part = std::nearbyint(scaled - high_part * 0x1p63);
+        const auto high = static_cast<std::int64_t>(high_part);
+        const auto low = static_cast<std::uint64_t>(low_part);
+        add_words((static_cast<std::uint64_t>(high) << 63) + low,
+                  static_cast<std::uint64_t>(high >> 1) + carry_of(static_cast<std::uint64_t>(high) << 63, low));
+        return true;
+    }
+    /// The total; not while others are adding.
+    [[nodiscard]] double value(double unit) const {
+        std::uint64_t high = high_.load(std::memory_order_relaxed);
+        std::uint64_t low = low_.load(std::memory_order_relaxed);
+        const bool negative = (high >> 63) != 0;
+        if (negative) {  // as magnitude and sign, so that nothing cancels
+            low = ~low + 1;
+            high = ~high + (low == 0 ? 1 : 0);
+        }
+        const double magnitude = static_cast<double>(high) * 0x1p64 + static_cast<double>(low);
+        return (negative ? -magnitude : magnitude) * unit;
+    }
+
+private:
+    static std::uint64_t carry_of(std::uint64_t a, std::uint64_t b) { return a + b < a ? 1 : 0; }
+
+    void add_words(std::uint64_t low, std::uint64_t high) {
+        const std::uint64_t before = low_.fetch_add(low, std::memory_order_relaxed);
+        const std::uint64_t carried = high + carry_of(before, low);
+        if (carried != 0) high_.fetch_add(carried, std::memory_order_relaxed);
+    }
+
+    std::atomic<std::uint64_t> low_{0};
+    std::atomic<std::uint64_t> high_{0};
+};
+
+}  // namespace ricochet

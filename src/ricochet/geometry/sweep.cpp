@@ -1,0 +1,281 @@
+#include "ricochet/geometry/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/geometry/expansion.h"
+#include "ricochet/geometry/predicates.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kUnitRoundoff = 0x1p-53;
+
+/// Corners of the path's Bezier hull: the path and all its chords lie inside.
+struct Hull {
+    std::array<Vec3, 4> points;
+    int count = 0;
+};
+
+Hull hull_of(const Path& path) {
+    const double h = path.duration;
+    switch (path.degree) {
+        case 1:
+            return {{path.c[0], path.end, {}, {}}, 2};
+        case 2:
+            return {{path.c[0], path.c[0] + (0.5 * h) * path.c[1], path.end, {}}, 3};
+        default:
+            return {{path.c[0], path.c[0] + (h / 3.0) * path.c[1],
+                     path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2]), path.end},
+                    4};
+    }
+}
+
+/// A triangle as a surface: sides and meetings are exact, the normal is rounded.
+struct TriangleSurface {
+    const Vec3& a;
+    const Vec3& b;
+    const Vec3& c;
+
+    [[nodiscard]] Vec3 normal() const { return unit_normal(a, b, c); }
+    [[nodiscard]] int side(const Vec3& p) const { return orient3d(a, b, c, p); }
+    [[nodiscard]] const Vec3& origin() const { return a; }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const {
+        return segment_meets_triangle(p, q, a, b, c);
+    }
+    [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, a, b, c); }
+    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return crossing_fraction(p, q, a, b, c); }
+};
+
+Expansion<12> plane_expansion(const Plane& plane, const Vec3& p) {
+    const auto term = [](double n, double x, double origin) { return Expansion<2>(two_diff(x, origin)) * n; };
+    return (term(plane.normal.x, p.x, plane.point.x) + term(plane.normal.y, p.y, plane.point.y)) +
+           term(plane.normal.z, p.z, plane.point.z);
+}
+
+DoubleDouble plane_value(const Plane& plane, const Vec3& p) { return rounded(plane_expansion(plane, p)); }
+
+struct PlaneSurface {
+    const Plane& plane;
+
+    [[nodiscard]] Vec3 normal() const { return plane.normal; }
+    [[nodiscard]] int side(const Vec3& p) const { return side_of(plane, p); }
+    [[nodiscard]] const Vec3& origin() const { return plane.point; }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const { return side(p) * side(q) <= 0; }
+    [[nodiscard]] bool contains(const Vec3& p) const { return side(p) == 0; }
+    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const {
+        const DoubleDouble at_p = plane_value(plane, p);
+        return (at_p / (at_p - plane_value(plane, q))).hi;
+    }
+};
+
+/// Where a straight path runs inside the plane of a triangle it meets: the first point at which the rest of the path's
+/// beginning no longer meets it, found by halving (exact tests, so the answer errs towards early by at most an ulp).
+template <class Surface>
+double entry_in_plane(const Path& path, const Surface& surface) {
+    double free = 0.0;
+    double met = 1.0;
+    if (surface.contains(path.c[0])) return 0.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (free + met);
+        if (middle <= free || middle >= met) break;
+        const Vec3 p = path.position(middle * path.duration);
+        (surface.contains_crossing_of(path.c[0], p) ? met : free) = middle;
+    }
+    return free * path.duration;
+}
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& surface) {
+    const int before = surface.side(path.c[0]);
+    const int after = surface.side(path.end);
+    if (before == after && before != 0) return std::nullopt;
+    if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
+    if (before == 0 && after == 0) return Crossing{entry_in_plane(path, surface), 0};
+    // A particle born on the surface is turned back from the side it heads for.
+    if (before == 0) return Crossing{0.0, -after};
+    return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
+}
+
+/// Signed distance from the plane along the path, g(s) = g0 + g1 s + g2 s^2 (+ g3 s^3), oriented so that the start is
+/// on the positive side.
+struct Distance {
+    double g0;
+    double g1;
+    double g2;
+};
+
+template <class Surface>
+Distance distance_along(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
+    const double sign = orientation;
+    return {std::max(0.0, sign * dot(n, path.c[0] - surface.origin())), sign * dot(n, path.c[1]),
+            sign * dot(n, path.c[2])};
+}
+
+/// Discriminant g1^2 - 4 g0 g2 without cancellation.
+double discriminant(const Distance& g) { return (two_product(g.g1, g.g1) - 4.0 * two_product(g.g0, g.g2)).hi; }
+
+/// The times at which the distance passes through zero: downwards first, then (a path that comes back) upwards.
+struct Roots {
+    std::array<double, 2> time{};
+    int count = 0;
+};
+
+/// Roots in [0, duration], given the exact sides of the end points; the number of crossings agrees with them.
+/// Method: the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and
+/// Stability of Numerical Algorithms", section 1.8).
+Roots crossings_of_parabola(const Distance& g, bool ends_on_same_side, double duration) {
+    const double d = discriminant(g);
+    if (!ends_on_same_side) {
+        const double root = std::sqrt(std::max(0.0, d));
+        const double time =
+            g.g1 < 0.0 ? 2.0 * g.g0 / (-g.g1 + root) : (g.g2 < 0.0 ? (g.g1 + root) / (-2.0 * g.g2) : duration);
+        return {{std::clamp(time, 0.0, duration), 0.0}, 1};
+    }
+    const bool dips_inside = g.g1 < 0.0 && g.g2 > 0.0 && -g.g1 < 2.0 * g.g2 * duration;
+    if (!dips_inside || d <= 0.0) return {};
+    const double q = -g.g1 + std::sqrt(d);
+    return {{std::min(2.0 * g.g0 / q, duration), std::min(q / (2.0 * g.g2), duration)}, 2};
+}
+
+/// True when the path crosses the surface around time s, where it comes from the given exact side: two points of the
+/// path that bracket s lie on different sides and the segment between them meets the surface.
+template <class Surface>
+bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal, double s, int side) {
+    const double reach = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
+    const double speed = std::fabs(dot(normal, path.velocity(s)));
+    double margin = 8.0 * kUnitRoundoff * (s + reach / std::max(speed, 1e-300));
+    for (int attempt = 0; attempt < 24; ++attempt, margin *= 8.0) {
+        const double from = std::max(0.0, s - margin);
+        const double to = std::min(path.duration, s + margin);
+        const Vec3 p = path.position(from);
+        const Vec3 q = path.position(to);
+        if (surface.side(p) == side && surface.side(q) != side) return surface.contains_crossing_of(p, q);
+        if (from == 0.0 && to == path.duration) return false;
+    }
+    return false;
+}
+
+/// A path that starts in the surface's plane. On the surface itself the particle is turned back from the side it heads
+/// for; beside it, one crossing is behind and the other is where the distance returns to zero.
+template <class Surface>
+std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
+    const Vec3 normal = surface.normal();
+    const double g1 = dot(normal, path.c[1]);
+    const double g2 = dot(normal, path.c[2]);
+    if (surface.contains(path.c[0])) {
+        const double ahead = g1 != 0.0 ? g1 : g2;
+        return Crossing{0.0, ahead > 0.0 ? -1 : (ahead < 0.0 ? 1 : 0)};
+    }
+    if (g1 * g2 >= 0.0) return std::nullopt;
+    const double s = -g1 / g2;
+    const int side = g1 > 0.0 ? 1 : -1;
+    if (s > path.duration || !crosses_around(path, surface, normal, s, side)) return std::nullopt;
+    return Crossing{s, side};
+}
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surface& surface) {
+    const int before = surface.side(path.c[0]);
+    if (before == 0) return first_crossing_from_plane(path, surface);
+    const int after = surface.side(path.end);
+    const Vec3 normal = surface.normal();
+    const Distance g = distance_along(path, surface, normal, before);
+    const Roots roots = crossings_of_parabola(g, before == after, path.duration);
+    for (int k = 0; k < roots.count; ++k) {
+        const double s = roots.time[static_cast<std::size_t>(k)];
+        const int side = k == 0 ? before : -before;
+        if (crosses_around(path, surface, normal, s, side)) return Crossing{s, side};
+    }
+    return std::nullopt;
+}
+
+template <class Surface>
+std::optional<Crossing> crossing_of(const Path& path, const Surface& surface) {
+    return path.degree < 2 ? first_crossing_of_line(path, surface) : first_crossing_of_parabola(path, surface);
+}
+
+}  // namespace
+
+// Filter: each difference errs by u relative, each product and sum by another u; 8 u times the sum of magnitudes covers
+// the 5 roundings on the way.
+int side_of(const Plane& plane, const Vec3& p) {
+    const Vec3 d = p - plane.point;
+    const Vec3 terms{plane.normal.x * d.x, plane.normal.y * d.y, plane.normal.z * d.z};
+    const double value = terms.x + terms.y + terms.z;
+    const double bound = 8.0 * kUnitRoundoff * (std::fabs(terms.x) + std::fabs(terms.y) + std::fabs(terms.z));
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    return plane_expansion(plane, p).sign();
+}
+
+bool clears_plane(const Path& path, const Plane& plane, double slack) {
+    const Hull hull = hull_of(path);
+    int side = 0;
+    for (int k = 0; k < hull.count; ++k) {
+        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - plane.point;
+        const double value = dot(plane.normal, d);
+        const double bound = 2.0 * slack + 16.0 * kUnitRoundoff * dot(abs(plane.normal), abs(d));
+        if (!(std::fabs(value) > bound)) return false;
+        const int here = value > 0.0 ? 1 : -1;
+        if (side != 0 && here != side) return false;
+        side = here;
+    }
+    return true;
+}
+
+// With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
+// N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
+bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
+    const Vec3 e1 = b - a;
+    const Vec3 e2 = c - a;
+    const Vec3 normal = cross(e1, e2);
+    const Vec3 f1 = abs(e1);
+    const Vec3 f2 = abs(e2);
+    const Vec3 magnitude{f1.y * f2.z + f1.z * f2.y, f1.z * f2.x + f1.x * f2.z, f1.x * f2.y + f1.y * f2.x};
+    const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
+    const Hull hull = hull_of(path);
+    int side = 0;
+    for (int k = 0; k < hull.count; ++k) {
+        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - a;
+        const double value = dot(normal, d);
+        if (!(std::fabs(value) > clearance + 16.0 * kUnitRoundoff * dot(magnitude, abs(d)))) return false;
+        const int here = value > 0.0 ? 1 : -1;
+        if (side != 0 && here != side) return false;
+        side = here;
+    }
+    return true;
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c) {
+    return crossing_of(path, TriangleSurface{a, b, c});
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
+    return crossing_of(path, PlaneSurface{plane});
+}
+
+double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
+                          double slack) {
+    const std::array<Vec3, 3> corners{a, b, c};
+    double leaves = path.duration;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& from = corners[k];
+        Vec3 inward = normalized(cross(normal, corners[(k + 1) % 3] - from));
+        if (dot(inward, corners[(k + 2) % 3] - from) < 0.0) inward = -inward;
+        const Distance g{dot(inward, path.c[0] - from) + slack, dot(inward, path.c[1]), dot(inward, path.c[2])};
+        if (g.g0 < 0.0) return 0.0;
+        const bool ends_inside = g.g0 + path.duration * (g.g1 + path.duration * g.g2) >= 0.0;
+        const Roots roots = crossings_of_parabola(g, ends_inside, path.duration);
+        if (roots.count > 0) leaves = std::min(leaves, roots.time[0]);
+    }
+    return leaves;
+}
+
+double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    return orient3d_value(a, b, c, p).hi / length(cross(b - a, c - a));
+}
+
+double signed_distance(const Vec3& p, const Plane& plane) { return plane_value(plane, p).hi; }
+
+}  // namespace ricochet

@@ -1,0 +1,236 @@
+#include "ricochet/geometry/triangle_bvh.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/embree.h"
+
+namespace ricochet {
+namespace {
+
+/// Maps world doubles to the floats that the ray library sees: centred, and scaled by a power of two to about 1.
+struct FloatFrame {
+    Vec3 center;
+    double scale = 1.0;
+
+    [[nodiscard]] Vec3 apply(const Vec3& p) const { return scale * (p - center); }
+};
+
+/// Segments that reach further out than this (in units of the float frame, about the scene's half extent) are not
+/// clipped: the clipped point's own rounding could exceed the boxes' padding. Every triangle is proposed instead; that
+/// is rare, since such a segment must also point at the collider.
+constexpr double kFarAway = 0x1p20;
+
+/// Rays shorter than this have no direction in single precision.
+constexpr double kShortestRay = 0x1p-120;
+
+float round_down(double value) {
+    const auto f = static_cast<float>(value);
+    return static_cast<double>(f) <= value ? f : std::nextafterf(f, -std::numeric_limits<float>::infinity());
+}
+
+float round_up(double value) { return -round_down(-value); }
+
+FloatFrame frame_of(const Box3& box) {
+    FloatFrame frame;
+    if (box.empty()) return frame;
+    frame.center = box.center();
+    const double half_extent = 0.5 * max_abs(box.size());
+    if (half_extent > 0.0) frame.scale = std::ldexp(1.0, -std::ilogb(half_extent));
+    return frame;
+}
+
+Box3 grown(const Box3& box, double margin) {
+    const Vec3 by{margin, margin, margin};
+    return {box.lower - by, box.upper + by};
+}
+
+/// The part of a segment inside a box, as fractions; nothing when it misses the box.
+struct ClippedRange {
+    double begin;
+    double end;
+};
+
+std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const Box3& box) {
+    double begin = 0.0;
+    double end = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double delta = to[axis] - from[axis];
+        if (delta == 0.0) {
+            if (from[axis] < box.lower[axis] || from[axis] > box.upper[axis]) return std::nullopt;
+            continue;
+        }
+        const double t0 = (box.lower[axis] - from[axis]) / delta;
+        const double t1 = (box.upper[axis] - from[axis]) / delta;
+        begin = std::max(begin, std::min(t0, t1));
+        end = std::min(end, std::max(t0, t1));
+    }
+    if (begin > end) return std::nullopt;
+    return ClippedRange{begin, end};
+}
+
+/// One query on its way through the callbacks.
+struct Query {
+    void* context;
+    TriangleBvh::Visit visit;
+    double clip_begin;        ///< fraction of the segment at which the ray starts
+    double ray_per_fraction;  ///< ray length of the whole segment
+    double fraction_limit;
+};
+
+bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
+    static_cast<std::atomic<std::ptrdiff_t>*>(user)->fetch_add(bytes, std::memory_order_relaxed);
+    return true;
+}
+
+}  // namespace
+
+struct TriangleBvh::Impl {
+    std::span<const Vec3> vertices;
+    std::span<const Triangle> triangles;
+    double allowance = 0.0;
+    FloatFrame frame;
+    double padding = 0.0;  ///< in the float frame: rounding and curvature
+    Box3 clip_box;         ///< world; generously larger than the padded boxes
+    std::atomic<std::ptrdiff_t> memory{0};
+    embree::Device device;
+    embree::Scene scene;
+
+    void build();
+    void set_frame();
+    void write_bounds(std::uint32_t triangle, RTCBounds& bounds) const;
+    void visit_all(Query& query) const;
+    void cast(Query& query, const Vec3& begin, const Vec3& direction, double reach) const;
+};
+
+void TriangleBvh::Impl::set_frame() {
+    Box3 box;
+    for (const Triangle& t : triangles) {
+        for (const std::uint32_t v : t) box.include(vertices[v]);
+    }
+    frame = frame_of(box);
+    // Half extent H and a clipped leg of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
+    const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
+    padding = kBoxPaddingUnits * 0x1p-24 * (half_extent + 3.5 * half_extent + frame.scale * allowance) +
+              frame.scale * allowance;
+    const double margin = 2.0 * padding / frame.scale + 0x1p-40 * max_abs(max(abs(box.lower), abs(box.upper)));
+    clip_box = grown(box, margin);
+}
+
+void TriangleBvh::Impl::write_bounds(std::uint32_t triangle, RTCBounds& bounds) const {
+    Box3 box;
+    for (const std::uint32_t v : triangles[triangle]) box.include(frame.apply(vertices[v]));
+    bounds.lower_x = round_down(box.lower.x - padding);
+    bounds.lower_y = round_down(box.lower.y - padding);
+    bounds.lower_z = round_down(box.lower.z - padding);
+    bounds.upper_x = round_up(box.upper.x + padding);
+    bounds.upper_y = round_up(box.upper.y + padding);
+    bounds.upper_z = round_up(box.upper.z + padding);
+}
+
+void TriangleBvh::Impl::build() {
+    set_frame();
+    device = embree::make_device();
+    rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
+    scene = embree::Scene(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* args) {
+            static_cast<const Impl*>(args->geometryUserPtr)->write_bounds(args->primID, *args->bounds_o);
+        },
+        nullptr);
+    rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
+        if (args->valid[0] == 0) return;
+        auto& query = *static_cast<Query*>(embree::user_of(args));
+        const double limit = query.visit(query.context, args->primID);
+        if (limit >= query.fraction_limit) return;
+        query.fraction_limit = limit;
+        // Rounded up generously: a shorter ray must still reach everything up to the limit.
+        const double reach = (limit - query.clip_begin) * query.ray_per_fraction;
+        float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
+        tfar = std::min(tfar, round_up(std::max(reach, 0.0) * (1.0 + 0x1p-20)));
+    });
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene.get());
+    embree::check_device(device.get(), "building the hierarchy of a collider");
+}
+
+TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                         double curvature_allowance)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->vertices = vertices;
+    impl_->triangles = triangles;
+    impl_->allowance = curvature_allowance;
+    if (!triangles.empty()) impl_->build();
+}
+TriangleBvh::~TriangleBvh() = default;
+TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
+TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
+
+double TriangleBvh::curvature_allowance() const { return impl_->allowance; }
+std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.load()); }
+
+void TriangleBvh::Impl::visit_all(Query& query) const {
+    for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle) {
+        (void)query.visit(query.context, triangle);
+    }
+}
+
+void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double reach) const {
+    embree::QueryContext context;
+    embree::init_context(context, &query);
+    RTCRayHit ray{};
+    ray.ray.org_x = static_cast<float>(begin.x);
+    ray.ray.org_y = static_cast<float>(begin.y);
+    ray.ray.org_z = static_cast<float>(begin.z);
+    ray.ray.dir_x = static_cast<float>(direction.x);
+    ray.ray.dir_y = static_cast<float>(direction.y);
+    ray.ray.dir_z = static_cast<float>(direction.z);
+    ray.ray.tnear = 0.0F;
+    ray.ray.tfar = round_up(reach * (1.0 + 0x1p-20)) + 0x1p-24F;
+    ray.ray.mask = 0xFFFFFFFFU;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect1(scene.get(), context, ray);
+}
+
+void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
+    if (impl_->triangles.empty()) return;
+    const FloatFrame& frame = impl_->frame;
+    Query query{context, visitor, 0.0, 0.0, 1.0};
+    const double far = std::max(max_abs(from - frame.center), max_abs(to - frame.center));
+    if (far * frame.scale > kFarAway) {
+        if (clip_to_box(from, to, grown(impl_->clip_box, far * 0x1p-45))) impl_->visit_all(query);
+        return;
+    }
+    const auto range = clip_to_box(from, to, impl_->clip_box);
+    if (!range) return;
+    const Vec3 delta = to - from;
+    const Vec3 along = frame.scale * delta;
+    query.clip_begin = range->begin;
+    query.ray_per_fraction = length(along);
+    // A segment too short for single precision is a point as far as boxes go.
+    const bool is_point = query.ray_per_fraction <= kShortestRay;
+    const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
+    const double reach = (range->end - range->begin) * query.ray_per_fraction;
+    impl_->cast(query, frame.apply(from + range->begin * delta), direction, reach);
+}
+
+std::string ray_library_version() {
+    const embree::Device device = embree::make_device();
+    const auto version = rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_VERSION);
+    return "Embree " + std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+           std::to_string(version % 100);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,60 @@
+/// \file
+/// Which triangles may a segment touch? A bounding volume hierarchy over padded boxes; the ray library lives behind it.
+///
+/// The hierarchy works in single precision and only proposes: every triangle that comes within the curvature allowance
+/// of the segment (in exact arithmetic) is visited, and some that do not. Nothing that the ray library computes about
+/// triangles is used, so results do not depend on its version, instruction set or layout.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Broad phase over static triangles in world coordinates.
+class TriangleBvh {
+public:
+    /// Called for a proposed triangle. Returns the fraction of the segment, in [0, 1], beyond which triangles are no
+    /// longer of interest (1: all are). A pure narrowing: the smallest value returned so far holds.
+    using Visit = double (*)(void* context, std::uint32_t triangle);
+
+    /// Builds the hierarchy with all threads. `vertices` and `triangles` must outlive it, be finite and, after
+    /// centring, below kLargestCoordinate. curvature_allowance (m, >= 0): paths may bulge that far off the segments
+    /// that are asked about. Throws RunError when memory is short.
+    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double curvature_allowance);
+    ~TriangleBvh();
+    TriangleBvh(TriangleBvh&&) noexcept;
+    TriangleBvh& operator=(TriangleBvh&&) noexcept;
+
+    /// Visits every triangle whose distance from the segment [from, to] is at most the curvature allowance (and
+    /// possibly more), up to the narrowed fraction, in unspecified order. Safe from any number of threads. Both ends
+    /// must be finite.
+    void visit(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
+
+    /// The same with any callable `double(std::uint32_t triangle)`.
+    template <class Callable>
+    void visit(const Vec3& from, const Vec3& to, Callable&& callable) const {
+        using Function = std::remove_reference_t<Callable>;
+        visit(from, to, const_cast<void*>(static_cast<const void*>(&callable)),
+              [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
+    }
+
+    /// m, as given.
+    [[nodiscard]] double curvature_allowance() const;
+    /// Bytes that the hierarchy holds (without the vertices and triangles).
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Name, version and instruction sets of the ray library, for `--version` and reports.
+[[nodiscard]] std::string ray_library_version();
+
+}  // namespace ricochet

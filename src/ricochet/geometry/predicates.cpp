@@ -177,9 +177,9 @@ Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
         z = scaled(z, exponent);
     }
     // What components much smaller than the largest lose to underflow is below 2^-200 of the result.
-    const DoubleDouble length = sqrt(x * x + y * y + z * z);
+    const DoubleDouble per_length = DoubleDouble{1.0} / sqrt(x * x + y * y + z * z);
     // Adding zero turns -0 into +0.
-    return {(x / length).hi + 0.0, (y / length).hi + 0.0, (z / length).hi + 0.0};
+    return {(x * per_length).hi + 0.0, (y * per_length).hi + 0.0, (z * per_length).hi + 0.0};
 }
 
 }  // namespace

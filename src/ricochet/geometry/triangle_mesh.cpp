@@ -1,5 +1,7 @@
 #include "ricochet/geometry/triangle_mesh.h"
 
+#include "ricochet/geometry/predicates.h"
+
 namespace ricochet {
 
 Box3 bounds(const TriangleMesh& mesh) {
@@ -32,5 +34,7 @@ double signed_volume(const TriangleMesh& mesh) {
     }
     return six_volumes / 6.0;
 }
+
+bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) { return are_collinear(a, b, c); }
 
 }  // namespace ricochet

@@ -11,7 +11,7 @@ say() { printf '==> %s\n' "$*"; }
 warn() { printf 'warning: %s\n' "$*" >&2; }
 # die MESSAGE [EXIT-CODE]: one line on stderr; 1 = failed while working, 2 = wrong arguments or missing packages.
 die() {
-    printf '%s: %s\n' "$(basename "$0")" "$1" >&2
+    printf 'scripts/%s: %s\n' "$(basename "$0")" "$1" >&2
     exit "${2:-1}"
 }
 

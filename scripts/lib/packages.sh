@@ -63,9 +63,9 @@ ensure_packages() {
     mapfile -t missing < <(missing_packages "$@")
     if ((${#missing[@]} == 0)); then return 0; fi
     list="${missing[*]}"
-    [[ "$install" == yes ]] || die "missing packages: $list (--no-install was given; apt-get install $list)" 2
+    [[ "$install" == yes ]] || die "--no-install was given and these packages are missing: $list" 2
     if ((EUID != 0)) && ! command -v sudo >/dev/null; then
-        die "missing packages: $list (neither root nor sudo here; as root: apt-get install $list)" 2
+        die "neither root nor sudo here, so these packages cannot be installed: $list" 2
     fi
     say "Installing with apt: $list"
     apt_install "${missing[@]}" || die "apt could not install: $list"

@@ -34,6 +34,18 @@ TEST(Parallel, AnOrderedSumHasTheSameBitsForAnyThreadCount) {
     }
 }
 
+// Plain memory on purpose: the thread sanitizer has to see that the loop orders it.
+TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
+    std::vector<int> values(5000, 0);
+    for (int round = 1; round <= 20; ++round) {
+        for (int& v : values) ++v;
+        parallel_for_blocks(values.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) ++values[i];
+        });
+        ASSERT_EQ(values, std::vector<int>(values.size(), 2 * round));
+    }
+}
+
 TEST(Parallel, AnExceptionReachesTheCaller) {
     EXPECT_THROW(parallel_for_blocks(1000, 10,
                                      [](std::size_t, std::size_t begin, std::size_t) {

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include "ricochet/core/hand_over.h"
+
 namespace ricochet {
 
 struct ThreadLimit::Impl {
@@ -28,7 +30,9 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
     if (count == 0) return;
     const std::size_t blocks = (count + block_size - 1) / block_size;
+    LoopOrder order;
     const auto run_block = [&](std::size_t block) {
+        const LoopOrder::Body in_order(order);
         body(block, block * block_size, std::min(count, (block + 1) * block_size));
     };
     if (blocks == 1) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kTriangleKinds = 7;
 constexpr std::uint64_t kSegmentKinds = 10;
-constexpr std::uint64_t kPlacements = 8;
+constexpr std::uint64_t kPlacements = 9;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -161,6 +161,8 @@ Vec3 placed(const Vec3& p, std::uint64_t placement) {
             return p * 0x1p290;
         case 7:  // axes of very different size
             return {p.x * 0x1p200, p.y, p.z * 0x1p-200};
+        case 8:  // both ends of the range at once
+            return {p.x * 0x1p290, p.y * 0x1p-285, p.z};
         default:
             return p;
     }

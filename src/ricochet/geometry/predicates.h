@@ -72,7 +72,8 @@ struct FilteredCross {
 /// 8 roundings (3 differences, 2 products, 1 subtraction, 2 additions), so the error is at most (1 + u)^8 - 1 times the
 /// sum of the terms' exact magnitudes; the computed magnitude is at least (1 - u)^8 of that sum, and its product with
 /// this constant loses at most another factor 1 - u. Together below (8 + 100 u) u; 8.5 u = 0x1.1p-50 is used.
-/// Underflow changes nothing: every term is a multiple of 2^-1020, and sums below 2^-967 of such numbers are exact.
+/// Underflow changes nothing: every term is a multiple of 2^-1020, so that sums below 2^-967 are exact, and a bound
+/// that is lost to underflow belongs to such a sum.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
 /// Sign of (u x v) . w when the error bound allows to tell it, else 0. All of u, v, w are rounded differences of

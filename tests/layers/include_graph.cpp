@@ -45,7 +45,7 @@ constexpr std::array kDoors = {
     Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
     Door{"nlohmann/", "src/ricochet/io/.*\\.cpp|tests/.*"},
-    Door{"CLI/", "src/cli/.*"},
+    Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
     Door{"stb/", "src/ricochet/render/image\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
@@ -79,7 +79,7 @@ bool is_public_header(const SourceTree& tree, const std::string& path) {
 std::optional<std::string> resolve(const std::set<std::string>& paths, const SourceFile& from,
                                    const std::string& name) {
     const std::string beside = from.path.substr(0, from.path.rfind('/') + 1) + name;
-    for (const std::string& candidate : {"src/" + name, "tests/" + name, beside}) {
+    for (const std::string& candidate : {"src/" + name, "tests/" + name, "meshes/" + name, beside}) {
         if (paths.contains(candidate)) return candidate;
     }
     return std::nullopt;

@@ -1,0 +1,27 @@
+/// \file
+/// Galton board: rows of pegs over bins, in a frame with a hopper.
+#pragma once
+
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::meshes {
+
+/// Shape of a Galton board.
+struct GaltonBoardShape {
+    int rows = 12;             ///< rows of pegs, 1 to 200
+    double spacing = 0.1;      ///< between neighbouring pegs and rows, metres
+    double peg_radius = 0.02;  ///< metres, at most 0.4 spacing
+    double bin_height = 0.6;   ///< metres
+    double depth = 0.1;        ///< of the board, along y, metres
+};
+
+/// Board in the plane of x and z, symmetric in x, floor at z = 0, front at y = 0 and back plate behind y = depth. Every
+/// piece (peg, divider, wall, plate) is a closed shell of its own and none touches another. The sides of pegs, dividers
+/// and walls are exactly parallel to y: what moves in a plane of constant y stays in it. Throws InputError for
+/// parameters out of range.
+[[nodiscard]] TriangleMesh make_galton_board(const GaltonBoardShape& shape, double edge_length);
+
+/// Height of the lowest point of the hopper's opening over z = 0, metres: particles start above it.
+[[nodiscard]] double galton_board_entry(const GaltonBoardShape& shape);
+
+}  // namespace ricochet::meshes

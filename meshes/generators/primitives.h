@@ -1,0 +1,39 @@
+/// \file
+/// Box, plate and wedge: plain shapes at any refinement.
+#pragma once
+
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::meshes {
+
+/// Shape of a box.
+struct BoxShape {
+    double length = 1.0;  ///< along x, metres
+    double width = 1.0;   ///< along y, metres
+    double height = 1.0;  ///< along z, metres
+};
+
+/// Closed box centred on the origin. Throws InputError for parameters out of range.
+[[nodiscard]] TriangleMesh make_box(const BoxShape& shape, double edge_length);
+
+/// Shape of a plate.
+struct PlateShape {
+    double length = 1.0;  ///< along x, metres
+    double width = 1.0;   ///< along y, metres
+};
+
+/// Flat open sheet in z = 0 centred on the origin, normals along +z. Throws InputError for parameters out of range.
+[[nodiscard]] TriangleMesh make_plate(const PlateShape& shape, double edge_length);
+
+/// Shape of a wedge.
+struct WedgeShape {
+    double length = 1.0;   ///< from the sharp edge to the back, along x, metres
+    double opening = 0.3;  ///< distance of the two faces at the back, along z, metres
+    double width = 1.0;    ///< of the sharp edge, along y, metres
+};
+
+/// Closed prism over an isosceles triangle whose sharp edge is the y axis, opening along +x; particles inside bounce
+/// between two planes that meet at an angle. Throws InputError for parameters out of range.
+[[nodiscard]] TriangleMesh make_wedge(const WedgeShape& shape, double edge_length);
+
+}  // namespace ricochet::meshes

@@ -1,0 +1,34 @@
+/// \file
+/// Open vessels with walls of a thickness: bowl and funnel. Both are surfaces of revolution about z.
+#pragma once
+
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::meshes {
+
+/// Shape of a bowl.
+struct BowlShape {
+    double radius = 1.0;      ///< of the inner sphere, metres
+    double thickness = 0.06;  ///< of the wall, metres
+    double coverage =
+        90.0;  ///< how far up the wall goes, degrees from the lowest point: 90 is a half sphere; 10 to 170
+};
+
+/// Part of a hollow sphere, open at the top; the lowest point of the outside is the origin. Throws InputError for
+/// parameters out of range.
+[[nodiscard]] TriangleMesh make_bowl(const BowlShape& shape, double edge_length);
+
+/// Shape of a funnel.
+struct FunnelShape {
+    double top_radius = 1.0;      ///< inner radius of the upper opening, metres
+    double throat_radius = 0.12;  ///< inner radius of the spout, metres; below top_radius
+    double cone_height = 1.1;     ///< metres
+    double spout_length = 0.35;   ///< metres
+    double thickness = 0.05;      ///< of the wall, measured horizontally, metres
+};
+
+/// Cone over a cylindrical spout; the spout's lower opening lies in z = 0. Throws InputError for parameters out of
+/// range.
+[[nodiscard]] TriangleMesh make_funnel(const FunnelShape& shape, double edge_length);
+
+}  // namespace ricochet::meshes

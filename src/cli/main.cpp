@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/info_command.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/geometry/mesh_topology.h"
 
 namespace ricochet {
 namespace {
@@ -25,11 +27,16 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 
 // One line a command.
 const std::vector<AddCommand>& commands() {
-    static const std::vector<AddCommand> list = {};
+    static const std::vector<AddCommand> list = {
+        add_info_command,
+    };
     return list;
 }
 
-std::string version_text() { return fmt::format("ricochet {}\nTBB {}", RICOCHET_VERSION, thread_library_version()); }
+std::string version_text() {
+    return fmt::format("ricochet {}\nTBB {}\nOpenMesh {}", RICOCHET_VERSION, thread_library_version(),
+                       topology_library_version());
+}
 
 int report_error(std::string message, int exit_code) {
     std::replace(message.begin(), message.end(), '\n', ' ');

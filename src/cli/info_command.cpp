@@ -1,0 +1,116 @@
+#include "cli/info_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "ricochet/geometry/mesh_report.h"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+    std::string mesh;
+    bool json = false;
+};
+
+Json json_of(const Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+
+Json json_of(const MeshReport& report, const std::string& file) {
+    const TopologyReport& topology = report.topology;
+    Json out;
+    out["file"] = file;
+    out["format"] = report.format;
+    out["vertices"] = report.vertices;
+    out["faces"] = report.faces;
+    out["triangles"] = report.triangles;
+    out["bounds"] = Json::array({json_of(report.bounds.lower), json_of(report.bounds.upper)});
+    out["area"] = report.area;
+    out["volume"] = report.volume ? Json(*report.volume) : Json(nullptr);
+    out["closed"] = topology.closed;
+    out["shells"] = topology.shells;
+    out["boundary_edges"] = topology.boundary_edges;
+    out["boundary_loops"] = topology.boundary_loops;
+    out["nonmanifold_edges"] = topology.nonmanifold_edges;
+    out["nonmanifold_vertices"] = topology.nonmanifold_vertices;
+    out["degenerate_triangles"] = report.degenerate_triangles;
+    out["duplicate_faces"] = report.duplicate_faces;
+    out["unused_vertices"] = topology.unused_vertices;
+    out["consistently_oriented"] = topology.consistently_oriented;
+    out["inconsistent_edges"] = topology.inconsistent_edges;
+    out["welded_corners"] = report.weld ? Json(report.weld->corners) : Json(nullptr);
+    out["warnings"] = report.warnings;
+    return out;
+}
+
+void print_line(std::string_view name, std::string_view value) { fmt::print("{:<22}{}\n", name, value); }
+
+template <typename Value>
+void print_line(std::string_view name, const Value& value) {
+    print_line(name, std::string_view(fmt::format("{}", value)));
+}
+
+std::string text_of(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
+
+std::string yes_or_no(bool answer) { return answer ? "yes" : "no"; }
+
+void print_sizes(const MeshReport& report) {
+    print_line("format", report.format);
+    print_line("vertices", report.vertices);
+    print_line("faces", report.faces);
+    print_line("triangles", report.triangles);
+    print_line("bounds", fmt::format("{} to {}", text_of(report.bounds.lower), text_of(report.bounds.upper)));
+    print_line("area", fmt::format("{:.6g} m^2", report.area));
+    print_line("volume", report.volume ? fmt::format("{:.6g} m^3", *report.volume) : "none (open surface)");
+    if (report.weld) {
+        print_line("weld", fmt::format("{} corners joined to {} vertices (equal coordinates)", report.weld->corners,
+                                       report.weld->vertices));
+    }
+}
+
+void print_topology(const MeshReport& report) {
+    const TopologyReport& topology = report.topology;
+    print_line("closed", yes_or_no(topology.closed));
+    print_line("shells", topology.shells);
+    print_line("boundary edges", topology.boundary_edges);
+    print_line("boundary loops", topology.boundary_loops);
+    print_line("non-manifold edges", topology.nonmanifold_edges);
+    print_line("non-manifold vertices", topology.nonmanifold_vertices);
+    print_line("degenerate triangles", report.degenerate_triangles);
+    print_line("duplicate faces", report.duplicate_faces);
+    print_line("consistently oriented", yes_or_no(topology.consistently_oriented));
+}
+
+void run_info(const InfoOptions& options) {
+    const MeshReport report = report_on(read_mesh(options.mesh));
+    if (options.json) {
+        // File names are bytes; JSON wants UTF-8.
+        fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));
+        return;
+    }
+    print_line("file", options.mesh);
+    print_sizes(report);
+    print_topology(report);
+    for (const std::string& warning : report.warnings) fmt::print("warning: {}\n", warning);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int& exit_code) {
+    const auto options = std::make_shared<InfoOptions>();
+    CLI::App* const command = app.add_subcommand("info", "Counts, topology and defects of a mesh file");
+    command->add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file")->required();
+    command->add_flag("--json", options->json, "Print one JSON object");
+    command->callback([options, &exit_code] {
+        run_info(*options);
+        exit_code = 0;
+    });
+}
+
+}  // namespace ricochet

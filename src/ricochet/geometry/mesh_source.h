@@ -1,0 +1,77 @@
+/// \file
+/// Private to the mesh readers: the bytes of a file, the limits of what is accepted, and how errors read.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Bytes to read a mesh from; does not own them.
+struct MeshSource {
+    std::string name;        ///< file name for messages
+    std::string_view bytes;  ///< the whole file
+
+    /// Throws InputError "name: what".
+    template <typename... Values>
+    [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
+        throw InputError(fmt::format("{}: {}", name, fmt::format(what, std::forward<Values>(values)...)));
+    }
+    /// Throws InputError "name:line: what".
+    template <typename... Values>
+    [[noreturn]] void fail_at_line(std::size_t line, fmt::format_string<Values...> what, Values&&... values) const {
+        throw InputError(fmt::format("{}:{}: {}", name, line, fmt::format(what, std::forward<Values>(values)...)));
+    }
+    /// Throws InputError "name: byte N: what"; the first byte is number 0.
+    template <typename... Values>
+    [[noreturn]] void fail_at_byte(std::size_t byte, fmt::format_string<Values...> what, Values&&... values) const {
+        throw InputError(
+            fmt::format("{}: byte {}: {}", name, byte, fmt::format(what, std::forward<Values>(values)...)));
+    }
+};
+
+/// A file's bytes in memory.
+struct FileBytes {
+    std::unique_ptr<char[]> data;
+    std::size_t size = 0;
+
+    [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
+};
+
+/// Reads a regular file whole. Throws InputError for anything else (folder, FIFO, device), without opening it.
+[[nodiscard]] FileBytes read_regular_file(const std::filesystem::path& path);
+
+/// What a format's reader returns: the faces as listed.
+struct ParsedMesh {
+    PolygonMesh polygons;
+    std::string format;
+    std::optional<WeldReport> weld;
+};
+
+/// Indices are 32-bit: more vertices or corners than this are refused.
+inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uint32_t>::max();
+
+/// Ends the current face of a mesh that is being read.
+inline void close_face(PolygonMesh& mesh) {
+    mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
+}
+
+/// A word of a file as it may stand in a message: printable, short, in quotes.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Refuses NUL bytes and UTF-16, which no text format here holds.
+void require_plain_text(const MeshSource& source);
+
+}  // namespace ricochet

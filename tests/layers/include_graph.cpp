@@ -44,7 +44,7 @@ constexpr std::array kDoors = {
          "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|bench/.*\\.cpp"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
-    Door{"nlohmann/", "src/ricochet/io/.*\\.cpp|tests/.*"},
+    Door{"nlohmann/", "src/(ricochet/io|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
     Door{"stb/", "src/ricochet/render/image\\.cpp"},

@@ -1,5 +1,7 @@
 #include "ricochet/geometry/mesh_reader.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "ricochet/geometry/mesh_format.h"
@@ -45,8 +47,8 @@ ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view byt
     if (bytes.empty()) source.fail("empty file, expected an OBJ, PLY, STL or OFF mesh");
     ParsedMesh parsed = parse(source, path);
     if (parsed.polygons.face_count() == 0) {
-        source.fail("no faces ({} vertices), expected a surface that particles can hit",
-                    parsed.polygons.vertices.size());
+        source.fail(fmt::format("no faces ({} vertices), expected a surface that particles can hit",
+                                parsed.polygons.vertices.size()));
     }
     return parsed;
 }

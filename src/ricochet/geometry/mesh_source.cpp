@@ -1,11 +1,14 @@
 #include "ricochet/geometry/mesh_source.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+
+#include "ricochet/core/error.h"
 
 namespace ricochet {
 namespace {
@@ -40,6 +43,16 @@ private:
 };
 
 }  // namespace
+
+void MeshSource::fail(const std::string& what) const { throw InputError(fmt::format("{}: {}", name, what)); }
+
+void MeshSource::fail_at_line(std::size_t line, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", name, line, what));
+}
+
+void MeshSource::fail_at_byte(std::size_t byte, const std::string& what) const {
+    throw InputError(fmt::format("{}: byte {}: {}", name, byte, what));
+}
 
 FileBytes read_regular_file(const std::filesystem::path& path) {
     struct stat status {};

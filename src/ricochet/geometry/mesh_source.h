@@ -2,8 +2,6 @@
 /// Private to the mesh readers: the bytes of a file, the limits of what is accepted, and how errors read.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +11,6 @@
 #include <string>
 #include <string_view>
 
-#include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh_reader.h"
 #include "ricochet/geometry/triangle_mesh.h"
 
@@ -25,21 +22,11 @@ struct MeshSource {
     std::string_view bytes;  ///< the whole file
 
     /// Throws InputError "name: what".
-    template <typename... Values>
-    [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
-        throw InputError(fmt::format("{}: {}", name, fmt::format(what, std::forward<Values>(values)...)));
-    }
+    [[noreturn]] void fail(const std::string& what) const;
     /// Throws InputError "name:line: what".
-    template <typename... Values>
-    [[noreturn]] void fail_at_line(std::size_t line, fmt::format_string<Values...> what, Values&&... values) const {
-        throw InputError(fmt::format("{}:{}: {}", name, line, fmt::format(what, std::forward<Values>(values)...)));
-    }
+    [[noreturn]] void fail_at_line(std::size_t line, const std::string& what) const;
     /// Throws InputError "name: byte N: what"; the first byte is number 0.
-    template <typename... Values>
-    [[noreturn]] void fail_at_byte(std::size_t byte, fmt::format_string<Values...> what, Values&&... values) const {
-        throw InputError(
-            fmt::format("{}: byte {}: {}", name, byte, fmt::format(what, std::forward<Values>(values)...)));
-    }
+    [[noreturn]] void fail_at_byte(std::size_t byte, const std::string& what) const;
 };
 
 /// A file's bytes in memory.

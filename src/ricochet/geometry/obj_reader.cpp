@@ -1,5 +1,7 @@
 #include "ricochet/geometry/obj_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -61,22 +63,24 @@ private:
         } else if (keyword == "o") {
             enter(object_);
         } else if (contains(kRefused, keyword)) {
-            cursor_.fail("statement {} (curves, surfaces and calls) is not supported, export polygons only",
-                         in_quotes(keyword));
+            cursor_.fail(fmt::format("statement {} (curves, surfaces and calls) is not supported, export polygons only",
+                                     in_quotes(keyword)));
         } else if (!contains(kIgnored, keyword)) {
-            cursor_.fail("unknown statement {}, expected an OBJ statement such as 'v x y z' or 'f 1 2 3'",
-                         in_quotes(keyword));
+            cursor_.fail(fmt::format("unknown statement {}, expected an OBJ statement such as 'v x y z' or 'f 1 2 3'",
+                                     in_quotes(keyword)));
         }
     }
 
     // After x y z may come w (a weight of curves) or red green blue, with w or alpha.
     void read_vertex() {
-        if (mesh_.vertices.size() >= kLargestIndexCount) cursor_.fail("more than {} vertices", kLargestIndexCount);
+        if (mesh_.vertices.size() >= kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} vertices", kLargestIndexCount));
         mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
         int more = 0;
         for (; !cursor_.at_line_end(); ++more) (void)cursor_.number("value after the vertex coordinates");
         if (more != 0 && more != 1 && more != 3 && more != 4) {
-            cursor_.fail("vertex has {} values, expected x y z, x y z w or x y z red green blue", 3 + more);
+            cursor_.fail(
+                fmt::format("vertex has {} values, expected x y z, x y z w or x y z red green blue", 3 + more));
         }
     }
 
@@ -84,9 +88,11 @@ private:
         const std::size_t first = mesh_.corners.size();
         while (!cursor_.at_line_end()) read_corner();
         const std::size_t count = mesh_.corners.size() - first;
-        if (count < 3) cursor_.fail("face has {} corners, expected at least 3", count);
-        if (count > kLargestPolygon) cursor_.fail("face has {} corners, expected at most {}", count, kLargestPolygon);
-        if (mesh_.corners.size() > kLargestIndexCount) cursor_.fail("more than {} corners", kLargestIndexCount);
+        if (count < 3) cursor_.fail(fmt::format("face has {} corners, expected at least 3", count));
+        if (count > kLargestPolygon)
+            cursor_.fail(fmt::format("face has {} corners, expected at most {}", count, kLargestPolygon));
+        if (mesh_.corners.size() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         close_face(mesh_);
         note_group();
     }
@@ -106,7 +112,8 @@ private:
         const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
         if (index == 0) cursor_.fail("vertex index 0, OBJ counts from 1 (or from -1 backwards)");
         if (index < -count) {
-            cursor_.fail("vertex index {} reaches before the first vertex ({} are defined above)", index, count);
+            cursor_.fail(
+                fmt::format("vertex index {} reaches before the first vertex ({} are defined above)", index, count));
         }
         if (index > static_cast<std::int64_t>(kLargestIndexCount)) fail_past_end({index, cursor_.line()});
         if (index > count && index > forward_.index) forward_ = {index, cursor_.line()};
@@ -114,8 +121,8 @@ private:
     }
 
     [[noreturn]] void fail_past_end(const IndexUse& use) const {
-        cursor_.source().fail_at_line(use.line, "vertex index {} is past the end, the file has {} vertices", use.index,
-                                      mesh_.vertices.size());
+        cursor_.source().fail_at_line(use.line, fmt::format("vertex index {} is past the end, the file has {} vertices",
+                                                            use.index, mesh_.vertices.size()));
     }
 
     void enter(std::string& name) {

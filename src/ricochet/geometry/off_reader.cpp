@@ -1,5 +1,7 @@
 #include "ricochet/geometry/off_reader.h"
 
+#include <fmt/format.h>
+
 #include "ricochet/geometry/text_cursor.h"
 #include "ricochet/geometry/triangulation.h"
 
@@ -45,8 +47,8 @@ public:
         for (std::uint64_t i = 0; i < vertex_count_; ++i) read_vertex(i);
         for (std::uint64_t i = 0; i < face_count_; ++i) read_face(i);
         if (cursor_.next_filled_line()) {
-            cursor_.fail("more lines than {} vertices and {} faces, expected the end of the file", vertex_count_,
-                         face_count_);
+            cursor_.fail(fmt::format("more lines than {} vertices and {} faces, expected the end of the file",
+                                     vertex_count_, face_count_));
         }
         return std::move(mesh_);
     }
@@ -56,10 +58,10 @@ private:
         const bool has_text = cursor_.next_filled_line();
         const std::string_view word = has_text ? cursor_.word() : std::string_view{};
         const std::optional<OffHeader> header = parse_keyword(word);
-        if (!header) cursor_.fail("file starts with {}, expected the keyword OFF", in_quotes(word));
+        if (!header) cursor_.fail(fmt::format("file starts with {}, expected the keyword OFF", in_quotes(word)));
         if (header->four_dimensions || header->any_dimension) {
-            cursor_.fail("{} has vertices that are not three-dimensional, expected OFF, COFF, NOFF or STOFF",
-                         in_quotes(word));
+            cursor_.fail(fmt::format(
+                "{} has vertices that are not three-dimensional, expected OFF, COFF, NOFF or STOFF", in_quotes(word)));
         }
         header_ = *header;
         if (cursor_.at_line_end()) cursor_.next_line();
@@ -81,42 +83,46 @@ private:
     // allows.
     std::uint64_t count(const char* what, std::uint64_t shortest_line) {
         const std::int64_t value = cursor_.integer(what);
-        if (value < 0) cursor_.fail("{} is {}, expected 0 or more", what, value);
+        if (value < 0) cursor_.fail(fmt::format("{} is {}, expected 0 or more", what, value));
         const std::uint64_t most = (cursor_.bytes_left() + 1) / shortest_line;
         if (static_cast<std::uint64_t>(value) > most) {
-            cursor_.fail("{} is {}, but the {} bytes left hold at most {}; is the file cut off?", what, value,
-                         cursor_.bytes_left(), most);
+            cursor_.fail(fmt::format("{} is {}, but the {} bytes left hold at most {}; is the file cut off?", what,
+                                     value, cursor_.bytes_left(), most));
         }
         return static_cast<std::uint64_t>(value);
     }
 
     void read_vertex(std::uint64_t i) {
         if (!cursor_.next_filled_line()) {
-            cursor_.fail("file ends after {} vertices, expected {} vertices and {} faces", i, vertex_count_,
-                         face_count_);
+            cursor_.fail(fmt::format("file ends after {} vertices, expected {} vertices and {} faces", i, vertex_count_,
+                                     face_count_));
         }
         mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
         const int announced = (header_.normal ? 3 : 0) + (header_.color ? 1 : 0) + (header_.texture ? 2 : 0);
         const int most = announced + (header_.color ? 3 : 4);
         const int more = skip_numbers("value after the vertex coordinates");
         if (more < announced || more > most) {
-            cursor_.fail("vertex line has {} numbers, expected {} to {}", 3 + more, 3 + announced, 3 + most);
+            cursor_.fail(
+                fmt::format("vertex line has {} numbers, expected {} to {}", 3 + more, 3 + announced, 3 + most));
         }
         cursor_.next_line();
     }
 
     void read_face(std::uint64_t i) {
-        if (!cursor_.next_filled_line()) cursor_.fail("file ends after {} faces, expected {}", i, face_count_);
+        if (!cursor_.next_filled_line())
+            cursor_.fail(fmt::format("file ends after {} faces, expected {}", i, face_count_));
         const std::int64_t corners = cursor_.integer("number of corners");
-        if (corners < 3) cursor_.fail("face has {} corners, expected at least 3", corners);
+        if (corners < 3) cursor_.fail(fmt::format("face has {} corners, expected at least 3", corners));
         if (corners > static_cast<std::int64_t>(kLargestPolygon)) {
-            cursor_.fail("face has {} corners, expected at most {}", corners, kLargestPolygon);
+            cursor_.fail(fmt::format("face has {} corners, expected at most {}", corners, kLargestPolygon));
         }
         for (std::int64_t corner = 0; corner < corners; ++corner) read_corner();
-        if (mesh_.corners.size() > kLargestIndexCount) cursor_.fail("more than {} corners", kLargestIndexCount);
+        if (mesh_.corners.size() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         const int color_values = skip_numbers("colour of a face");
         if (color_values > 4) {
-            cursor_.fail("face line has {} numbers after its indices, expected a colour of at most 4", color_values);
+            cursor_.fail(fmt::format("face line has {} numbers after its indices, expected a colour of at most 4",
+                                     color_values));
         }
         close_face(mesh_);
         cursor_.next_line();
@@ -125,8 +131,8 @@ private:
     void read_corner() {
         const std::int64_t index = cursor_.integer("vertex index of a face");
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-            cursor_.fail("vertex index {} is out of range, expected 0 to {}", index,
-                         static_cast<std::int64_t>(vertex_count_) - 1);
+            cursor_.fail(fmt::format("vertex index {} is out of range, expected 0 to {}", index,
+                                     static_cast<std::int64_t>(vertex_count_) - 1));
         }
         mesh_.corners.push_back(static_cast<std::uint32_t>(index));
     }

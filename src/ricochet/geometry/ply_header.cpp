@@ -1,5 +1,7 @@
 #include "ricochet/geometry/ply_header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -59,17 +61,19 @@ private:
         } else if (keyword == "property") {
             read_property();
         } else {
-            cursor_.fail("unknown header line {}, expected format, element, property, comment or end_header",
-                         in_quotes(keyword));
+            cursor_.fail(
+                fmt::format("unknown header line {}, expected format, element, property, comment or end_header",
+                            in_quotes(keyword)));
         }
-        if (!cursor_.at_line_end()) cursor_.fail("{} after the {} line's values", in_quotes(cursor_.word()), keyword);
+        if (!cursor_.at_line_end())
+            cursor_.fail(fmt::format("{} after the {} line's values", in_quotes(cursor_.word()), keyword));
     }
 
     void read_format() {
         const std::string_view encoding = cursor_.word();
         const std::string_view version = cursor_.word();
         if (has_format_) cursor_.fail("second 'format' line");
-        if (version != "1.0") cursor_.fail("PLY version {}, expected 1.0", in_quotes(version));
+        if (version != "1.0") cursor_.fail(fmt::format("PLY version {}, expected 1.0", in_quotes(version)));
         if (encoding == "ascii") {
             header_.encoding = PlyEncoding::kAscii;
         } else if (encoding == "binary_little_endian") {
@@ -77,7 +81,8 @@ private:
         } else if (encoding == "binary_big_endian") {
             header_.encoding = PlyEncoding::kBigEndian;
         } else {
-            cursor_.fail("format {}, expected ascii, binary_little_endian or binary_big_endian", in_quotes(encoding));
+            cursor_.fail(fmt::format("format {}, expected ascii, binary_little_endian or binary_big_endian",
+                                     in_quotes(encoding)));
         }
         has_format_ = true;
     }
@@ -87,10 +92,11 @@ private:
         element.name = cursor_.word();
         element.line = cursor_.line();
         if (element.name.empty()) cursor_.fail("element without a name");
-        if (header_.elements.size() >= kMostElements) cursor_.fail("more than {} elements", kMostElements);
-        if (header_.find(element.name) != nullptr) cursor_.fail("second element {}", in_quotes(element.name));
+        if (header_.elements.size() >= kMostElements) cursor_.fail(fmt::format("more than {} elements", kMostElements));
+        if (header_.find(element.name) != nullptr)
+            cursor_.fail(fmt::format("second element {}", in_quotes(element.name)));
         const std::int64_t count = cursor_.integer("number of elements");
-        if (count < 0) cursor_.fail("number of elements is {}, expected 0 or more", count);
+        if (count < 0) cursor_.fail(fmt::format("number of elements is {}, expected 0 or more", count));
         element.count = static_cast<std::uint64_t>(count);
         header_.elements.push_back(std::move(element));
     }
@@ -110,23 +116,25 @@ private:
         property.name = cursor_.word();
         if (property.name.empty()) cursor_.fail("property without a name");
         PlyElement& element = header_.elements.back();
-        if (element.properties.size() >= kMostProperties) cursor_.fail("more than {} properties", kMostProperties);
+        if (element.properties.size() >= kMostProperties)
+            cursor_.fail(fmt::format("more than {} properties", kMostProperties));
         if (element.find(property.name))
-            cursor_.fail("second property {} of {}", in_quotes(property.name), in_quotes(element.name));
+            cursor_.fail(fmt::format("second property {} of {}", in_quotes(property.name), in_quotes(element.name)));
         element.properties.push_back(std::move(property));
     }
 
     PlyType parse_type(std::string_view word) {
         const std::optional<PlyType> type = type_of(word);
         if (!type)
-            cursor_.fail("unknown type {}, expected a PLY type such as float, double, uchar or int", in_quotes(word));
+            cursor_.fail(fmt::format("unknown type {}, expected a PLY type such as float, double, uchar or int",
+                                     in_quotes(word)));
         return *type;
     }
 
     // The body starts right after the line's end, which is what the first line's end is: after a lone CR, a byte 10 is
     // data.
     void end_header() {
-        if (!cursor_.at_line_end()) cursor_.fail("{} after end_header", in_quotes(cursor_.word()));
+        if (!cursor_.at_line_end()) cursor_.fail(fmt::format("{} after end_header", in_quotes(cursor_.word())));
         const MeshSource& source = cursor_.source();
         const std::size_t first_end = source.bytes.find_first_of("\r\n");
         const bool lone_carriage_returns =
@@ -153,9 +161,9 @@ void require_bytes(const MeshSource& source, const PlyHeader& header) {
         if (each != 0 && element.count > still_free / each) {
             source.fail_at_line(
                 element.line,
-                "{} elements {} take at least {} bytes each, but only {} bytes of data are left; is the "
-                "file cut off?",
-                element.count, in_quotes(element.name), each, still_free);
+                fmt::format("{} elements {} take at least {} bytes each, but only {} bytes of data are left; is the "
+                            "file cut off?",
+                            element.count, in_quotes(element.name), each, still_free));
         }
         still_free -= each * element.count;
     }

@@ -1,5 +1,7 @@
 #include "ricochet/geometry/ply_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -23,10 +25,11 @@ public:
 
     void begin_element(const PlyElement& element, std::uint64_t i) {
         if (cursor_.next_filled_line()) return;
-        cursor_.fail("file ends after {} of {} elements {}", i, element.count, in_quotes(element.name));
+        cursor_.fail(fmt::format("file ends after {} of {} elements {}", i, element.count, in_quotes(element.name)));
     }
     void end_element() {
-        if (!cursor_.at_line_end()) cursor_.fail("{} after the element's last value", in_quotes(cursor_.word()));
+        if (!cursor_.at_line_end())
+            cursor_.fail(fmt::format("{} after the element's last value", in_quotes(cursor_.word())));
         cursor_.next_line();
     }
     void end_body() {
@@ -42,10 +45,7 @@ public:
     }
     void require(PlyType, std::int64_t) const {}
 
-    template <typename... Values>
-    [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
-        cursor_.fail(what, std::forward<Values>(values)...);
-    }
+    [[noreturn]] void fail(const std::string& what) const { cursor_.fail(what); }
 
 private:
     TextCursor cursor_;
@@ -63,8 +63,8 @@ public:
     void end_body() {
         const std::size_t more = source_.bytes.find_first_not_of(" \t\r\n", at_);
         if (more != std::string_view::npos) {
-            source_.fail_at_byte(at_, "{} bytes after the header's elements, expected the end of the file",
-                                 source_.bytes.size() - at_);
+            source_.fail_at_byte(at_, fmt::format("{} bytes after the header's elements, expected the end of the file",
+                                                  source_.bytes.size() - at_));
         }
     }
     double coordinate(PlyType type) {
@@ -72,7 +72,8 @@ public:
         const std::optional<double> accepted = accepted_coordinate(value);
         if (!accepted) {
             at_ -= ply_size(type);
-            fail("vertex coordinate is {}, expected a finite number of at most {} in size", value, kLargestCoordinate);
+            fail(fmt::format("vertex coordinate is {}, expected a finite number of at most {} in size", value,
+                             kLargestCoordinate));
         }
         return *accepted;
     }
@@ -100,15 +101,12 @@ public:
     void require(PlyType type, std::int64_t count) const {
         const std::size_t left = source_.bytes.size() - at_;
         if (static_cast<std::uint64_t>(count) > left / ply_size(type)) {
-            fail("{} values of {} bytes are expected, but only {} bytes are left; is the file cut off?", count,
-                 ply_size(type), left);
+            fail(fmt::format("{} values of {} bytes are expected, but only {} bytes are left; is the file cut off?",
+                             count, ply_size(type), left));
         }
     }
 
-    template <typename... Values>
-    [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
-        source_.fail_at_byte(at_, what, std::forward<Values>(values)...);
-    }
+    [[noreturn]] void fail(const std::string& what) const { source_.fail_at_byte(at_, what); }
 
 private:
     double number(PlyType type) {
@@ -136,8 +134,8 @@ enum class Use { kSkip, kX, kY, kZ, kFace, kStrip };
 std::size_t require_property(const MeshSource& source, const PlyElement& element, std::string_view name) {
     const std::optional<std::size_t> place = element.find(name);
     if (!place || element.properties[*place].is_list) {
-        source.fail_at_line(element.line, "element {} has no number {}, expected properties x, y and z",
-                            in_quotes(element.name), in_quotes(name));
+        source.fail_at_line(element.line, fmt::format("element {} has no number {}, expected properties x, y and z",
+                                                      in_quotes(element.name), in_quotes(name)));
     }
     return *place;
 }
@@ -146,14 +144,14 @@ std::size_t require_index_list(const MeshSource& source, const PlyElement& eleme
     const std::optional<std::size_t> plural = element.find("vertex_indices");
     const std::optional<std::size_t> singular = element.find("vertex_index");
     if (plural.has_value() == singular.has_value()) {
-        source.fail_at_line(element.line,
-                            "element {} has {} index list, expected one named vertex_indices or vertex_index",
-                            in_quotes(element.name), plural ? "more than one" : "no");
+        source.fail_at_line(
+            element.line, fmt::format("element {} has {} index list, expected one named vertex_indices or vertex_index",
+                                      in_quotes(element.name), plural ? "more than one" : "no"));
     }
     const std::size_t place = plural ? *plural : *singular;
     const PlyProperty& list = element.properties[place];
     if (!list.is_list || !is_integer(list.type)) {
-        source.fail_at_line(element.line, "property {} is not a list of integers", in_quotes(list.name));
+        source.fail_at_line(element.line, fmt::format("property {} is not a list of integers", in_quotes(list.name)));
     }
     return place;
 }
@@ -233,16 +231,16 @@ private:
 
     std::int64_t list_length(const PlyProperty& list) {
         const std::int64_t length = values_.integer(list.count_type);
-        if (length < 0) values_.fail("list length is {}, expected 0 or more", length);
+        if (length < 0) values_.fail(fmt::format("list length is {}, expected 0 or more", length));
         values_.require(list.type, length);
         return length;
     }
 
     void read_face(const PlyProperty& list) {
         const std::int64_t corners = list_length(list);
-        if (corners < 3) values_.fail("face has {} corners, expected at least 3", corners);
+        if (corners < 3) values_.fail(fmt::format("face has {} corners, expected at least 3", corners));
         if (corners > static_cast<std::int64_t>(kLargestPolygon)) {
-            values_.fail("face has {} corners, expected at most {}", corners, kLargestPolygon);
+            values_.fail(fmt::format("face has {} corners, expected at most {}", corners, kLargestPolygon));
         }
         for (std::int64_t i = 0; i < corners; ++i) {
             mesh_.corners.push_back(checked_index(values_.integer(list.type)));
@@ -274,13 +272,15 @@ private:
     }
 
     void end_face() {
-        if (mesh_.corners.size() > kLargestIndexCount) values_.fail("more than {} corners", kLargestIndexCount);
+        if (mesh_.corners.size() > kLargestIndexCount)
+            values_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         close_face(mesh_);
     }
 
     std::uint32_t checked_index(std::int64_t index) const {
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-            values_.fail("vertex index {} is out of range, the header promises {} vertices", index, vertex_count_);
+            values_.fail(
+                fmt::format("vertex index {} is out of range, the header promises {} vertices", index, vertex_count_));
         }
         return static_cast<std::uint32_t>(index);
     }
@@ -302,7 +302,7 @@ ParsedMesh read_ply(const MeshSource& source) {
     const PlyHeader header = read_ply_header(source);
     const PlyElement* const vertex = header.find("vertex");
     if (vertex == nullptr) source.fail("the header has no element 'vertex'");
-    if (vertex->count > kLargestIndexCount) source.fail("more than {} vertices", kLargestIndexCount);
+    if (vertex->count > kLargestIndexCount) source.fail(fmt::format("more than {} vertices", kLargestIndexCount));
     switch (header.encoding) {
         case PlyEncoding::kLittleEndian:
             return read_body<BinaryValues<false>>(source, header, vertex->count, "PLY, binary little endian");

@@ -1,5 +1,7 @@
 #include "ricochet/geometry/stl_reader.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 
@@ -63,7 +65,8 @@ Vec3 binary_point(const MeshSource& source, std::size_t byte) {
         const std::size_t place = byte + 4 * static_cast<std::size_t>(axis);
         const auto value = static_cast<double>(value_at<float>(source, place));
         const std::optional<double> accepted = accepted_coordinate(value);
-        if (!accepted) source.fail_at_byte(place, "vertex coordinate is {}, expected a finite number", value);
+        if (!accepted)
+            source.fail_at_byte(place, fmt::format("vertex coordinate is {}, expected a finite number", value));
         point[axis] = *accepted;
     }
     return point;
@@ -71,7 +74,7 @@ Vec3 binary_point(const MeshSource& source, std::size_t byte) {
 
 ParsedMesh read_binary(const MeshSource& source) {
     const std::uint64_t facets = facets_promised(source);
-    if (3 * facets > kLargestIndexCount) source.fail("more than {} facet corners", kLargestIndexCount);
+    if (3 * facets > kLargestIndexCount) source.fail(fmt::format("more than {} facet corners", kLargestIndexCount));
     FacetCollector collector;
     collector.reserve(facets);
     for (std::uint64_t facet = 0; facet < facets; ++facet) {
@@ -102,7 +105,8 @@ private:
         cursor_.next_line();
         std::string_view word = next_word("'facet' or 'endsolid'");
         for (; is_keyword(word, "facet"); word = next_word("'facet' or 'endsolid'")) read_facet();
-        if (!is_keyword(word, "endsolid")) cursor_.fail("{}, expected 'facet' or 'endsolid'", in_quotes(word));
+        if (!is_keyword(word, "endsolid"))
+            cursor_.fail(fmt::format("{}, expected 'facet' or 'endsolid'", in_quotes(word)));
         cursor_.next_line();
     }
 
@@ -118,18 +122,19 @@ private:
         }
         expect("endloop");
         expect("endfacet");
-        if (collector_.corners() > kLargestIndexCount) cursor_.fail("more than {} corners", kLargestIndexCount);
+        if (collector_.corners() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         collector_.end_facet();
     }
 
     std::string_view next_word(std::string_view expected) {
-        if (!cursor_.next_filled_line()) cursor_.fail("file ends, expected {}; is it cut off?", expected);
+        if (!cursor_.next_filled_line()) cursor_.fail(fmt::format("file ends, expected {}; is it cut off?", expected));
         return cursor_.word();
     }
 
     void expect(std::string_view keyword) {
         const std::string_view word = next_word(keyword);
-        if (!is_keyword(word, keyword)) cursor_.fail("{}, expected '{}'", in_quotes(word), keyword);
+        if (!is_keyword(word, keyword)) cursor_.fail(fmt::format("{}, expected '{}'", in_quotes(word), keyword));
     }
 
     TextCursor cursor_;
@@ -155,13 +160,13 @@ ParsedMesh read_stl(const MeshSource& source) {
         return AsciiStlReader(source).read();
     }
     if (source.bytes.size() < kFirstFacet) {
-        source.fail("{} bytes, expected 'solid' (ASCII STL) or at least {} bytes (binary STL)", source.bytes.size(),
-                    kFirstFacet);
+        source.fail(fmt::format("{} bytes, expected 'solid' (ASCII STL) or at least {} bytes (binary STL)",
+                                source.bytes.size(), kFirstFacet));
     }
     const std::uint64_t facets = facets_promised(source);
-    source.fail_at_byte(kCountByte,
-                        "binary STL promises {} triangles and should have {} bytes, but has {}; is it cut off?", facets,
-                        kFirstFacet + kFacetBytes * facets, source.bytes.size());
+    source.fail_at_byte(
+        kCountByte, fmt::format("binary STL promises {} triangles and should have {} bytes, but has {}; is it cut off?",
+                                facets, kFirstFacet + kFacetBytes * facets, source.bytes.size()));
 }
 
 }  // namespace ricochet

@@ -1,5 +1,7 @@
 #include "ricochet/geometry/text_cursor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -115,21 +117,21 @@ bool TextCursor::next_filled_line() {
 }
 
 double TextCursor::number(const char* what) {
-    if (at_line_end()) fail("the line ends before {}, expected a number", what);
+    if (at_line_end()) fail(fmt::format("the line ends before {}, expected a number", what));
     double value = 0.0;
     const char* start = skip_plus(at_, end_);
     const auto [stop, error] = std::from_chars(start, end_, value);
     if (error == std::errc::result_out_of_range) {
         value = limit_value(start, what);
     } else if (error != std::errc{}) {
-        fail("{} is {}, expected a number such as -1.5e3", what, in_quotes(word_here()));
+        fail(fmt::format("{} is {}, expected a number such as -1.5e3", what, in_quotes(word_here())));
     }
     const char* word_start = at_;
     at_ = stop;
     if (!at_word_end() || !std::isfinite(value)) {
         at_ = word_start;
-        fail("{} is {}, expected a finite number such as -1.5e3 (decimal point, no comma)", what,
-             in_quotes(word_here()));
+        fail(fmt::format("{} is {}, expected a finite number such as -1.5e3 (decimal point, no comma)", what,
+                         in_quotes(word_here())));
     }
     return value;
 }
@@ -137,14 +139,16 @@ double TextCursor::number(const char* what) {
 double TextCursor::limit_value(const char* word_start, const char* what) const {
     const std::string_view word = word_here();
     if (is_too_small({word_start, static_cast<std::size_t>(word.data() + word.size() - word_start)})) return 0.0;
-    fail("{} is {}, larger than any double, expected at most {}; choose another unit", what, in_quotes(word),
-         kLargestCoordinate);
+    fail(fmt::format("{} is {}, larger than any double, expected at most {}; choose another unit", what,
+                     in_quotes(word), kLargestCoordinate));
 }
 
 double TextCursor::coordinate(const char* what) {
     const double value = number(what);
     const std::optional<double> accepted = accepted_coordinate(value);
-    if (!accepted) fail("{} is {}, expected at most {} in size; choose another unit", what, value, kLargestCoordinate);
+    if (!accepted)
+        fail(
+            fmt::format("{} is {}, expected at most {} in size; choose another unit", what, value, kLargestCoordinate));
     return *accepted;
 }
 
@@ -158,18 +162,18 @@ Vec3 TextCursor::point(const char* what) {
 std::int64_t TextCursor::integer_part(const char* what) {
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(skip_plus(at_, end_), end_, value);
-    if (error != std::errc{}) fail("{} is {}, expected an integer", what, in_quotes(word_here()));
+    if (error != std::errc{}) fail(fmt::format("{} is {}, expected an integer", what, in_quotes(word_here())));
     at_ = stop;
     return value;
 }
 
 std::int64_t TextCursor::integer(const char* what) {
-    if (at_line_end()) fail("the line ends before {}, expected an integer", what);
+    if (at_line_end()) fail(fmt::format("the line ends before {}, expected an integer", what));
     const char* word_start = at_;
     const std::int64_t value = integer_part(what);
     if (!at_word_end()) {
         at_ = word_start;
-        fail("{} is {}, expected an integer", what, in_quotes(word_here()));
+        fail(fmt::format("{} is {}, expected an integer", what, in_quotes(word_here())));
     }
     return value;
 }

@@ -62,10 +62,8 @@ public:
     /// True at a blank, a line end or the text's end.
     [[nodiscard]] bool at_word_end() const;
 
-    template <typename... Values>
-    [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
-        source_.fail_at_line(line_, what, std::forward<Values>(values)...);
-    }
+    /// Throws InputError with the file and the line.
+    [[noreturn]] void fail(const std::string& what) const { source_.fail_at_line(line_, what); }
 
 private:
     void skip_blanks();

@@ -1,0 +1,154 @@
+#include "ricochet/geometry/mesh_report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "ricochet/geometry/mesh_reader.h"
+#include "support/shared_meshes.h"
+
+namespace ricochet {
+namespace {
+
+// Counts that an independent checker found, see SOURCES.md beside the meshes.
+struct KnownMesh {
+    const char* file;
+    std::size_t vertices;
+    std::size_t faces;
+    std::size_t triangles;
+    std::size_t boundary_edges;
+    std::size_t nonmanifold_edges;
+    std::size_t nonmanifold_vertices;
+    std::size_t inconsistent_edges;
+    std::size_t shells;
+    std::size_t unused_vertices;
+};
+
+constexpr KnownMesh kKnownMeshes[] = {
+    {"stanford-bunny.obj", 35947, 69451, 69451, 223, 0, 0, 0, 1, 1113},
+    {"bunny-closed.off", 3485, 6966, 6966, 0, 0, 0, 0, 1, 0},
+    {"armadillo.obj", 43243, 86482, 86482, 0, 0, 0, 0, 1, 0},
+    {"dragon.obj", 10002, 20000, 20000, 0, 0, 0, 0, 1, 0},
+    {"spot.obj", 2930, 5856, 5856, 0, 0, 0, 0, 1, 0},
+    {"suzanne.obj", 507, 500, 968, 42, 1, 0, 2, 3, 0},
+    {"teapot.obj", 3644, 6320, 6320, 1036, 0, 38, 0, 19, 0},
+    {"cow.obj", 2903, 5804, 5804, 0, 0, 1, 0, 1, 0},
+    {"fandisk.obj", 6475, 12946, 12946, 0, 0, 0, 0, 1, 0},
+    {"ADIS16480.stl", 3672, 7436, 7436, 0, 0, 0, 0, 1, 0},
+    {"featuretype.stl", 2010, 3476, 3476, 576, 0, 0, 0, 1, 0},
+    {"cycloidal.ply", 21384, 43368, 43368, 0, 242, 26, 484, 112, 0},
+    {"quadknot.obj", 1440, 1440, 2880, 0, 0, 0, 0, 1, 0},
+    {"self_intersectA.obj", 8582, 17160, 17160, 0, 0, 0, 0, 1, 0},
+};
+
+class SharedMesh : public ::testing::TestWithParam<KnownMesh> {};
+
+TEST_P(SharedMesh, HasTheKnownCounts) {
+    const KnownMesh& known = GetParam();
+    RICOCHET_SHARED_MESH_OR_SKIP(path, known.file);
+    const MeshReport report = report_on(read_mesh(path));
+    EXPECT_EQ(report.vertices, known.vertices);
+    EXPECT_EQ(report.faces, known.faces);
+    EXPECT_EQ(report.triangles, known.triangles);
+    EXPECT_EQ(report.topology.closed, known.boundary_edges == 0);
+    EXPECT_EQ(report.topology.boundary_edges, known.boundary_edges);
+    EXPECT_EQ(report.topology.boundary_loops == 0, known.boundary_edges == 0);
+    EXPECT_EQ(report.topology.nonmanifold_edges, known.nonmanifold_edges);
+    EXPECT_EQ(report.topology.nonmanifold_vertices, known.nonmanifold_vertices);
+    EXPECT_EQ(report.topology.inconsistent_edges, known.inconsistent_edges);
+    EXPECT_EQ(report.topology.consistently_oriented, known.inconsistent_edges == 0);
+    EXPECT_EQ(report.topology.shells, known.shells);
+    EXPECT_EQ(report.topology.unused_vertices, known.unused_vertices);
+    EXPECT_EQ(report.volume.has_value(), known.boundary_edges == 0);
+    EXPECT_EQ(report.crossing_faces, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(MeshReport, SharedMesh, ::testing::ValuesIn(kKnownMeshes), [](const auto& test) {
+    std::string name = test.param.file;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+    return name;
+});
+
+MeshReport report_on_text(const char* name, const std::string& text) { return report_on(read_mesh(name, text)); }
+
+bool warns_of(const MeshReport& report, const std::string& words) {
+    return std::any_of(report.warnings.begin(), report.warnings.end(),
+                       [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+const std::string kTetrahedronVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string kTetrahedron = kTetrahedronVertices + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+TEST(MeshReport, OfACleanClosedMeshHasNoWarnings) {
+    const MeshReport report = report_on_text("t.obj", kTetrahedron);
+    EXPECT_TRUE(report.topology.closed);
+    EXPECT_TRUE(report.topology.consistently_oriented);
+    EXPECT_DOUBLE_EQ(*report.volume, 1.0 / 6.0);
+    EXPECT_DOUBLE_EQ(report.area, 1.5 + std::sqrt(3.0) / 2.0);
+    EXPECT_EQ(report.bounds.upper, (Vec3{1, 1, 1}));
+    EXPECT_TRUE(report.warnings.empty());
+}
+
+TEST(MeshReport, SaysThatParticlesPassThroughAnOpening) {
+    const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    EXPECT_FALSE(report.volume);
+    EXPECT_TRUE(warns_of(report, "open surface, 3 boundary edges in 1 loop: particles pass through"));
+}
+
+TEST(MeshReport, SaysThatNormalsPointInward) {
+    const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
+    EXPECT_TRUE(report.wound_inward);
+    EXPECT_DOUBLE_EQ(*report.volume, 1.0 / 6.0);
+    EXPECT_TRUE(warns_of(report, "inward"));
+}
+
+TEST(MeshReport, SaysThatOneFaceIsTurnedAround) {
+    const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    EXPECT_TRUE(report.topology.closed);
+    EXPECT_EQ(report.topology.inconsistent_edges, 3U);
+    EXPECT_FALSE(report.wound_inward);
+    EXPECT_TRUE(warns_of(report, "inconsistent winding along 3 edges"));
+}
+
+TEST(MeshReport, CountsDegenerateTrianglesExactly) {
+    // 0.1 + 0.2 is not 0.3: the fourth vertex is next to the line, not on it.
+    const MeshReport report = report_on_text(
+        "t.obj", "v 0.1 0.1 0\nv 0.2 0.2 0\nv 0.5 0.5 0\nv 0.30000000000000004 0.3 0\nf 1 2 3\nf 1 2 4\nf 1 1 4\n");
+    EXPECT_EQ(report.triangles, 3U);
+    EXPECT_EQ(report.degenerate_triangles, 2U);
+    EXPECT_EQ(report.faces_with_repeated_corners, 1U);
+    EXPECT_TRUE(warns_of(report, "2 triangles have no area"));
+    EXPECT_TRUE(warns_of(report, "1 face names a vertex more than once"));
+}
+
+TEST(MeshReport, CountsDuplicateFacesInAnyOrderOfCorners) {
+    const MeshReport report = report_on_text("t.obj", kTetrahedron + "f 3 2 1\nf 1 2 3\n");
+    EXPECT_EQ(report.duplicate_faces, 2U);
+    EXPECT_EQ(report.topology.nonmanifold_edges, 3U);
+    EXPECT_TRUE(warns_of(report, "2 faces repeat an earlier face"));
+    EXPECT_TRUE(warns_of(report, "3 edges belong to three faces or more"));
+}
+
+TEST(MeshReport, TellsHowStlCornersWereJoined) {
+    const std::string facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    const std::string other =
+        "facet normal 0 0 1\nouter loop\nvertex 1 -0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    const MeshReport report = report_on_text("t.stl", "solid\n" + facet + other + "endsolid\n");
+    ASSERT_TRUE(report.weld);
+    EXPECT_EQ(report.weld->corners, 6U);
+    EXPECT_EQ(report.weld->vertices, 4U);
+    EXPECT_EQ(report.topology.boundary_edges, 4U);
+    EXPECT_TRUE(warns_of(report, "joined only where their coordinates are equal"));
+}
+
+TEST(MeshReport, SaysThatAnOutlineCrossesItself) {
+    const MeshReport report = report_on_text("t.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n");
+    EXPECT_EQ(report.crossing_faces, 1U);
+    EXPECT_TRUE(warns_of(report, "1 face has an outline that crosses itself"));
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/mesh_reader.h"
 #include "support/exact_oracle.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
@@ -183,6 +186,47 @@ TEST(ParityOracle, RefusesAnOpenMeshAndTreatsNothingAsOutside) {
     EXPECT_EQ(ParityOracle(TriangleMesh{}).side({0, 0, 0}), Side::outside);
     const double nan = std::nan("");
     EXPECT_EQ(ParityOracle(box_mesh({0, 0, 0}, {1, 1, 1})).side({nan, 0.5, 0.5}), Side::outside);
+}
+
+class RealMesh : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RealMesh, HasTheParityOfItsWindingNumberHereAndFarAway) {
+    RICOCHET_SHARED_MESH_OR_SKIP(path, GetParam());
+    const TriangleMesh mesh = read_mesh(path).mesh;
+    expect_parity_of_winding(mesh, 40);
+    const double far = 1000.0 * bounds(mesh).diagonal();
+    expect_parity_of_winding(moved(mesh, {far, -far, far}), 40);
+}
+
+TEST_P(RealMesh, HasItsVerticesOnTheSurfaceAndItsVolumeInside) {
+    RICOCHET_SHARED_MESH_OR_SKIP(path, GetParam());
+    const TriangleMesh mesh = read_mesh(path).mesh;
+    const ParityOracle oracle(mesh);
+    for (const Triangle& t : mesh.triangles) ASSERT_EQ(oracle.side(mesh.vertices[t[0]]), Side::on_surface);
+    const Box3 box = bounds(mesh);
+    RandomSequence random(31, 0, mesh.triangles.size());
+    const int count = 100000;
+    int inside = 0;
+    for (int i = 0; i < count; ++i) inside += oracle.inside(point_in(box, random)) ? 1 : 0;
+    const Vec3 size = box.size();
+    const double expected = std::fabs(signed_volume(mesh)) / (size.x * size.y * size.z);
+    // Four standard errors of a count of independent points.
+    EXPECT_NEAR(inside / static_cast<double>(count), expected, 4.0 * std::sqrt(expected * (1.0 - expected) / count));
+}
+
+// Closed and free of self-intersections, so that volume and parity mean the same.
+INSTANTIATE_TEST_SUITE_P(Closed, RealMesh,
+                         ::testing::Values("bunny-closed.off", "armadillo.obj", "spot.obj", "fandisk.obj",
+                                           "quadknot.obj", "ADIS16480.stl"),
+                         [](const auto& name) {
+                             return std::filesystem::path(name.param).stem().string().substr(0, 5);
+                         });
+
+TEST(ParityOracle, RefusesOpenRealMeshes) {
+    for (const char* name : {"stanford-bunny.obj", "teapot.obj", "suzanne.obj"}) {
+        RICOCHET_SHARED_MESH_OR_SKIP(path, name);
+        EXPECT_THROW(ParityOracle{read_mesh(path).mesh}, std::invalid_argument) << name;
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ricochet/core/random.h"
+#include "support/counts.h"
 #include "support/exact_oracle.h"
 
 namespace ricochet {
@@ -15,7 +16,7 @@ using testing::Rational;
 using testing::relative_error;
 
 constexpr double kU2 = 0x1p-106;  // u^2, the unit of the published bounds
-constexpr int kCases = 20000;
+constexpr int kCases = test::scaled(20000);
 
 /// Operands of all relative sizes; every other pair nearly cancels when subtracted.
 class Operands {

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/segment_triangle_cases.h"
 
@@ -18,8 +19,8 @@ using testing::SegmentTriangle;
 #define RICOCHET_CASE_FACTOR 1
 #endif
 constexpr std::uint64_t kSeed = 20240607;
-constexpr std::uint64_t kCases = 100000ULL * RICOCHET_CASE_FACTOR;
-constexpr std::uint64_t kSlowCases = 20000ULL * RICOCHET_CASE_FACTOR;
+constexpr std::uint64_t kCases = std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{test::scaled(100000)};
+constexpr std::uint64_t kSlowCases = std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{test::scaled(20000)};
 
 /// Calls check(case) for `count` cases and names the case that fails.
 template <typename Check>

@@ -10,6 +10,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh_reader.h"
+#include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
@@ -138,7 +139,7 @@ TEST(ParityOracle, CountsNestedShellsByParity) {
     EXPECT_EQ(oracle.side({1, 0, 0}), Side::outside);
     EXPECT_EQ(oracle.side({0, 2.5, 0}), Side::inside);
     EXPECT_EQ(oracle.side({0, 2.5, 2.5}), Side::outside);
-    expect_parity_of_winding(shells, 2000);
+    expect_parity_of_winding(shells, test::scaled(2000));
 }
 
 TEST(ParityOracle, AgreesWithTheWindingNumberOfOverlappingSpheresFarFromTheOrigin) {
@@ -148,9 +149,9 @@ TEST(ParityOracle, AgreesWithTheWindingNumberOfOverlappingSpheresFarFromTheOrigi
         const Vec3 center = random.in_unit_ball();
         spheres = merged(spheres, sphere_mesh(center, random.uniform_around(0.6, 0.3), 2));
     }
-    expect_parity_of_winding(spheres, 5000);
-    expect_parity_of_winding(moved(spheres, {1e3, -1e3, 1e3}), 5000);
-    expect_parity_of_winding(moved(spheres, {1e6, 1e6, -1e6}), 5000);
+    expect_parity_of_winding(spheres, test::scaled(5000));
+    expect_parity_of_winding(moved(spheres, {1e3, -1e3, 1e3}), test::scaled(5000));
+    expect_parity_of_winding(moved(spheres, {1e6, 1e6, -1e6}), test::scaled(5000));
 }
 
 TEST(ParityOracle, AnswersAlikeAlongEveryAxis) {
@@ -159,7 +160,7 @@ TEST(ParityOracle, AnswersAlikeAlongEveryAxis) {
         Vec3 upper{3, 3, 3};
         upper[axis] = 1;
         TriangleMesh mesh = merged(box_mesh({0, 0, 0}, upper), flipped(box_mesh(0.25 * upper, 0.5 * upper)));
-        expect_parity_of_winding(mesh, 1000);
+        expect_parity_of_winding(mesh, test::scaled(1000));
         const ParityOracle oracle(mesh);
         EXPECT_EQ(oracle.side(0.25 * upper), Side::on_surface);
         EXPECT_EQ(oracle.side(0.375 * upper), Side::outside);
@@ -205,7 +206,7 @@ TEST_P(RealMesh, HasItsVerticesOnTheSurfaceAndItsVolumeInside) {
     for (const Triangle& t : mesh.triangles) ASSERT_EQ(oracle.side(mesh.vertices[t[0]]), Side::on_surface);
     const Box3 box = bounds(mesh);
     RandomSequence random(31, 0, mesh.triangles.size());
-    const int count = 100000;
+    const int count = test::scaled(100000);
     int inside = 0;
     for (int i = 0; i < count; ++i) inside += oracle.inside(point_in(box, random)) ? 1 : 0;
     const Vec3 size = box.size();

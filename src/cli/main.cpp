@@ -10,10 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/check_command.h"
 #include "cli/info_command.h"
+#include "cli/schema_command.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh_topology.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet {
 namespace {
@@ -28,7 +31,9 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 // One line a command.
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
+        add_check_command,
         add_info_command,
+        add_schema_command,
     };
     return list;
 }
@@ -65,6 +70,9 @@ int run(int argc, char** argv) {
         const int exit_code = parse_and_run(argc, argv);
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw RunError("standard output cannot be written");
         return exit_code;
+    } catch (const SceneError& error) {
+        for (const std::string& message : error.messages()) report_error(message, kWrongInput);
+        return kWrongInput;
     } catch (const InputError& error) {
         return report_error(error.what(), kWrongInput);
     } catch (const std::bad_alloc&) {

@@ -9,7 +9,9 @@
 
 #include "dynamics/chi_square.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -332,6 +334,25 @@ TEST(Emitter, MeshBirthsStandJustOffTheSurfaceOnTheOutwardSide) {
         ASSERT_GT(p.position.z, 5.0);
         ASSERT_LE(p.position.z, 5.0 + 20 * ulp(5.0));
         ASSERT_EQ(p.velocity, (Vec3{0, 0, 2}));
+    }
+}
+
+TEST(Emitter, MeshBirthsAreOffTheirTriangleByTheExactSignWhateverItsShape) {
+    RandomSequence random(3, 0, 0);
+    for (int round = 0; round < 300; ++round) {
+        SCOPED_TRACE(round);
+        // Slender, tilted triangles, near the origin and far from it.
+        const double size = std::ldexp(1.0, round % 40 - 20);
+        const Vec3 a = 1000.0 * (round % 3) * random.unit_vector();
+        const Vec3 b = a + size * random.unit_vector();
+        const Vec3 c = a + random.uniform() * (b - a) + std::ldexp(size, -(round % 25)) * random.unit_vector();
+        auto mesh = std::make_shared<TriangleMesh>();
+        mesh->vertices = {a, b, c};
+        mesh->triangles = {{0, 1, 2}};
+        if (are_collinear(a, b, c)) continue;
+        for (const Particle& p : all_births(burst_of(MeshSurfaceShape{mesh}, 50))) {
+            ASSERT_EQ(orient3d(a, b, c, p.position), 1);
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -51,14 +52,17 @@ void check(const EmitterDescription& emitter) {
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
 }
 
-// Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search.
+// Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate triangles,
+// which have no normal, add nothing even where rounding gives them an area.
 std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
     std::vector<double> sums;
     sums.reserve(mesh.triangles.size());
     double sum = 0.0;
     for (const Triangle& t : mesh.triangles) {
         const Vec3& a = mesh.vertices[t[0]];
-        sum += length(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
+        const Vec3& b = mesh.vertices[t[1]];
+        const Vec3& c = mesh.vertices[t[2]];
+        if (!are_collinear(a, b, c)) sum += length(cross(b - a, c - a));
         sums.push_back(sum);
     }
     return sums;
@@ -197,7 +201,7 @@ Emitter::Launch Emitter::launch_from_mesh(const TriangleMesh& mesh, RandomSequen
         u = 1.0 - u;
         v = 1.0 - v;
     }
-    const Vec3 normal = normalized(cross(b - a, c - a));
+    const Vec3 normal = unit_normal(a, b, c);
     const double gap = parking_gap(max(max(abs(a), abs(b)), abs(c)));
     return {a + u * (b - a) + v * (c - a) + gap * normal, normal};
 }

@@ -1,0 +1,201 @@
+#include "ricochet/io/detail/particle_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/io/detail/json_node.h"
+#include "ricochet/io/detail/scene_check.h"
+#include "ricochet/io/detail/scene_files.h"
+#include "ricochet/io/detail/scene_keys.h"
+#include "ricochet/io/detail/suggestion.h"
+
+namespace ricochet::detail {
+namespace {
+
+constexpr std::size_t kMostErrors = 10;
+constexpr std::uint64_t kLargestTable = std::uint64_t{16} << 30;
+
+// A column, the key of an explicit particle whose rules it follows, and where its numbers go.
+struct Column {
+    std::string_view name;
+    std::string_view key;  ///< empty: a run's own, not used
+    double& (*target)(Particle&) = nullptr;
+};
+
+const std::vector<Column>& known_columns() {
+    static const std::vector<Column> columns = {
+        {"x", "position", [](Particle& p) -> double& { return p.position.x; }},
+        {"y", "position", [](Particle& p) -> double& { return p.position.y; }},
+        {"z", "position", [](Particle& p) -> double& { return p.position.z; }},
+        {"vx", "velocity", [](Particle& p) -> double& { return p.velocity.x; }},
+        {"vy", "velocity", [](Particle& p) -> double& { return p.velocity.y; }},
+        {"vz", "velocity", [](Particle& p) -> double& { return p.velocity.z; }},
+        {"mass", "mass", [](Particle& p) -> double& { return p.mass; }},
+        {"radius", "radius", [](Particle& p) -> double& { return p.radius; }},
+        {"id", ""},
+        {"age", ""},
+        {"contacts", ""},
+        {"resting", ""},
+        {"unsimulated_time", ""},
+    };
+    return columns;
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (;;) {
+        const std::size_t comma = line.find(',');
+        cells.push_back(trimmed(line.substr(0, comma)));
+        if (comma == std::string_view::npos) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+std::optional<double> number_of(std::string_view cell) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+class TableParser {
+public:
+    TableParser(std::string_view text, const std::string& name) : rest_(text), name_(name) {
+        if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+    }
+
+    ParticleTable parse() {
+        const std::optional<std::string_view> header = next_line();
+        if (!header || trimmed(*header).empty()) {
+            fail("the first line is empty, expected the names of the columns, for example x,y,z,vx,vy,vz");
+            return std::move(table_);
+        }
+        read_header(*header);
+        if (!table_.errors.empty()) return std::move(table_);
+        while (const std::optional<std::string_view> line = next_line()) {
+            if (!trimmed(*line).empty()) read_particle(*line);
+            if (table_.errors.size() < kMostErrors) continue;
+            fail("the lines after this one were not looked at");
+            break;
+        }
+        return std::move(table_);
+    }
+
+private:
+    std::optional<std::string_view> next_line() {
+        if (rest_.empty()) return std::nullopt;
+        ++line_;
+        const std::size_t end = rest_.find('\n');
+        const std::string_view line = rest_.substr(0, end);
+        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+        return line;
+    }
+
+    void fail(const std::string& what) {
+        table_.errors.push_back(fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line_, 1), what));
+    }
+
+    void read_header(std::string_view line) {
+        std::vector<std::string_view> names;
+        for (const Column& column : known_columns()) names.push_back(column.name);
+        std::set<std::string_view> seen;
+        for (const std::string_view cell : cells_of(line)) {
+            const auto same_name = [&](const Column& column) { return column.name == cell; };
+            const auto found = std::find_if(known_columns().begin(), known_columns().end(), same_name);
+            if (found == known_columns().end()) {
+                refuse_column(cell, names);
+                continue;
+            }
+            if (!seen.insert(cell).second) fail(fmt::format("the column \"{}\" appears twice", cell));
+            columns_.push_back(&*found);
+            if (found->key.empty()) table_.unused_columns.emplace_back(cell);
+        }
+        for (const std::string_view needed : {"x", "y", "z"}) {
+            if (!seen.contains(needed)) fail(fmt::format("there is no column \"{}\", expected x, y and z", needed));
+        }
+    }
+
+    void refuse_column(std::string_view cell, const std::vector<std::string_view>& names) {
+        const std::string help = did_you_mean(nearest_names(cell, names));
+        fail(
+            fmt::format("unknown column \"{}\"{}{}; attributes of one's own are part of the scene format but not built "
+                        "in this version",
+                        printable(cell, 60), help.empty() ? "" : ", ", help));
+    }
+
+    void read_particle(std::string_view line) {
+        const std::vector<std::string_view> cells = cells_of(line);
+        if (cells.size() != columns_.size()) {
+            fail(fmt::format("found {} values, expected {} as in the header line", cells.size(), columns_.size()));
+            return;
+        }
+        Particle particle;
+        bool good = true;
+        for (std::size_t i = 0; i < cells.size(); ++i) good = read_cell(cells[i], *columns_[i], particle) && good;
+        if (good) table_.particles.push_back(particle);
+    }
+
+    bool read_cell(std::string_view cell, const Column& column, Particle& particle) {
+        if (column.target == nullptr) return true;
+        const KeySpec& rules = rules_of(column);
+        const std::optional<double> value = number_of(cell);
+        if (!value || !rules.range.contains(*value)) {
+            std::string range = range_words(rules.range);
+            if (value && range.empty()) range = fmt::format("of at most {} in magnitude", kLargestCoordinate);
+            fail(fmt::format("found \"{}\" in column \"{}\", expected a number{}{} ({})", printable(cell, 60),
+                             column.name, range.empty() ? "" : " ", range, rules.unit));
+            return false;
+        }
+        if (rules.built == Built::only_zero && *value != 0.0) {
+            fail(not_built(fmt::format("found {} in column \"{}\"; a value other than 0", *value, column.name)));
+            return false;
+        }
+        column.target(particle) = *value;
+        return true;
+    }
+
+    static const KeySpec& rules_of(const Column& column) {
+        static const ObjectSpec& particle = *find_key(scene_spec(), nullptr, "particles")->content;
+        return *find_key(particle, nullptr, column.key);
+    }
+
+    std::string_view rest_;
+    std::string name_;
+    std::size_t line_ = 0;
+    std::vector<const Column*> columns_;
+    ParticleTable table_;
+};
+
+}  // namespace
+
+ParticleTable parse_particle_table(std::string_view text, const std::string& name) {
+    return TableParser(text, name).parse();
+}
+
+ParticleTable read_particle_table(const std::filesystem::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    if (ending == ".ply" || ending == ".vtp") {
+        throw InputError(not_built(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
+    }
+    if (ending != ".csv") throw InputError(fmt::format("found {}, expected a .csv file", path.string()));
+    return parse_particle_table(read_bytes(path, kLargestTable), path.string());
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,37 @@
+/// \file
+/// Files that a scene names.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::detail {
+
+/// What keeps a path from being a readable regular file, with the nearest file name of its folder; nothing when it is
+/// one.
+[[nodiscard]] std::optional<std::string> file_problem(const std::filesystem::path& path);
+
+/// The bytes of a file. Throws InputError when it cannot be read or is larger than the limit.
+[[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::uint64_t largest);
+
+/// Meshes by file; each is read once however often it is used.
+class MeshLibrary {
+public:
+    /// Throws InputError, with the reader's message.
+    [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path);
+
+private:
+    struct Entry {
+        std::shared_ptr<const TriangleMesh> mesh;
+        std::string error;  ///< where it could not be read
+    };
+    std::map<std::filesystem::path, Entry> entries_;
+};
+
+}  // namespace ricochet::detail

@@ -1,0 +1,627 @@
+#include "ricochet/io/detail/scene_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/io/detail/suggestion.h"
+
+namespace ricochet::detail {
+namespace {
+
+constexpr Range kPositive{.lower = 0.0, .lower_open = true};
+constexpr Range kNotNegative{.lower = 0.0};
+constexpr Range kCoordinate{.lower = -kLargestCoordinate, .upper = kLargestCoordinate};
+constexpr Range kLength{.lower = 0.0, .upper = kLargestCoordinate, .lower_open = true};
+constexpr Range kCount{.lower = 0.0, .upper = 4294967295.0};
+
+const ObjectSpec& simulation_spec() {
+    static const ObjectSpec spec{
+        .title = "simulation",
+        .description = "How time is stepped and how impacts are answered.",
+        .keys = {
+            {.name = "time_step",
+             .description = "Length of a step.",
+             .unit = "s",
+             .range = kPositive,
+             .fallback = "0.016666666666666666"},
+            {.name = "duration",
+             .description = "Simulated time. The number of steps is ceil(duration / time_step - 1e-6); the last one is "
+                            "shortened.",
+             .unit = "s",
+             .range = kNotNegative,
+             .fallback = "1"},
+            {.name = "integrator",
+             .type = ValueType::choice,
+             .description = "How particles move inside a step.",
+             .fallback = "\"ballistic\"",
+             .choices = {{"symplectic_euler", "the step's force first, then a straight line"},
+                         {"ballistic", "a parabola: exact when the acceleration is constant"},
+                         {"midpoint", "second order", Built::no},
+                         {"rk4", "fourth order", Built::no}}},
+            {.name = "response",
+             .type = ValueType::choice,
+             .description = "How impacts are answered.",
+             .fallback = "\"exact\"",
+             .choices = {{"exact", "finds the time of impact and reflects inside the step"},
+                         {"rollback", "finds a collision after the step and goes back to it", Built::no},
+                         {"project", "tests at the end of the step and puts the particle back", Built::no},
+                         {"penalty", "a spring and damper on the penetration", Built::no}}},
+            {.name = "seed",
+             .type = ValueType::integer,
+             .description = "Start of all random numbers: the same seed gives the same run, to the bit.",
+             .range = {.lower = 0.0, .upper = 18446744073709551615.0},
+             .fallback = "0"},
+            {.name = "resting_speed",
+             .description = "A rebound slower than this becomes resting or sliding contact, where restitution is below "
+                            "1 and something presses the particle on.",
+             .unit = "m/s",
+             .range = kNotNegative,
+             .fallback = "0.001"},
+            {.name = "bounce_budget",
+             .type = ValueType::integer,
+             .description = "Most impacts of one particle in one step. A particle that spends it stays where it is for "
+                            "the rest of the step, and the time left out is counted.",
+             .range = {.lower = 1.0, .upper = 4294967295.0},
+             .fallback = "1000"},
+        }};
+    return spec;
+}
+
+const ObjectSpec& force_spec() {
+    static const ObjectSpec spec{.title = "force",
+                                 .description = "Forces on all particles; they add up.",
+                                 .keys = {},
+                                 .variants = {
+                                     {.name = "gravity",
+                                      .description = "The same acceleration everywhere.",
+                                      .keys = {{.name = "acceleration",
+                                                .type = ValueType::vector,
+                                                .description = "Acceleration.",
+                                                .unit = "m/s^2",
+                                                .range = kCoordinate,
+                                                .required = true}}},
+                                     {.name = "drag",
+                                      .description = "Linear drag F = -c v.",
+                                      .keys = {{.name = "coefficient",
+                                                .description = "The c of F = -c v.",
+                                                .unit = "kg/s",
+                                                .range = kNotNegative,
+                                                .required = true}}},
+                                 }};
+    return spec;
+}
+
+const ObjectSpec& material_spec() {
+    static const ObjectSpec spec{
+        .title = "material",
+        .description = "What a surface does to what hits it.",
+        .keys = {
+            {.name = "restitution",
+             .description = "Speed of the rebound over speed of the approach, along the normal.",
+             .range = {.lower = 0.0, .upper = 1.0},
+             .fallback = "1"},
+            {.name = "friction",
+             .description = "Coulomb's coefficient, for impacts and for sliding.",
+             .range = kNotNegative,
+             .fallback = "0"},
+        }};
+    return spec;
+}
+
+const ObjectSpec& rotation_spec() {
+    static const ObjectSpec spec{
+        .title = "rotation",
+        .description = "A turn about an axis through the mesh's own origin, by the right-hand rule.",
+        .keys = {
+            {.name = "axis",
+             .type = ValueType::vector,
+             .description = "Direction of the axis, of any length.",
+             .range = kCoordinate,
+             .required = true,
+             .not_zero = true},
+            {.name = "degrees", .description = "Angle.", .unit = "degrees", .required = true},
+        }};
+    return spec;
+}
+
+std::vector<KeySpec> placement_keys(std::string_view needs) {
+    return {
+        {.name = "position",
+         .type = ValueType::vector,
+         .description = "Where the mesh's origin is put; scale and rotation come first.",
+         .unit = "m",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]",
+         .needs = needs},
+        {.name = "rotation",
+         .type = ValueType::object,
+         .description = "Turns the mesh.",
+         .without = "not turned",
+         .needs = needs,
+         .content = &rotation_spec()},
+        {.name = "scale",
+         .type = ValueType::scale,
+         .description = "Factor, or one a mesh axis; a negative one mirrors.",
+         .range = kCoordinate,
+         .fallback = "1",
+         .needs = needs},
+    };
+}
+
+std::vector<KeySpec> mesh_collider_keys() {
+    std::vector<KeySpec> keys = {
+        {.name = "file", .type = ValueType::file, .description = "The mesh: OBJ, PLY, STL or OFF.", .required = true}};
+    for (KeySpec& key : placement_keys("")) keys.push_back(std::move(key));
+    keys.push_back({.name = "motion", .type = ValueType::list, .description = "Keyframes.", .built = Built::no});
+    return keys;
+}
+
+const ObjectSpec& collider_spec() {
+    static const ObjectSpec spec{
+        .title = "collider",
+        .description = "What particles bounce off. Both sides are solid.",
+        .keys =
+            {
+                {.name = "name",
+                 .type = ValueType::text,
+                 .description = "For messages, reports and emitters; no two colliders share one.",
+                 .without = "made from type and place in the list"},
+                {.name = "material",
+                 .type = ValueType::text,
+                 .description = "One of the names in `materials`.",
+                 .without = "restitution 1, no friction"},
+            },
+        .variants = {
+            {.name = "plane",
+             .description = "An infinite plane.",
+             .keys = {{.name = "point",
+                       .type = ValueType::vector,
+                       .description = "A point of the plane.",
+                       .unit = "m",
+                       .range = kCoordinate,
+                       .fallback = "[0, 0, 0]"},
+                      {.name = "normal",
+                       .type = ValueType::vector,
+                       .description = "Its normal, of any length.",
+                       .range = kCoordinate,
+                       .required = true,
+                       .not_zero = true}}},
+            {.name = "mesh",
+             .description = "A triangle mesh from a file, open or closed.",
+             .keys = mesh_collider_keys()},
+        }};
+    return spec;
+}
+
+std::vector<KeySpec> schedule_keys() {
+    return {
+        {.name = "burst",
+         .type = ValueType::integer,
+         .description = "Particles born at once at `start`.",
+         .range = kCount,
+         .fallback = "0"},
+        {.name = "rate",
+         .type = ValueType::pair,
+         .description = "Particles a second from `start` to `stop`; drawn anew for every second.",
+         .unit = "1/s",
+         .range = {.lower = 0.0, .upper = 1e12},
+         .fallback = "0"},
+        {.name = "start", .description = "When it begins.", .unit = "s", .range = kNotNegative, .fallback = "0"},
+        {.name = "stop", .description = "When the rate ends.", .unit = "s", .range = kNotNegative, .without = "never"},
+        {.name = "limit",
+         .type = ValueType::integer,
+         .description = "Most particles ever born here.",
+         .range = kCount,
+         .without = "no limit"},
+    };
+}
+
+std::vector<KeySpec> launch_keys() {
+    return {
+        {.name = "direction",
+         .type = ValueType::vector,
+         .description = "Where particles are launched to.",
+         .range = kCoordinate,
+         .without =
+             "the shape's own: the normal of a disk, of a sphere's surface or of a mesh, any direction otherwise",
+         .not_zero = true},
+        {.name = "cone",
+         .description = "Half angle of a cone about the direction, uniform in solid angle.",
+         .unit = "degrees",
+         .range = {.lower = 0.0, .upper = 180.0},
+         .fallback = "0"},
+        {.name = "speed",
+         .type = ValueType::pair,
+         .description = "Along the direction.",
+         .unit = "m/s",
+         .range = kCoordinate,
+         .fallback = "0"},
+        {.name = "velocity",
+         .type = ValueType::vector,
+         .description = "Added to direction times speed.",
+         .unit = "m/s",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
+        {.name = "mass",
+         .type = ValueType::pair,
+         .description = "Mass of a particle.",
+         .unit = "kg",
+         .range = kPositive,
+         .low_end = kPositive,
+         .fallback = "1"},
+        {.name = "lifetime",
+         .type = ValueType::pair,
+         .description = "Time after birth at which a particle is retired.",
+         .unit = "s",
+         .range = kNotNegative,
+         .low_end = kNotNegative,
+         .without = "for ever"},
+        {.name = "particle_radius",
+         .type = ValueType::pair,
+         .description = "Radius of a particle.",
+         .unit = "m",
+         .range = kNotNegative,
+         .built = Built::only_zero},
+    };
+}
+
+std::vector<KeySpec> emitter_keys() {
+    std::vector<KeySpec> keys = {{.name = "name",
+                                  .type = ValueType::text,
+                                  .description = "For messages and reports; no two emitters share one.",
+                                  .without = "made from type and place in the list"}};
+    for (KeySpec& key : schedule_keys()) keys.push_back(std::move(key));
+    for (KeySpec& key : launch_keys()) keys.push_back(std::move(key));
+    return keys;
+}
+
+KeySpec center_key() {
+    return {.name = "center",
+            .type = ValueType::vector,
+            .description = "Its centre.",
+            .unit = "m",
+            .range = kCoordinate,
+            .fallback = "[0, 0, 0]"};
+}
+
+KeySpec radius_key() {
+    return {.name = "radius", .description = "Its radius.", .unit = "m", .range = kLength, .required = true};
+}
+
+std::vector<KeySpec> mesh_emitter_keys() {
+    std::vector<KeySpec> keys = {
+        {.name = "file", .type = ValueType::file, .description = "The mesh: OBJ, PLY, STL or OFF."},
+        {.name = "collider",
+         .type = ValueType::text,
+         .description = "The name of a mesh collider: its surface, where it stands."}};
+    for (KeySpec& key : placement_keys("file")) keys.push_back(std::move(key));
+    return keys;
+}
+
+const ObjectSpec& emitter_spec() {
+    static const ObjectSpec spec{
+        .title = "emitter",
+        .description = "Where particles are born. A pair [mean, spread] is drawn anew for every particle.",
+        .keys = emitter_keys(),
+        .variants = {
+            {.name = "point", .description = "All at one point.", .keys = {center_key()}},
+            {.name = "disk",
+             .description = "Uniform on a flat disk.",
+             .keys = {center_key(),
+                      {.name = "normal",
+                       .type = ValueType::vector,
+                       .description = "Normal of the disk, of any length.",
+                       .range = kCoordinate,
+                       .required = true,
+                       .not_zero = true},
+                      radius_key()}},
+            {.name = "box",
+             .description = "Uniform in a box along the axes.",
+             .keys = {center_key(),
+                      {.name = "size",
+                       .type = ValueType::vector,
+                       .description = "Full edge lengths.",
+                       .unit = "m",
+                       .range = {.lower = 0.0, .upper = kLargestCoordinate},
+                       .required = true}}},
+            {.name = "sphere",
+             .description = "Uniform in a ball, or on its surface.",
+             .keys = {center_key(),
+                      radius_key(),
+                      {.name = "surface",
+                       .type = ValueType::boolean,
+                       .description = "true: only on the surface, launched outward.",
+                       .fallback = "false"}}},
+            {.name = "mesh",
+             .description = "Uniform by area on a mesh, just off its surface on the side that the triangles' normals "
+                            "point to, and launched along them.",
+             .keys = mesh_emitter_keys(),
+             .exactly_one_of = {"file", "collider"}},
+        }};
+    return spec;
+}
+
+const ObjectSpec& particle_spec() {
+    static const ObjectSpec spec{
+        .title = "particle",
+        .description = "Particles that are there from the start.",
+        .keys = {
+            {.name = "position",
+             .type = ValueType::vector,
+             .description = "Where it starts.",
+             .unit = "m",
+             .range = kCoordinate,
+             .required = true},
+            {.name = "velocity",
+             .type = ValueType::vector,
+             .description = "How it starts.",
+             .unit = "m/s",
+             .range = kCoordinate,
+             .fallback = "[0, 0, 0]"},
+            {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
+            {.name = "radius",
+             .description = "Its radius.",
+             .unit = "m",
+             .range = kNotNegative,
+             .fallback = "0",
+             .built = Built::only_zero},
+        }};
+    return spec;
+}
+
+const ObjectSpec& bounds_spec() {
+    static const ObjectSpec spec{.title = "bounds",
+                                 .description = "A box in world coordinates; particles that leave it are retired.",
+                                 .keys = {
+                                     {.name = "lower",
+                                      .type = ValueType::vector,
+                                      .description = "Its corner with the smallest coordinates.",
+                                      .unit = "m",
+                                      .range = kCoordinate,
+                                      .required = true},
+                                     {.name = "upper",
+                                      .type = ValueType::vector,
+                                      .description = "Its corner with the largest coordinates, each above `lower`'s.",
+                                      .unit = "m",
+                                      .range = kCoordinate,
+                                      .required = true},
+                                 }};
+    return spec;
+}
+
+const ObjectSpec& output_spec() {
+    static const ObjectSpec spec{
+        .title = "output",
+        .description = "What a run writes.",
+        .keys = {
+            {.name = "format",
+             .type = ValueType::choice,
+             .description = "Of the frames.",
+             .fallback = "\"vtp\"",
+             .choices = {{"vtp", "VTK XML polygon data, with a .pvd index, for ParaView and Blender"}}},
+            {.name = "every",
+             .type = ValueType::integer,
+             .description = "Steps from one frame to the next. The last state is always written.",
+             .range = {.lower = 1.0, .upper = 4294967295.0},
+             .fallback = "1"},
+        }};
+    return spec;
+}
+
+const ObjectSpec& camera_spec() {
+    static const ObjectSpec spec{.title = "camera",
+                                 .description = "Where `ricochet render` looks from, unless it is told otherwise.",
+                                 .keys = {
+                                     {.name = "position",
+                                      .type = ValueType::vector,
+                                      .description = "Where it stands.",
+                                      .unit = "m",
+                                      .range = kCoordinate,
+                                      .required = true},
+                                     {.name = "target",
+                                      .type = ValueType::vector,
+                                      .description = "The point in the middle of the picture.",
+                                      .unit = "m",
+                                      .range = kCoordinate,
+                                      .required = true},
+                                     {.name = "up",
+                                      .type = ValueType::vector,
+                                      .description = "What is up in the picture.",
+                                      .range = kCoordinate,
+                                      .without = "against gravity",
+                                      .not_zero = true},
+                                     {.name = "field_of_view",
+                                      .description = "Angle from the lower to the upper edge.",
+                                      .unit = "degrees",
+                                      .range = {.lower = 1.0, .upper = 170.0},
+                                      .fallback = "35"},
+                                 }};
+    return spec;
+}
+
+std::vector<KeySpec> scene_keys() {
+    return {
+        {.name = "ricochet",
+         .type = ValueType::integer,
+         .description = "Version of the scene format.",
+         .range = {.lower = kSceneVersion, .upper = kSceneVersion},
+         .required = true},
+        {.name = "$schema",
+         .type = ValueType::text,
+         .description = "For editors; not used here.",
+         .without = "no help from the editor"},
+        {.name = "simulation",
+         .type = ValueType::object,
+         .description = "Time and impacts.",
+         .without = "all its defaults",
+         .content = &simulation_spec()},
+        {.name = "forces",
+         .type = ValueType::list,
+         .description = "Forces on the particles.",
+         .fallback = "[]",
+         .content = &force_spec()},
+        {.name = "materials",
+         .type = ValueType::table,
+         .description = "Materials by name.",
+         .fallback = "{}",
+         .content = &material_spec()},
+        {.name = "colliders",
+         .type = ValueType::list,
+         .description = "What particles bounce off.",
+         .fallback = "[]",
+         .content = &collider_spec()},
+        {.name = "emitters",
+         .type = ValueType::list,
+         .description = "Where particles are born.",
+         .fallback = "[]",
+         .content = &emitter_spec()},
+        {.name = "particles",
+         .type = ValueType::list_or_file,
+         .description = "Particles that are there from the start, one by one or from a table.",
+         .fallback = "[]",
+         .content = &particle_spec()},
+        {.name = "bounds",
+         .type = ValueType::object,
+         .description = "Where particles are retired.",
+         .without = "nowhere",
+         .content = &bounds_spec()},
+        {.name = "output",
+         .type = ValueType::object,
+         .description = "What is written.",
+         .without = "all its defaults",
+         .content = &output_spec()},
+        {.name = "camera",
+         .type = ValueType::object,
+         .description = "For pictures.",
+         .without = "a camera that sees everything",
+         .content = &camera_spec()},
+    };
+}
+
+std::string number_words(const KeySpec& key, std::string_view noun) {
+    std::string words(noun);
+    if (key.built == Built::only_zero) return "0";
+    if (key.range.lower == key.range.upper) return fmt::format("{}", key.range.lower);
+    if (const std::string range = range_words(key.range); !range.empty()) words += " " + range;
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
+std::string vector_words(const KeySpec& key) {
+    std::string words = "[x, y, z]";
+    if (key.not_zero) words += ", not all zero";
+    if (const std::string range = range_words(key.range); !range.empty()) words += ", each " + range;
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
+std::string pair_words(const KeySpec& key) {
+    std::string words = number_words(key, "a number");
+    if (key.built == Built::only_zero) return words;
+    words += " or [mean, spread] with spread >= 0";
+    if (const std::string low = range_words(key.low_end); !low.empty()) words += " and mean - spread " + low;
+    return words;
+}
+
+std::string choice_words(const KeySpec& key) {
+    std::vector<std::string_view> names;
+    for (const Choice& choice : key.choices) {
+        if (choice.built == Built::yes) names.push_back(choice.name);
+    }
+    return names.size() == 1 ? quoted_list(names) : "one of " + quoted_list(names);
+}
+
+}  // namespace
+
+const ObjectSpec& scene_spec() {
+    static const ObjectSpec spec{.title = "scene", .description = "A whole scene.", .keys = scene_keys()};
+    return spec;
+}
+
+const ObjectSpec& particle_file_spec() {
+    static const ObjectSpec spec{
+        .title = "particle table",
+        .description = "Particles from a file.",
+        .keys = {{.name = "file",
+                  .type = ValueType::file,
+                  .description =
+                      "A .csv file: a header line that names the columns (x, y, z and, where wanted, vx, vy, "
+                      "vz, mass, radius), then one line a particle.",
+                  .required = true}}};
+    return spec;
+}
+
+std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant) {
+    std::vector<const KeySpec*> keys;
+    for (const KeySpec& key : object.keys) keys.push_back(&key);
+    if (variant != nullptr) {
+        for (const KeySpec& key : variant->keys) keys.push_back(&key);
+    }
+    return keys;
+}
+
+const Variant* find_variant(const ObjectSpec& object, std::string_view name) {
+    for (const Variant& variant : object.variants) {
+        if (variant.name == name) return &variant;
+    }
+    return nullptr;
+}
+
+const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::string_view name) {
+    for (const KeySpec& key : object.keys) {
+        if (key.name == name) return &key;
+    }
+    if (variant == nullptr) return nullptr;
+    for (const KeySpec& key : variant->keys) {
+        if (key.name == name) return &key;
+    }
+    return nullptr;
+}
+
+std::string range_words(const Range& range) {
+    // A bound of 1e75 is no bound to a reader; who passes it is told by the checker.
+    const bool below = range.lower > -kLargestCoordinate;
+    const bool above = range.upper < kLargestCoordinate;
+    const std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
+    // 2^64 stands for the largest whole number below it.
+    const std::string upper = range.upper == 0x1p64 ? "18446744073709551615" : fmt::format("{}", range.upper);
+    if (below && above) return range.lower == range.upper ? upper : fmt::format("{} and <= {}", lower, upper);
+    if (below) return lower;
+    return above ? "<= " + upper : "";
+}
+
+std::string expectation(const KeySpec& key) {
+    switch (key.type) {
+        case ValueType::number:
+            return number_words(key, "a number");
+        case ValueType::integer:
+            return number_words(key, "a whole number");
+        case ValueType::boolean:
+            return "true or false";
+        case ValueType::text:
+            return "a text that is not empty";
+        case ValueType::file:
+            return "the path of a file";
+        case ValueType::choice:
+            return choice_words(key);
+        case ValueType::vector:
+            return vector_words(key);
+        case ValueType::scale:
+            return "a number other than 0, or three in [x, y, z]";
+        case ValueType::pair:
+            return pair_words(key);
+        case ValueType::object:
+            return fmt::format("an object {{...}} ({})", key.content->title);
+        case ValueType::list:
+            return "a list [...] of objects";
+        case ValueType::list_or_file:
+            return "a list [...] of objects, or {\"file\": ...}";
+        case ValueType::table:
+            return fmt::format("an object {{\"name\": {{...}}}} ({} by name)", key.content->title);
+    }
+    return "";
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,74 @@
+/// \file
+/// Scene files: JSON with comments, read strictly. docs/scene-format.md is the reference, docs/scene.schema.json the
+/// JSON Schema; both are made from the table that the reader uses.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// What a run writes.
+struct OutputOptions {
+    std::string format = "vtp";
+    std::uint64_t every = 1;  ///< steps from one frame to the next, >= 1
+};
+
+/// Where a picture is taken from.
+struct CameraDescription {
+    Vec3 position;                        ///< m
+    Vec3 target;                          ///< m, the middle of the picture
+    std::optional<Vec3> up;               ///< of any length; nothing: against gravity
+    double field_of_view_degrees = 35.0;  ///< from the lower to the upper edge
+};
+
+/// A scene, read and checked.
+struct SceneDescription {
+    SimulationSetup setup;
+    OutputOptions output;
+    std::optional<CameraDescription> camera;
+    std::string file;                   ///< as it was named
+    std::vector<std::string> warnings;  ///< one line each, with file and place
+};
+
+/// All that is wrong with a scene.
+class SceneError : public InputError {
+public:
+    /// messages: one line each, at least one.
+    explicit SceneError(std::vector<std::string> messages);
+    /// One line for every error: "file:line:column: path.of[1].value: found ..., expected ...".
+    [[nodiscard]] const std::vector<std::string>& messages() const { return messages_; }
+
+private:
+    std::vector<std::string> messages_;
+};
+
+/// Largest scene file that is read, bytes; meshes and particle tables have files of their own.
+inline constexpr std::uint64_t kLargestSceneFile = std::uint64_t{64} << 20;
+
+/// Reads a scene with the meshes and tables that it names, relative to its folder. overrides: `PATH=VALUE` changes,
+/// applied in order before anything is checked, for example "simulation.time_step=0.01" or "colliders[0].scale=2".
+/// Throws SceneError with everything that is wrong: syntax (line and column), unknown keys, wrong types, values out of
+/// range, what is not built yet, missing or unreadable files.
+[[nodiscard]] SceneDescription read_scene(const std::filesystem::path& file,
+                                          const std::vector<std::string>& overrides = {});
+
+/// The same for a text in memory. file: the name for messages; paths in the scene are relative to its folder.
+[[nodiscard]] SceneDescription parse_scene(std::string_view text, const std::filesystem::path& file,
+                                           const std::vector<std::string>& overrides = {});
+
+/// The JSON Schema (draft 2020-12) of scene files, as docs/scene.schema.json holds it. It says all that a schema can;
+/// the reader also checks what ties values together (names, files, orders).
+[[nodiscard]] std::string scene_schema();
+
+/// The reference of the scene format in Markdown, as docs/scene-format.md holds it.
+[[nodiscard]] std::string scene_reference();
+
+}  // namespace ricochet

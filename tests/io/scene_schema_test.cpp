@@ -1,0 +1,226 @@
+// The schema, the reference and the reader say the same.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/json_schema.h"
+#include "io/sample_scene.h"
+#include "ricochet/core/random.h"
+#include "ricochet/io/detail/json_parser.h"
+#include "ricochet/io/detail/scene_check.h"
+#include "ricochet/io/scene.h"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::json;
+using Lines = std::vector<std::string>;
+using test::schema_errors;
+
+std::string file_text(const std::string& path) {
+    std::ifstream file(std::filesystem::path(RICOCHET_SOURCE_DIR) / path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+const Json& schema() {
+    static const Json parsed = Json::parse(scene_schema());
+    return parsed;
+}
+
+// What the reader's table of keys finds wrong (files and names are not looked at).
+Lines reader_errors(const Json& scene) {
+    detail::Diagnostics diagnostics("s.json", {});
+    auto root = detail::parse_json(scene.dump(), diagnostics);
+    if (root) detail::check_scene(*root, diagnostics);
+    return diagnostics.errors();
+}
+
+// The one rule that a schema cannot state: mean - spread has a range of its own.
+bool only_about_low_ends(const Lines& errors) {
+    return std::all_of(errors.begin(), errors.end(),
+                       [](const std::string& line) { return line.find(", so down to ") != std::string::npos; });
+}
+
+void expect_agreement(const Json& document) {
+    const Json scene = Json::parse(document.dump());  // numbers as they come from a file
+    const Lines reader = reader_errors(scene);
+    const Lines schema_says = schema_errors(schema(), scene);
+    const bool reader_accepts = only_about_low_ends(reader);
+    ASSERT_EQ(reader_accepts, schema_says.empty()) << (reader.empty() ? "reader accepts" : reader[0]) << "\n"
+                                                   << (schema_says.empty() ? "schema accepts" : schema_says[0]) << "\n"
+                                                   << scene.dump();
+}
+
+TEST(SceneSchema, TheCommittedFileIsWhatTheReadersTableGives) {
+    EXPECT_TRUE(file_text("docs/scene.schema.json") == scene_schema())
+        << "ricochet schema > docs/scene.schema.json brings it up to date";
+}
+
+TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
+    EXPECT_TRUE(file_text("docs/scene-format.md") == scene_reference())
+        << "ricochet schema --markdown > docs/scene-format.md brings it up to date";
+}
+
+TEST(SceneSchema, TheSampleConforms) { EXPECT_EQ(schema_errors(schema(), Json::parse(test::kSampleScene)), Lines{}); }
+
+TEST(SceneSchema, TheExampleOfTheReferenceConformsAndIsRead) {
+    const std::string page = scene_reference();
+    const std::size_t begin = page.find("    {\n");
+    const std::size_t end = page.find("    }\n", begin) + 6;
+    const std::string example = page.substr(begin, end - begin);
+    EXPECT_EQ(schema_errors(schema(), Json::parse(example)), Lines{});
+    EXPECT_NO_THROW((void)parse_scene(example, "s.json"));
+}
+
+TEST(SceneSchema, EverySceneOfTheRepositoryConforms) {
+    const std::filesystem::path folder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "scenes";
+    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "there are no scenes";
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() != ".json") continue;
+        SCOPED_TRACE(entry.path().string());
+        const Json scene = Json::parse(file_text(entry.path().string()), nullptr, true, true);
+        EXPECT_EQ(schema_errors(schema(), scene), Lines{});
+        ++scenes;
+    }
+    if (scenes == 0) GTEST_SKIP() << "there are no scenes";
+}
+
+TEST(SceneSchema, EveryDefaultConformsToItsOwnKey) {
+    const Json& root = schema();
+    std::vector<const Json*> open = {&root};
+    int defaults = 0;
+    while (!open.empty()) {
+        const Json& node = *open.back();
+        open.pop_back();
+        if (!node.is_structured()) continue;
+        if (node.is_object() && node.contains("default") && node.contains("description")) {
+            Json key = node;
+            key["$defs"] = root["$defs"];
+            EXPECT_EQ(schema_errors(key, node["default"]), Lines{}) << node.dump();
+            ++defaults;
+        }
+        for (const Json& child : node) open.push_back(&child);
+    }
+    EXPECT_GT(defaults, 20);
+}
+
+// Pointers to every value of a document.
+std::vector<Json::json_pointer> places_in(const Json& document) {
+    std::vector<Json::json_pointer> places;
+    const Json flat = document.flatten();
+    std::set<std::string> seen;
+    for (const auto& [path, value] : flat.items()) {
+        for (Json::json_pointer place(path); !place.empty(); place = place.parent_pointer()) {
+            if (seen.insert(place.to_string()).second) places.push_back(place);
+        }
+    }
+    return places;
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
+    const Json sample = Json::parse(test::kSampleScene);
+    const std::vector<Json> values = {nullptr,
+                                      true,
+                                      false,
+                                      0,
+                                      1,
+                                      2,
+                                      -1,
+                                      0.5,
+                                      1.5,
+                                      180.5,
+                                      1e80,
+                                      -1e80,
+                                      4294967295U,
+                                      4294967296U,
+                                      18446744073709551615U,
+                                      1e20,
+                                      "",
+                                      "exact",
+                                      "mesh",
+                                      "plane",
+                                      "midpoint",
+                                      "a\nb",
+                                      Json::array(),
+                                      Json::object(),
+                                      Json::array({1, 2}),
+                                      Json::array({1, -2}),
+                                      Json::array({1, 2, 3}),
+                                      Json::array({0, 0, 0}),
+                                      Json::array({0.0, 0, -0.0}),
+                                      Json::array({1, 2, "x"}),
+                                      Json::array({1, 2, 3, 4}),
+                                      Json::array({Json::object()}),
+                                      Json{{"file", "x.csv"}},
+                                      Json{{"file", 3}},
+                                      Json{{"", Json::object()}},
+                                      Json{{"axis", {1, 0, 0}}, {"degrees", 3}}};
+    for (const Json::json_pointer& place : places_in(sample)) {
+        for (const Json& value : values) {
+            Json spoiled = sample;
+            spoiled[place] = value;
+            SCOPED_TRACE(place.to_string() + " = " + value.dump());
+            expect_agreement(spoiled);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
+    const Json sample = Json::parse(test::kSampleScene);
+    for (const Json::json_pointer& place : places_in(sample)) {
+        const Json::json_pointer parent = place.parent_pointer();
+        if (!sample.at(parent).is_object()) continue;
+        SCOPED_TRACE(place.to_string());
+        Json removed = sample;
+        removed.at(parent).erase(place.back());
+        expect_agreement(removed);
+        Json renamed = removed;
+        renamed.at(parent)["other"] = sample.at(place);
+        expect_agreement(renamed);
+        for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius"}) {
+            Json added = sample;
+            added.at(parent)[key] = 1;
+            expect_agreement(added);
+        }
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
+    const Json sample = Json::parse(test::kSampleScene);
+    const auto places = places_in(sample);
+    RandomSequence random(8, 0, 0);
+    const auto below = [&](std::size_t n) {
+        return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    };
+    for (int round = 0; round < 500; ++round) {
+        SCOPED_TRACE(round);
+        Json spoiled = sample;
+        for (int i = 0; i < 3; ++i) {
+            const Json::json_pointer& to = places[below(places.size())];
+            const Json::json_pointer& from = places[below(places.size())];
+            if (spoiled.contains(to) && sample.contains(from)) spoiled[to] = sample[from];
+        }
+        expect_agreement(spoiled);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(SchemaValidator, SeesWhatItIsThereFor) {
+    const Json rules = Json::parse(R"({"type": "object", "properties": {"a": {"type": "integer", "minimum": 1}},
+                                       "required": ["a"], "additionalProperties": false})");
+    EXPECT_EQ(schema_errors(rules, {{"a", 1}}), Lines{});
+    EXPECT_EQ(schema_errors(rules, {{"a", 0}}), (Lines{"/a: minimum"}));
+    EXPECT_EQ(schema_errors(rules, {{"a", 1.5}}), (Lines{"/a: type"}));
+    EXPECT_EQ(schema_errors(rules, Json::object()), (Lines{": required"}));
+    EXPECT_EQ(schema_errors(rules, {{"a", 1}, {"b", 1}}), (Lines{"/b: additionalProperties"}));
+    EXPECT_THROW((void)schema_errors({{"minProperties", 1}}, Json::object()), std::logic_error);
+}
+
+}  // namespace
+}  // namespace ricochet

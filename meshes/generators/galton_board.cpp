@@ -15,6 +15,8 @@ constexpr double kTwoPi = 6.283185307179586;
 constexpr double kGap = 0.01;      // between neighbouring pieces, fraction of the spacing
 constexpr double kDivider = 0.12;  // thickness of dividers, fraction of the spacing
 constexpr double kWall = 0.3;      // thickness of walls, floor and plate, fraction of the spacing
+constexpr double kHopper = 2.0;    // height of the hopper, spacings
+constexpr double kThroat = 0.2;    // half width of its opening, spacings
 constexpr int kFewestPegSides = 12;
 
 /// Adds prisms along y, from the front to the back plate.
@@ -22,8 +24,10 @@ class Board {
 public:
     Board(const GaltonBoardShape& shape, double edge_length) : shape_(shape), edge_(edge_length) {}
 
-    /// Upright block with its lower left corner at (x, z).
-    void block(double x, double z, double width, double height) { place(rectangle_region(width, height, edge_), x, z); }
+    /// A prism over the region from the board's front to its back, with the region's origin at (x, z).
+    void place(const PlanarRegion& region, double x, double z) {
+        append(mesh_, moved(stood_up(extrusion(region, shape_.depth, edge_)), {x, shape_.depth, z}));
+    }
 
     /// Block whose upper side is shifted by `lean` along x.
     void leaning_block(double x, double z, double width, double height, double lean) {
@@ -52,10 +56,6 @@ public:
     TriangleMesh take() { return std::move(mesh_); }
 
 private:
-    void place(const PlanarRegion& region, double x, double z) {
-        append(mesh_, moved(stood_up(extrusion(region, shape_.depth, edge_)), {x, shape_.depth, z}));
-    }
-
     const GaltonBoardShape& shape_;
     double edge_;
     TriangleMesh mesh_;
@@ -73,30 +73,60 @@ void add_pegs(Board& board, const GaltonBoardShape& shape) {
     }
 }
 
-/// Dividers stand below the lowest row's pegs and one more on either side: a bin for every number of turns.
-void add_bins(Board& board, const GaltonBoardShape& shape) {
-    const double floor = kWall * shape.spacing;
-    const double gap = kGap * shape.spacing;
+/// A stretch of the frame along x with what stands on the floor there.
+struct Stretch {
+    double width = 0.0;
+    double height = 0.0;  // over the floor; 0 leaves the floor bare
+};
+
+/// From the left wall over the dividers to the right wall. Dividers stand below the lowest row's pegs and one more on
+/// either side: a bin for every number of turns.
+std::vector<Stretch> frame_stretches(const GaltonBoardShape& shape, double wall_height) {
+    const double wall = kWall * shape.spacing;
     const double thickness = kDivider * shape.spacing;
-    for (int i = -1; i <= shape.rows; ++i) {
-        const double x = (i - 0.5 * (shape.rows - 1)) * shape.spacing;
-        board.block(x - 0.5 * thickness, floor + gap, thickness, shape.bin_height);
+    const double bin = shape.spacing - thickness;
+    const double first = half_width(shape) - wall - 0.5 * (shape.rows + 1) * shape.spacing - 0.5 * thickness;
+    std::vector<Stretch> stretches{{wall, wall_height}, {first, 0.0}};
+    for (int divider = 0; divider < shape.rows + 2; ++divider) {
+        if (divider > 0) stretches.push_back({bin, 0.0});
+        stretches.push_back({thickness, shape.bin_height});
     }
+    stretches.push_back({first, 0.0});
+    stretches.push_back({wall, wall_height});
+    return stretches;
 }
 
-void add_frame(Board& board, const GaltonBoardShape& shape) {
+void append_steps(std::vector<double>& lines, double last, double edge_length) {
+    const std::vector<double> steps = even_steps(lines.back(), last, edge_length);
+    lines.insert(lines.end(), steps.begin() + 1, steps.end());
+}
+
+/// Floor, walls and dividers in one piece: a comb without slits through which points could slide.
+PlanarRegion frame_region(const GaltonBoardShape& shape, double wall_height, double edge_length) {
+    const double floor = kWall * shape.spacing;
+    std::vector<double> xs{-half_width(shape)};
+    std::vector<double> tops;  // of the solid in every column of cells
+    double x = xs.back();
+    for (const Stretch& stretch : frame_stretches(shape, wall_height)) {
+        x += stretch.width;
+        append_steps(xs, x, edge_length);
+        tops.resize(xs.size() - 1, floor + stretch.height);
+    }
+    std::vector<double> zs{0.0};
+    for (const double z : {floor, floor + shape.bin_height, floor + wall_height}) append_steps(zs, z, edge_length);
+    return lattice_region(xs, zs, [&](std::size_t i, std::size_t j) { return zs[j] < tops[i]; });
+}
+
+void add_frame(Board& board, const GaltonBoardShape& shape, double edge_length) {
     const double wall = kWall * shape.spacing;
-    const double gap = kGap * shape.spacing;
     const double half = half_width(shape);
-    const double top = galton_board_entry(shape) + 2.0 * shape.spacing;
-    board.block(-half, 0.0, 2.0 * half, wall);
-    board.block(-half, wall + gap, wall, top - wall);
-    board.block(half - wall, wall + gap, wall, top - wall);
-    const double throat = 0.2 * shape.spacing;
-    const double reach = half - 2.0 * wall - throat - gap;
     const double entry = galton_board_entry(shape);
-    board.leaning_block(throat, entry, wall, 2.0 * shape.spacing, reach);
-    board.leaning_block(-throat - wall, entry, wall, 2.0 * shape.spacing, -reach);
+    const double top = entry + kHopper * shape.spacing;
+    board.place(frame_region(shape, top - wall, edge_length), 0.0, 0.0);
+    const double throat = kThroat * shape.spacing;
+    const double reach = half - 2.0 * wall - throat - kGap * shape.spacing;
+    board.leaning_block(throat, entry, wall, kHopper * shape.spacing, reach);
+    board.leaning_block(-throat - wall, entry, wall, kHopper * shape.spacing, -reach);
     board.back_plate(half, top);
 }
 
@@ -116,8 +146,7 @@ TriangleMesh make_galton_board(const GaltonBoardShape& shape, double edge_length
     check(shape);
     Board board(shape, edge_length);
     add_pegs(board, shape);
-    add_bins(board, shape);
-    add_frame(board, shape);
+    add_frame(board, shape, edge_length);
     return board.take();
 }
 

@@ -15,10 +15,10 @@ struct GaltonBoardShape {
     double depth = 0.1;        ///< of the board, along y, metres
 };
 
-/// Board in the plane of x and z, symmetric in x, floor at z = 0, front at y = 0 and back plate behind y = depth. Every
-/// piece (peg, divider, wall, plate) is a closed shell of its own and none touches another. The sides of pegs, dividers
-/// and walls are exactly parallel to y: what moves in a plane of constant y stays in it. Throws InputError for
-/// parameters out of range.
+/// Board in the plane of x and z, symmetric in x, floor at z = 0, front at y = 0 and back plate behind y = depth. The
+/// pegs, the frame (floor, walls and dividers in one piece), the two sides of the hopper and the back plate are closed
+/// shells of their own and none touches another. The sides of pegs, dividers and walls are exactly parallel to y: what
+/// moves in a plane of constant y stays in it. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_galton_board(const GaltonBoardShape& shape, double edge_length);
 
 /// Height of the lowest point of the hopper's opening over z = 0, metres: particles start above it.

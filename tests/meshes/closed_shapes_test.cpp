@@ -75,7 +75,7 @@ TerrainShape terrain_block() {
 
 std::size_t galton_shells(const GaltonBoardShape& shape) {
     const auto rows = static_cast<std::size_t>(shape.rows);
-    return rows * (rows + 1) / 2 + (rows + 2) + 3 + 2 + 1;  // pegs, dividers, floor and sides, hopper, plate
+    return rows * (rows + 1) / 2 + 1 + 2 + 1;  // pegs, frame, hopper, plate
 }
 
 std::vector<ClosedShape> closed_shapes() {

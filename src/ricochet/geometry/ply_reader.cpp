@@ -71,7 +71,6 @@ public:
         const double value = number(type);
         const std::optional<double> accepted = accepted_coordinate(value);
         if (!accepted) {
-            at_ -= ply_size(type);
             fail(fmt::format("vertex coordinate is {}, expected a finite number of at most {} in size", value,
                              kLargestCoordinate));
         }
@@ -106,7 +105,7 @@ public:
         }
     }
 
-    [[noreturn]] void fail(const std::string& what) const { source_.fail_at_byte(at_, what); }
+    [[noreturn]] void fail(const std::string& what) const { source_.fail_at_byte(last_, what); }
 
 private:
     double number(PlyType type) {
@@ -116,6 +115,7 @@ private:
     }
     template <typename Value>
     Value load() {
+        last_ = at_;
         std::array<char, sizeof(Value)> raw;
         if (source_.bytes.size() - at_ < sizeof(Value)) fail("file ends inside an element; is it cut off?");
         std::memcpy(raw.data(), source_.bytes.data() + at_, sizeof(Value));
@@ -126,6 +126,7 @@ private:
 
     const MeshSource& source_;
     std::size_t at_;
+    std::size_t last_ = 0;  // where the last value began, for messages
 };
 
 // What becomes of a property's values.

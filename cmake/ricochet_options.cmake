@@ -4,6 +4,9 @@
 add_library(ricochet_options INTERFACE)
 target_compile_features(ricochet_options INTERFACE cxx_std_20)
 target_compile_options(ricochet_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+# GCC 12 loses the rounding of neighbouring conversions double -> float -> double when it vectorizes a basic block (two such
+# conversions side by side become a copy at -O2), so boxes rounded outward to float would not be.
+target_compile_options(ricochet_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(RICOCHET_WARNINGS_AS_ERRORS)
   target_compile_options(ricochet_options INTERFACE -Werror)
 endif()

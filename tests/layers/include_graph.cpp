@@ -70,9 +70,13 @@ std::optional<std::string> layer_of(const std::string& path) {
 
 bool is_header(const std::string& path) { return path.ends_with(".h"); }
 
+bool is_private(const SourceTree& tree, const std::string& path) {
+    return tree.private_headers.contains(path) || path.find("/detail/") != std::string::npos;
+}
+
 /// A header that an installation contains.
 bool is_public_header(const SourceTree& tree, const std::string& path) {
-    return is_header(path) && path.starts_with(kLibrary) && !tree.private_headers.contains(path);
+    return is_header(path) && path.starts_with(kLibrary) && !is_private(tree, path);
 }
 
 /// The file of the tree that an include line names; nothing when it is somebody else's.
@@ -110,7 +114,7 @@ std::set<std::string> read_private_headers(const fs::path& root) {
 /// What is wrong with an include of one of our own files; nothing when it is allowed.
 std::optional<std::string> wrong_layer(const SourceTree& tree, const SourceFile& from, const std::string& target) {
     const auto layer = layer_of(from.path);
-    if (is_public_header(tree, from.path) && tree.private_headers.contains(target)) {
+    if (is_public_header(tree, from.path) && is_private(tree, target)) {
         return "a public header includes the private header " + target;
     }
     if (!layer) return std::nullopt;

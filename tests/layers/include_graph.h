@@ -25,7 +25,7 @@ struct SourceFile {
 /// The files to check, and which headers of the library are private (not installed).
 struct SourceTree {
     std::vector<SourceFile> files;          ///< in the order of their paths
-    std::set<std::string> private_headers;  ///< paths below the root
+    std::set<std::string> private_headers;  ///< paths below the root, besides those in `detail` folders
 };
 
 /// The .h and .cpp files in src, tests, meshes and bench below root, and src/ricochet/private_headers.txt.

@@ -28,8 +28,9 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${library_build} --prefix ${p
 
 file(GLOB_RECURSE header_files RELATIVE "${prefix}/include" "${prefix}/include/*.h")
 file(STRINGS ${source_dir}/src/ricochet/private_headers.txt private_headers REGEX "^[^#]")
-foreach(header IN LISTS private_headers)
-  if("ricochet/${header}" IN_LIST header_files)
+list(TRANSFORM private_headers PREPEND "ricochet/")
+foreach(header IN LISTS header_files)
+  if(header IN_LIST private_headers OR header MATCHES "/detail/")
     message(FATAL_ERROR "the private header ${header} was installed")
   endif()
 endforeach()

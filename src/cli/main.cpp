@@ -16,6 +16,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh_topology.h"
+#include "ricochet/geometry/triangle_bvh.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
@@ -39,8 +40,8 @@ const std::vector<AddCommand>& commands() {
 }
 
 std::string version_text() {
-    return fmt::format("ricochet {}\nTBB {}\nOpenMesh {}", RICOCHET_VERSION, thread_library_version(),
-                       topology_library_version());
+    return fmt::format("ricochet {}\n{}\nTBB {}\nOpenMesh {}", RICOCHET_VERSION, ray_library_version(),
+                       thread_library_version(), topology_library_version());
 }
 
 int report_error(std::string message, int exit_code) {
@@ -51,7 +52,7 @@ int report_error(std::string message, int exit_code) {
 
 int parse_and_run(int argc, char** argv) {
     CLI::App app("Particles against triangle meshes, exactly", "ricochet");
-    app.set_version_flag("--version", version_text());
+    app.set_version_flag("--version", version_text, "Print the versions of ricochet and its libraries");
     app.require_subcommand(1);
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(app, exit_code);

@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.h"
+#include "geometry/mesh_files.h"
+#include "geometry/temporary_folder.h"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kOpen = "v 0 0 0\nv 3 0 0\nv 0 4 0\nv 9 9 9\nf 1 2 3\n";
+
+TEST(InfoCommand, PrintsOneJsonObjectWithEveryFieldOfTheContract) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.write("t.obj", test::kObjTetrahedron).string();
+    const test::ProgramResult result = test::run_ricochet({"info", path, "--json"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.errors, "");
+    const Json info = Json::parse(result.output);
+    EXPECT_EQ(info.at("file"), path);
+    EXPECT_EQ(info.at("format"), "OBJ");
+    for (const char* name : {"vertices", "faces", "triangles"}) EXPECT_EQ(info.at(name), 4) << name;
+    EXPECT_EQ(info.at("bounds"), Json::parse("[[0.0,0.0,0.0],[1.0,1.0,1.0]]"));
+    EXPECT_DOUBLE_EQ(info.at("area"), 1.5 + std::sqrt(3.0) / 2.0);
+    EXPECT_DOUBLE_EQ(info.at("volume"), 1.0 / 6.0);
+    EXPECT_EQ(info.at("closed"), true);
+    EXPECT_EQ(info.at("shells"), 1);
+    for (const char* name : {"boundary_edges", "boundary_loops", "nonmanifold_edges", "nonmanifold_vertices",
+                             "degenerate_triangles", "duplicate_faces"}) {
+        EXPECT_EQ(info.at(name), 0) << name;
+    }
+    EXPECT_EQ(info.at("consistently_oriented"), true);
+    EXPECT_EQ(info.at("warnings"), Json::array());
+}
+
+TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {
+    const test::TemporaryFolder folder;
+    const test::ProgramResult result = test::run_ricochet({"info", folder.write("t.obj", kOpen), "--json"});
+    const Json info = Json::parse(result.output);
+    EXPECT_TRUE(info.at("volume").is_null());
+    EXPECT_EQ(info.at("area"), 6.0);
+    EXPECT_EQ(info.at("bounds"), Json::parse("[[0.0,0.0,0.0],[3.0,4.0,0.0]]"));
+    EXPECT_EQ(info.at("warnings").size(), 2U);
+}
+
+TEST(InfoCommand, PrintsATableWithAWarningPerDefect) {
+    const test::TemporaryFolder folder;
+    const test::ProgramResult result = test::run_ricochet({"info", folder.write("t.obj", kOpen)});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.output.find("volume                none (open surface)\n"), std::string::npos) << result.output;
+    EXPECT_NE(result.output.find("warning: open surface, 3 boundary edges in 1 loop: particles pass"),
+              std::string::npos);
+    EXPECT_NE(result.output.find("warning: 1 vertex belongs to no face"), std::string::npos);
+}
+
+TEST(InfoCommand, RefusesABadFileWithOneLineAndNoOutput) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.write("t.obj", "v 0 0 0\nv 1 nan 0\n").string();
+    const test::ProgramResult result = test::run_ricochet({"info", "--json", path});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.output, "");
+    EXPECT_EQ(result.errors.find("ricochet: " + path + ":2: "), 0U) << result.errors;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1);
+}
+
+TEST(InfoCommand, PrintsAFileNameThatIsNotUtf8) {
+    const test::TemporaryFolder folder;
+    const test::ProgramResult result = test::run_ricochet({"info", "--json", folder.write("\xff.obj", kOpen)});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(Json::parse(result.output).at("faces"), 1);
+}
+
+}  // namespace
+}  // namespace ricochet

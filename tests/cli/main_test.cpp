@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cli/run_program.h"
+
+namespace ricochet {
+namespace {
+
+bool is_one_line(const std::string& text) {
+    return !text.empty() && std::count(text.begin(), text.end(), '\n') == 1 && text.back() == '\n';
+}
+
+TEST(CommandLine, PrintsItsVersionAndItsLibraries) {
+    const test::ProgramResult result = test::run_ricochet({"--version"});
+    EXPECT_EQ(result.exit_code, 0);
+    for (const char* name : {"ricochet ", "Embree ", "TBB ", "OpenMesh "}) {
+        EXPECT_NE(result.output.find(name), std::string::npos) << name;
+    }
+    EXPECT_EQ(result.errors, "");
+}
+
+TEST(CommandLine, ListsItsCommandsInTheHelp) {
+    const test::ProgramResult result = test::run_ricochet({"--help"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.output.find("info"), std::string::npos);
+}
+
+TEST(CommandLine, EndsWithTwoAndOneLineForWrongArguments) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{}, {"juggle"}, {"info"}, {"info", "a.obj", "--yaml"}, {"--verson"}}) {
+        const test::ProgramResult result = test::run_ricochet(arguments);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_EQ(result.output, "");
+        EXPECT_TRUE(is_one_line(result.errors)) << result.errors;
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

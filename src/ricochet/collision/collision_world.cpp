@@ -154,6 +154,13 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
     return signed_distance(p, a, b, c);
 }
 
+int CollisionWorld::side_of_surface(SurfaceId surface, const Vec3& p) const {
+    const Range& range = ranges_[collider_of(surface)];
+    if (range.is_plane) return side_of(planes_[range.plane].plane, p);
+    const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
+    return orient3d(a, b, c, p);
+}
+
 double CollisionWorld::time_over(SurfaceId surface, const Path& path, double slack) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.is_plane) return path.duration;

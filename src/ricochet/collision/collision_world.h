@@ -71,6 +71,8 @@ public:
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface) const;
     /// Signed distance from a surface's plane, m.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
+    /// Exact side of a surface's plane: +1 where its normal points to, -1 behind, 0 in the plane.
+    [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
     /// Time that a path along a surface stays over it, see time_over_triangle(); the whole duration for a plane.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
     /// Exact: does the closed segment [p, q] meet the surface?

@@ -9,7 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of a path in search of pieces flat enough for the boxes; 2^-40 of a path is shorter than any box is wide.
+/// Halvings of a path in search of pieces flat enough for the boxes. Only pieces near the triangles are halved; a path
+/// that bends so much that this is not enough is tested against every triangle.
 constexpr int kPieceDepth = 40;
 
 double largest_coordinate(const Path& path) {
@@ -32,10 +33,16 @@ std::optional<Contact> ContactSearch::search(const Path& path) {
     scratch_.triangles.clear();
     scratch_.planes.clear();
     scratch_.found.clear();
-    slack_ = kCandidateSlack * largest_coordinate(path) + 4.0 * kSmallestParkingGap;
+    const double reach = largest_coordinate(path);
+    slack_ = kCandidateSlack * reach + kLongestParkingUlps * kSmallestParkingGap;
     first_time_ = std::numeric_limits<double>::infinity();
+    all_triangles_ = false;
     search_planes(path);
-    search_triangles(path, 0.0, path.duration, kPieceDepth);
+    if (kPathRounding * reach <= world_.bvh().slack()) {
+        search_triangles(path, 0.0, path.duration, kPieceDepth);
+    } else if (may_reach_triangles(path, 0.0, path.duration)) {
+        search_all_triangles(path);
+    }
     if (scratch_.found.empty()) return std::nullopt;
     return first_of_found(path);
 }
@@ -52,11 +59,40 @@ void ContactSearch::search_planes(const Path& path) {
     }
 }
 
+// A point of a chord lies within the chord's sagitta of the path, and that point of the path within its piece's sagitta
+// of the piece's chord; together they must stay within the allowance of the boxes.
+bool ContactSearch::covers_chord(const Path& path, double from, double to) const {
+    return all_triangles_ || path.degree < 2 || world_.triangles().empty() ||
+           2.0 * path.sagitta(from, to) <= world_.bvh().curvature_allowance() || !may_reach_triangles(path, from, to);
+}
+
+// The allowance keeps chords that begin on such a piece and end on the next one away from the triangles too.
+bool ContactSearch::may_reach_triangles(const Path& path, double from, double to) const {
+    Box3 box;
+    box.include(path.position(from));
+    box.include(path.position(to));
+    const double margin = path.sagitta(from, to) + slack_ + world_.bvh().curvature_allowance();
+    const Vec3 by{margin, margin, margin};
+    const Vec3 gap = max(box.lower - by - world_.bounds().upper, world_.bounds().lower - (box.upper + by));
+    return std::max({gap.x, gap.y, gap.z}) <= 0.0;
+}
+
+void ContactSearch::search_all_triangles(const Path& path) {
+    all_triangles_ = true;
+    for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) {
+        (void)look_at_triangle(path, triangle);
+    }
+}
+
 // Pieces are visited in the order of time, so a contact ends the search. How the path is cut serves the boxes only:
 // every triangle is judged on the whole path.
 void ContactSearch::search_triangles(const Path& path, double from, double to, int depth) {
-    if (from > first_time_) return;
-    if (depth > 0 && path.sagitta(from, to) > world_.bvh().curvature_allowance() && !world_.triangles().empty()) {
+    if (from > first_time_ || all_triangles_) return;
+    if (!covers_chord(path, from, to)) {
+        if (depth == 0) {
+            search_all_triangles(path);
+            return;
+        }
         const double middle = 0.5 * (from + to);
         search_triangles(path, from, middle, depth - 1);
         search_triangles(path, middle, to, depth - 1);
@@ -113,6 +149,29 @@ std::optional<SurfaceId> ContactSearch::blocker(const Vec3& p, const Vec3& q) co
         if (segment_meets_triangle(p, q, a, b, c)) consider(world_.surface_of_triangle(triangle));
     }
     return smallest;
+}
+
+std::vector<SurfaceId> ContactSearch::gathered() const {
+    std::vector<SurfaceId> surfaces;
+    for (const std::uint32_t k : scratch_.planes) surfaces.push_back(world_.planes()[k].surface);
+    for (const std::uint32_t triangle : scratch_.triangles) surfaces.push_back(world_.surface_of_triangle(triangle));
+    std::sort(surfaces.begin(), surfaces.end());
+    surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
+    return surfaces;
+}
+
+std::vector<SurfaceId> ContactSearch::surfaces_at(const Vec3& p) const {
+    std::vector<SurfaceId> surfaces = gathered();
+    std::erase_if(surfaces, [&](SurfaceId surface) { return !world_.point_on(surface, p); });
+    return surfaces;
+}
+
+bool ContactSearch::is_free_after(const Vec3& p, const Vec3& q) const {
+    const std::vector<SurfaceId> surfaces = gathered();
+    return std::all_of(surfaces.begin(), surfaces.end(), [&](SurfaceId surface) {
+        if (!world_.segment_meets(surface, p, q)) return true;
+        return world_.point_on(surface, p) && world_.side_of_surface(surface, q) != 0;
+    });
 }
 
 bool ContactSearch::is_free(const Vec3& p, const Vec3& q) const {

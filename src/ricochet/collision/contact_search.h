@@ -62,12 +62,23 @@ public:
     /// path, or within the parking distance of it.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
+    /// The same for a segment that starts on surfaces: true when it leaves all of them and meets no other.
+    [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
+    /// All gathered surfaces on which the point lies exactly.
+    [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
+
+    /// True when the surfaces gathered include all that the path's chord from time `from` to `to` may meet. Longer
+    /// chords of a curved path may pass through places that the search has not looked at.
+    [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
 
     [[nodiscard]] const CollisionWorld& world() const { return world_; }
 
 private:
     void search_planes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
+    void search_all_triangles(const Path& path);
+    [[nodiscard]] bool may_reach_triangles(const Path& path, double from, double to) const;
+    [[nodiscard]] std::vector<SurfaceId> gathered() const;
     double look_at_triangle(const Path& path, std::uint32_t triangle);
     [[nodiscard]] Contact first_of_found(const Path& path) const;
 
@@ -75,6 +86,7 @@ private:
     ContactScratch& scratch_;
     double slack_ = 0.0;
     double first_time_ = 0.0;
+    bool all_triangles_ = false;  // every triangle is a candidate
 };
 
 }  // namespace ricochet

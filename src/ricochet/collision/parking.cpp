@@ -15,13 +15,14 @@ struct Walker {
     Travel state;
 
     bool walk_to(double time, const Vec3& target, int depth) {
-        if (search.is_free(state.reached, target)) {
+        const double middle = 0.5 * (state.time + time);
+        const bool is_shortest = depth == 0 || middle <= state.time || middle >= time;
+        if ((is_shortest || search.covers_chord(path, state.time, time)) && search.is_free(state.reached, target)) {
             state.reached = target;
             state.time = time;
             return true;
         }
-        const double middle = 0.5 * (state.time + time);
-        if (depth == 0 || middle <= state.time || middle >= time) {
+        if (is_shortest) {
             state.blocker = search.blocker(state.reached, target);
             return false;
         }
@@ -44,9 +45,6 @@ struct Normals {
     }
 };
 
-/// The longest step off the surfaces, in gaps; keeps every place that is tried inside kCandidateSlack.
-constexpr double kLongestEscape = 16.0;
-
 /// The shortest displacement that gains one unit of distance from every plane (the minimum-norm solution of n_i . d =
 /// 1); the plain sum of the normals where the planes are too sharp or too parallel for that.
 Vec3 escape_direction(const Normals& normals) {
@@ -58,7 +56,7 @@ Vec3 escape_direction(const Normals& normals) {
         sum += n[2];
         direction = (cross(n[1], n[2]) + cross(n[2], n[0]) + cross(n[0], n[1])) / dot(n[0], cross(n[1], n[2]));
     }
-    return is_finite(direction) && length(direction) <= kLongestEscape ? direction : sum;
+    return kParkingGapUlps * length(direction) <= kLongestParkingUlps ? direction : sum;
 }
 
 /// The contact point, moved onto the plane of the surface that was met.
@@ -66,11 +64,6 @@ Vec3 point_on_surface(const CollisionWorld& world, const Path& path, const Conta
     Vec3 point = path.position(contact.time);
     const SurfaceId surface = contact.first().surface;
     return flush_tiny(point - world.signed_distance_from(surface, point) * world.unit_normal_of(surface));
-}
-
-int side_of_surface(const CollisionWorld& world, SurfaceId surface, const Vec3& p) {
-    const double distance = world.signed_distance_from(surface, p);
-    return (distance > 0.0) - (distance < 0.0);
 }
 
 }  // namespace
@@ -88,11 +81,14 @@ Parking park(const ContactSearch& search, const Path& path, const Contact& conta
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
     double gap = parking_gap(point);
+    const double longest = kLongestParkingUlps / kParkingGapUlps * gap;
     for (int attempt = 0; attempt < kParkingAttempts;) {
-        const Vec3 place = flush_tiny(point + gap * escape_direction(normals));
+        const Vec3 way = gap * escape_direction(normals);
+        if (!(length(way) <= longest)) break;
+        const Vec3 place = flush_tiny(point + way);
         const Travel travelled = travel(search, path, contact.time, place);
         if (!travelled.blocker) return {place, false};
-        const int side = side_of_surface(world, *travelled.blocker, travelled.reached);
+        const int side = world.side_of_surface(*travelled.blocker, travelled.reached);
         const bool new_normal =
             side != 0 && normals.add(facing_normal(world, *travelled.blocker, side, path.velocity(contact.time)));
         if (new_normal) continue;
@@ -104,8 +100,20 @@ Parking park(const ContactSearch& search, const Path& path, const Contact& conta
     return {walker.state.reached, walker.state.reached == path.c[0]};
 }
 
+std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
+    Normals normals;
+    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.world().unit_normal_of(surface));
+    if (normals.count == 0) return std::nullopt;
+    double gap = parking_gap(p);
+    for (int attempt = 0; attempt < kParkingAttempts; ++attempt, gap *= kParkingWidening) {
+        const Vec3 place = flush_tiny(p + gap * escape_direction(normals));
+        if (search.is_free_after(p, place)) return place;
+    }
+    return std::nullopt;
+}
+
 Contact contact_of_blocker(const ContactSearch& search, const Path& path, const Travel& travelled) {
-    const int side = side_of_surface(search.world(), *travelled.blocker, travelled.reached);
+    const int side = search.world().side_of_surface(*travelled.blocker, travelled.reached);
     Contact contact;
     contact.time = travelled.time;
     contact.count = 1;

@@ -31,6 +31,11 @@ struct Parking {
 /// last certified place on the path when nothing else is free. "Do not move" is always valid.
 [[nodiscard]] Parking park(const ContactSearch& search, const Path& path, const Contact& contact);
 
+/// For a particle that was put exactly on surfaces: a place one parking gap off them, on the side that their normals
+/// point to, on a way that leaves them and meets no other surface. `search` has searched a path that starts at p.
+/// Nothing when p is on no surface or no place was found.
+[[nodiscard]] std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p);
+
 /// The contact that a certificate found where the roots saw none: the path slips between surfaces by rounding.
 [[nodiscard]] Contact contact_of_blocker(const ContactSearch& search, const Path& path, const Travel& travelled);
 

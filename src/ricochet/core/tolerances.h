@@ -20,10 +20,14 @@ inline constexpr double kParkingGapUlps = 16.0;
 /// Smallest parking gap, m; only matters for contacts at the very origin. Must stay above kSmallestExactCoordinate.
 inline constexpr double kSmallestParkingGap = 0x1p-240;
 
-/// How often a parking gap that fails its certificate is widened, and the factor. 16 * 4^3 ulp stays far inside
-/// kCandidateSlack, so the candidates already gathered cover every place that is tried.
+/// How often a parking gap that fails its certificate is widened, and the factor.
 inline constexpr int kParkingAttempts = 4;
 inline constexpr double kParkingWidening = 4.0;
+
+/// Longest way from a contact point to a parking place that is tried, in ulp of the point's largest coordinate: 2^-40
+/// of it at most, inside kCandidateSlack, so that the candidates already gathered cover every place. Smaller: sharp
+/// wedges, where the way out of two walls is longer than the gap, are parked in less often.
+inline constexpr double kLongestParkingUlps = 4096.0;
 
 /// A surface counts as touched while the particle is within this many parking gaps of its plane, and sliding goes on
 /// until the particle is as far beyond the triangle's rim. Smaller: sliding is cut into more, shorter stretches.
@@ -31,15 +35,24 @@ inline constexpr double kParkingWidening = 4.0;
 inline constexpr double kTouchingGaps = 8.0;
 
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
-/// before the triangle is dropped. Reason: covers the parking displacement and the rounding of points on the path (a
-/// few ulp). Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact
+/// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
+/// path. Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact
 /// tests.
-inline constexpr double kCandidateSlack = 0x1p-40;
+inline constexpr double kCandidateSlack = 0x1p-39;
+
+/// Rounding of a point on a path, relative to the largest coordinate that the path's terms reach: some ten roundings of
+/// 2^-53. Where that exceeds what the boxes allow for, all triangles are candidates.
+inline constexpr double kPathRounding = 0x1p-48;
 
 /// Boxes handed to the ray library grow by this many units of 2^-24 times the scene's largest centred coordinate.
-/// Reason: covers rounding of the ray's origin, direction and of t * direction in single precision on each axis, and
-/// the candidate slack. Smaller than about 8: a touched triangle might not be presented, and particles could leak.
+/// Reason: covers rounding of the ray's origin, direction and of t * direction in single precision on each axis.
+/// Smaller than about 8: a touched triangle might not be presented, and particles could leak.
 inline constexpr double kBoxPaddingUnits = 16.0;
+
+/// Boxes grow further, by this part of the half extent and kCandidateSlack of the largest world coordinate: parking
+/// places and rounded points of a path lie beside the segments that are asked about. Smaller: paths that reach far
+/// beyond the mesh need every triangle as a candidate sooner (at kBoxSlack / kPathRounding half extents, 2^28).
+inline constexpr double kBoxSlack = 0x1p-20;
 
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
 inline constexpr double kSimultaneousUlps = 4.0;
@@ -53,7 +66,7 @@ inline constexpr int kCertificateDepth = 52;
 inline constexpr double kLargestCoordinate = 1e75;
 
 /// Unit of the per-triangle impulse totals, N s. They are 128-bit integers in this unit, so that sums do not depend on
-/// the order; the largest total is 2^27 N s = 1.3e8 N s (then the total saturates).
+/// the order; the largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;
 
 /// Distance from x to the next larger double magnitude.

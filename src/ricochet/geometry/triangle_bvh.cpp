@@ -93,8 +93,9 @@ struct TriangleBvh::Impl {
     std::span<const Vec3> vertices;
     std::span<const Triangle> triangles;
     double allowance = 0.0;
+    double slack = 0.0;
     FloatFrame frame;
-    double padding = 0.0;  ///< in the float frame: rounding and curvature
+    double padding = 0.0;  ///< in the float frame: rounding, slack and curvature
     Box3 clip_box;         ///< world; generously larger than the padded boxes
     std::atomic<std::ptrdiff_t> memory{0};
     embree::Device device;
@@ -115,10 +116,10 @@ void TriangleBvh::Impl::set_frame() {
     frame = frame_of(box);
     // Half extent H and a clipped leg of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
-    padding = kBoxPaddingUnits * 0x1p-24 * (half_extent + 3.5 * half_extent + frame.scale * allowance) +
-              frame.scale * allowance;
-    const double margin = 2.0 * padding / frame.scale + 0x1p-40 * max_abs(max(abs(box.lower), abs(box.upper)));
-    clip_box = grown(box, margin);
+    slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
+    const double beside = frame.scale * (allowance + slack);
+    padding = kBoxPaddingUnits * 0x1p-24 * (4.5 * half_extent + beside) + beside;
+    clip_box = grown(box, 2.0 * padding / frame.scale);
 }
 
 void TriangleBvh::Impl::write_bounds(std::uint32_t triangle, RTCBounds& bounds) const {
@@ -179,6 +180,7 @@ TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
 TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
 
 double TriangleBvh::curvature_allowance() const { return impl_->allowance; }
+double TriangleBvh::slack() const { return impl_->slack; }
 std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.load()); }
 
 void TriangleBvh::Impl::visit_all(Query& query) const {

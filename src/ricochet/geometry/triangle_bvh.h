@@ -31,7 +31,7 @@ public:
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
 
-    /// Visits every triangle whose distance from the segment [from, to] is at most the curvature allowance (and
+    /// Visits every triangle whose distance from the segment [from, to] is at most curvature_allowance() + slack() (and
     /// possibly more), up to the narrowed fraction, in unspecified order. Safe from any number of threads. Both ends
     /// must be finite.
     void visit(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
@@ -46,6 +46,8 @@ public:
 
     /// m, as given.
     [[nodiscard]] double curvature_allowance() const;
+    /// m, what the boxes allow for places beside the segment (see kBoxSlack).
+    [[nodiscard]] double slack() const;
     /// Bytes that the hierarchy holds (without the vertices and triangles).
     [[nodiscard]] std::size_t memory_bytes() const;
 

@@ -26,7 +26,7 @@ std::uint64_t count_steps(const SimulationOptions& options) {
     return static_cast<std::uint64_t>(std::max(0.0, std::ceil(options.duration / options.time_step - kStepRounding)));
 }
 
-void check_options(const SimulationOptions& options) {
+SimulationOptions checked(const SimulationOptions& options) {
     if (!(options.time_step > 0.0) || !std::isfinite(options.time_step)) {
         throw InputError("time_step must be a finite number above 0 s");
     }
@@ -36,6 +36,7 @@ void check_options(const SimulationOptions& options) {
     if (options.duration / options.time_step > 1e15) throw InputError("duration / time_step exceeds 1e15 steps");
     if (!(options.resting_speed >= 0.0)) throw InputError("resting_speed must be at least 0 m/s");
     if (options.bounce_budget == 0) throw InputError("bounce_budget must be at least 1");
+    return options;
 }
 
 /// Totals of one surface.
@@ -91,7 +92,7 @@ struct Simulation::Impl {
 };
 
 Simulation::Impl::Impl(SimulationSetup setup)
-    : options(setup.options),
+    : options(checked(setup.options)),
       forces(std::move(setup.forces)),
       materials(std::move(setup.materials)),
       world(std::move(setup.colliders)),
@@ -99,7 +100,6 @@ Simulation::Impl::Impl(SimulationSetup setup)
       response(world, forces, materials, {options.integrator, options.resting_speed, options.bounce_budget}),
       totals(options.triangle_totals ? world.surface_count() : 0),
       steps(count_steps(options)) {
-    check_options(options);
     for (const ColliderDescription& collider : world.colliders()) {
         if (collider.material >= materials.size())
             throw InputError("collider \"" + collider.name + "\" has no material");

@@ -17,13 +17,16 @@ public:
     bool add(double term, double unit) {
         const double scaled = term / unit;
         if (!(std::fabs(scaled) < 0x1p126)) return false;
-        // Split into a multiple of 2^63 and the rest, each exact.
-        const double high_part = std::floor(scaled * 0x1p-63);
-        const double low_part = std::nearbyint(scaled - high_part * 0x1p63);
-        const auto high = static_cast<std::int64_t>(high_part);
-        const auto low = static_cast<std::uint64_t>(low_part);
-        add_words((static_cast<std::uint64_t>(high) << 63) + low,
-                  static_cast<std::uint64_t>(high >> 1) + carry_of(static_cast<std::uint64_t>(high) << 63, low));
+        // The magnitude, split into a multiple of 2^64 and the rest, each exact; then its two's complement.
+        const double magnitude = std::nearbyint(std::fabs(scaled));
+        const double high_part = std::floor(magnitude * 0x1p-64);
+        auto high = static_cast<std::uint64_t>(high_part);
+        auto low = static_cast<std::uint64_t>(magnitude - high_part * 0x1p64);
+        if (scaled < 0.0) {
+            low = ~low + 1;
+            high = ~high + (low == 0 ? 1 : 0);
+        }
+        add_words(low, high);
         return true;
     }
     /// The total; not while others are adding.

@@ -66,6 +66,10 @@ private:
             return std::nullopt;
         }
         std::optional<Contact> contact = search_.search(path);
+        if (contact && contact->time == 0.0 && search_.blocker(path.c[0], path.c[0])) {
+            leave_surface(flight);
+            return std::nullopt;
+        }
         if (contact) {
             const Parking parking = park(search_, path, *contact);
             outcome_.stayed += parking.stayed ? 1 : 0;
@@ -82,6 +86,17 @@ private:
         return contact;
     }
 
+    /// A particle that was put exactly on a surface has no side yet: it gets the one that the normal points to.
+    void leave_surface(const Flight& flight) {
+        state_.velocity = velocity_at(flight, 0.0);
+        if (const auto place = step_off(search_, state_.position)) {
+            state_.position = *place;
+            return;
+        }
+        outcome_.unsimulated_time = remaining_;
+        remaining_ = 0.0;
+    }
+
     /// Responds to an impact. Returns the next contact when the particle slid into one.
     std::optional<Contact> answer(const Flight& flight, const Contact& contact) {
         ++outcome_.bounces;
@@ -89,8 +104,8 @@ private:
         for (const ContactSurface& surface : contact.all()) remember(surface);
         const Vec3 arriving = state_.velocity;
         reflect(contact);
-        if (!settles(flight, contact, arriving)) return std::nullopt;
-        return stay_in_contact(flight, contact, arriving);
+        const ContactSurface* const support = support_of(flight, contact, arriving);
+        return support == nullptr ? std::nullopt : stay_in_contact(flight, *support, arriving);
     }
 
     const Material& material_of(SurfaceId surface) const {
@@ -131,17 +146,25 @@ private:
         push(contact.first().surface, state_.velocity - before, false);
     }
 
-    /// True when the rebound is so slow, and the particle so pressed on, that the cascade of bounces becomes contact.
-    bool settles(const Flight& flight, const Contact& contact, const Vec3& arriving) const {
-        if (remaining_ <= 0.0) return false;
-        const Vec3& normal = contact.first().normal;
-        const Material& material = material_of(contact.first().surface);
-        if (material.restitution >= 1.0) return false;
-        const double pressing = -dot(acceleration_now(flight), normal);
-        if (!(pressing > 0.0)) return false;
-        // What the step's own kick put into the velocity is not the speed of an impact.
-        const double approach = -dot(arriving, normal) - pressing * flight.kick_duration;
-        return material.restitution * approach < rules_.settings_.resting_speed;
+    /// The surface that the particle is pressed onto most, when all its rebounds are so slow that the cascade of
+    /// bounces becomes contact; null when it flies on.
+    const ContactSurface* support_of(const Flight& flight, const Contact& contact, const Vec3& arriving) const {
+        if (remaining_ <= 0.0) return nullptr;
+        const Vec3 a = acceleration_now(flight);
+        const ContactSurface* support = nullptr;
+        double hardest = 0.0;
+        for (const ContactSurface& surface : contact.all()) {
+            const double restitution = material_of(surface.surface).restitution;
+            const double pressing = std::max(0.0, -dot(a, surface.normal));
+            // What the step's own kick put into the velocity is not the speed of an impact.
+            const double approach = -dot(arriving, surface.normal) - pressing * flight.kick_duration;
+            const double slowest = restitution < 1.0 ? rules_.settings_.resting_speed : 0.0;
+            if (approach > 0.0 && restitution * approach >= slowest) return nullptr;
+            if (restitution >= 1.0 || pressing <= hardest) continue;
+            hardest = pressing;
+            support = &surface;
+        }
+        return support;
     }
 
     Vec3 acceleration_now(const Flight& flight) const {
@@ -149,22 +172,22 @@ private:
     }
 
     /// Slides or rests until the step ends, the surface ends, or something else is met.
-    std::optional<Contact> stay_in_contact(const Flight& flight, const Contact& contact, const Vec3& arriving) {
-        const SurfaceId support = contact.first().surface;
-        const double friction = material_of(support).friction;
-        land(arriving, friction, support);
+    std::optional<Contact> stay_in_contact(const Flight& flight, const ContactSurface& support, const Vec3& arriving) {
+        const double friction = material_of(support.surface).friction;
+        land(arriving, friction, support.surface);
         const std::span<const Vec3> normals{touched_normals_.data(), static_cast<std::size_t>(touched_count_)};
         for (int stretch = 0; stretch < kMostSlides && remaining_ > 0.0; ++stretch) {
             const Vec3 a = flight.kick_duration > 0.0 ? Vec3{} : rules_.forces_.acceleration(state_);
+            if (dot(a, support.normal) > 0.0) return std::nullopt;  // nothing presses any more
             const double grip = flight.kick_duration > 0.0 ? 0.0 : friction;
             const Slide slide = plan_slide(state_.velocity, a, normals, grip, remaining_);
             if (slide.at_rest) {
-                rest(support, a);
+                rest(support.surface, a);
                 return std::nullopt;
             }
-            Flight sliding = sliding_flight(slide, contact.first(), support);
+            const Flight sliding = sliding_flight(slide, support);
             if (sliding.path.duration <= 0.0) return std::nullopt;
-            push(support, sliding.path.duration * (slide.acceleration - a), false);
+            push(support.surface, sliding.path.duration * (slide.acceleration - a), false);
             if (auto next = follow(sliding)) return next;
             if (sliding.path.duration < slide.duration) return std::nullopt;  // the surface ended
             if (slide.stops) drop_heading(slide.velocity);
@@ -192,15 +215,15 @@ private:
     }
 
     /// The path of a slide, up to where the supporting surface ends; its end keeps the parking gap.
-    Flight sliding_flight(const Slide& slide, const ContactSurface& contact, SurfaceId support) const {
+    Flight sliding_flight(const Slide& slide, const ContactSurface& support) const {
         Path path = parabola_path(state_.position, slide.velocity, slide.acceleration, slide.duration);
         if (!can_be_followed(path)) return {path, slide.acceleration, 0.0};
         const double slack = kTouchingGaps * parking_gap(state_.position);
-        const double over = rules_.world_.time_over(support, path, slack);
+        const double over = rules_.world_.time_over(support.surface, path, slack);
         if (over < slide.duration) path = parabola_path(state_.position, slide.velocity, slide.acceleration, over);
-        const double side = dot(contact.normal, rules_.world_.unit_normal_of(support)) < 0.0 ? -1.0 : 1.0;
-        const double height = side * rules_.world_.signed_distance_from(support, path.end);
-        path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * contact.normal);
+        const double side = dot(support.normal, rules_.world_.unit_normal_of(support.surface)) < 0.0 ? -1.0 : 1.0;
+        const double height = side * rules_.world_.signed_distance_from(support.surface, path.end);
+        path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * support.normal);
         return {path, slide.acceleration, 0.0};
     }
 

@@ -1,0 +1,125 @@
+// Nothing leaks: particles that start inside a closed mesh end inside it, by an exact parity test that shares nothing
+// with the library; and the legs they travel meet no triangle, by exact rational arithmetic, open meshes included.
+//
+// RICOCHET_LONG: the same claims with ten thousand particles and a thousand steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "claims/billiard.h"
+#include "support/counts.h"
+#include "support/shared_meshes.h"
+
+namespace ricochet::testing {
+namespace {
+
+#ifdef RICOCHET_LONG
+constexpr bool kLong = true;
+#else
+constexpr bool kLong = false;
+#endif
+
+/// How much is done in one place of the world: the first two get the long test's full number.
+struct Amount {
+    int particles;
+    int steps;
+};
+Amount amount(const std::string& mesh, std::size_t placement) {
+    // The largest mesh takes its time to load; there is no need to repeat everything on it by default.
+    if (!kLong) return {test::scaled(mesh == "armadillo.obj" && placement > 1 ? 20 : 60), 50};
+    return {placement < 2 ? test::scaled(10000) : test::scaled(1000), 1000};
+}
+
+class Containment : public ::testing::TestWithParam<std::string> {
+protected:
+    /// Calls run(billiard, amount) for every hard placement of the mesh.
+    template <class Run>
+    void everywhere(Run&& run) {
+        const auto mesh = mesh_by_name(GetParam());
+        if (!mesh) GTEST_SKIP() << missing_mesh_sentence(GetParam());
+        const auto placements = hard_placements(mesh->mesh);
+        for (std::size_t k = 0; k < placements.size(); ++k) {
+            SCOPED_TRACE(mesh->name + ", " + placements[k].name);
+            run(Billiard(*mesh, placements[k].placement), amount(mesh->name, k));
+        }
+    }
+};
+
+using ClosedMesh = Containment;
+using MessyMesh = Containment;  // open, non-manifold, crossing itself
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+    std::string name = info.param.substr(0, info.param.find('.'));
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Made, ClosedMesh, ::testing::Values("box", "sphere", "flat", "star", "shell", "wedge"),
+                         test_name);
+INSTANTIATE_TEST_SUITE_P(Real, ClosedMesh,
+                         ::testing::Values("bunny-closed.off", "armadillo.obj", "spot.obj", "fandisk.obj",
+                                           "quadknot.obj", "ADIS16480.stl", "self_intersectA.obj"),
+                         test_name);
+INSTANTIATE_TEST_SUITE_P(Real, MessyMesh,
+                         ::testing::Values("stanford-bunny.obj", "teapot.obj", "featuretype.stl", "cycloidal.ply"),
+                         test_name);
+
+TEST_P(ClosedMesh, HoldsWhatFliesStraight) {
+    everywhere([](const Billiard& billiard, const Amount& n) {
+        ASSERT_TRUE(billiard.is_closed());
+        const BilliardTally tally = billiard.fly(n.particles, n.steps, 1.5, 0.0, IntegratorKind::ballistic, 1);
+        EXPECT_EQ(tally.not_inside, 0U);
+        EXPECT_GT(tally.contacts, 0U);
+    });
+}
+
+TEST_P(ClosedMesh, HoldsWhatFallsOnParabolas) {
+    everywhere([](const Billiard& billiard, const Amount& n) {
+        const BilliardTally tally =
+            billiard.fly(std::max(1, n.particles / 4), n.steps, 1.5, 0.5, IntegratorKind::ballistic, 2);
+        EXPECT_EQ(tally.not_inside, 0U);
+        EXPECT_GT(tally.contacts, 0U);
+    });
+}
+
+TEST_P(ClosedMesh, HoldsWhatFallsInStraightPieces) {
+    everywhere([](const Billiard& billiard, const Amount& n) {
+        const BilliardTally tally =
+            billiard.fly(std::max(1, n.particles / 4), n.steps, 1.5, 0.5, IntegratorKind::symplectic_euler, 3);
+        EXPECT_EQ(tally.not_inside, 0U);
+        EXPECT_GT(tally.contacts, 0U);
+    });
+}
+
+TEST_P(ClosedMesh, HoldsWhatIsAimedAtItsVerticesAndEdges) {
+    everywhere([](const Billiard& billiard, const Amount& n) {
+        const int check_every = std::max(1, n.particles * n.steps / 20);
+        const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 4);
+        EXPECT_EQ(tally.not_inside, 0U);
+        EXPECT_GT(tally.contacts, 0U);
+        EXPECT_EQ(tally.crossing_legs, 0U) << "of " << tally.checked_legs;
+    });
+}
+
+TEST_P(MessyMesh, IsNotCrossedByAnyLeg) {
+    everywhere([](const Billiard& billiard, const Amount& n) {
+        const int check_every = std::max(1, n.particles * n.steps / 40);
+        const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 5);
+        EXPECT_GT(tally.contacts, 0U);
+        EXPECT_GT(tally.checked_legs, 0U);
+        EXPECT_EQ(tally.crossing_legs, 0U);
+    });
+}
+
+// The reference must be able to tell: a leg through a wall is seen, one beside it is not.
+TEST(LegOracle, TellsALegThroughAWallFromOneBesideIt) {
+    const NamedMesh box = made_meshes().front();
+    const Billiard billiard(box, {});
+    const Vec3 inside = billiard.start_points(1, 1).front();
+    EXPECT_TRUE(oracle_meets(billiard.mesh(), inside, inside + Vec3{100, 0, 0}));
+    EXPECT_FALSE(oracle_meets(billiard.mesh(), inside, inside + Vec3{1e-12, 0, 0}));
+}
+
+}  // namespace
+}  // namespace ricochet::testing

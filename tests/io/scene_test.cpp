@@ -533,21 +533,24 @@ TEST(SceneFile, RefusesWhatIsNoSceneFile) {
     EXPECT_NE(message(huge).find("expected at most 67108864"), std::string::npos);
 }
 
+// Large meshes are generated on demand (meshes/README.md), so they may be missing here.
+bool is_about_a_generated_mesh(const std::string& line) {
+    return line.find("there is no file") != std::string::npos && line.find("/meshes/generated/") != std::string::npos;
+}
+
 TEST(SceneFile, EverySceneOfTheRepositoryIsReadWithoutAWarning) {
     int scenes = 0;
-    const std::filesystem::path folder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "scenes";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "there are no scenes";
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/scenes")) {
         if (entry.path().extension() != ".json") continue;
         SCOPED_TRACE(entry.path().string());
         try {
             EXPECT_EQ(read_scene(entry.path()).warnings, Lines{});
         } catch (const SceneError& error) {
-            for (const std::string& line : error.messages()) ADD_FAILURE() << line;
+            for (const std::string& line : error.messages()) EXPECT_TRUE(is_about_a_generated_mesh(line)) << line;
         }
         ++scenes;
     }
-    if (scenes == 0) GTEST_SKIP() << "there are no scenes";
+    EXPECT_GE(scenes, 6);
 }
 
 }  // namespace

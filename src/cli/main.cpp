@@ -12,6 +12,7 @@
 
 #include "cli/check_command.h"
 #include "cli/info_command.h"
+#include "cli/render_command.h"
 #include "cli/schema_command.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -34,6 +35,7 @@ const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
         add_check_command,
         add_info_command,
+        add_render_command,
         add_schema_command,
     };
     return list;

@@ -47,11 +47,11 @@ constexpr std::array kDoors = {
     Door{"nlohmann/", "src/(ricochet/io|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
-    Door{"stb/", "src/ricochet/render/image\\.cpp"},
+    Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"boost/", "tests/.*"},
-    Door{"(unistd|fcntl|signal)\\.h|sys/", ".*\\.cpp|tests/.*"},
+    Door{"(unistd|fcntl|signal|spawn)\\.h|sys/", ".*\\.cpp|tests/.*"},
 };
 
 bool matches(const std::string& text, const std::string& pattern) {

@@ -57,4 +57,10 @@ void AtomicFile::commit() {
     if (closed != 0) fail(target_, "close");
 }
 
+void write_file(const std::filesystem::path& target, std::string_view bytes) {
+    AtomicFile file(target);
+    file.write(bytes);
+    file.commit();
+}
+
 }  // namespace ricochet

@@ -29,4 +29,7 @@ private:
     std::FILE* file_ = nullptr;
 };
 
+/// Writes a whole file in one go; throws like AtomicFile.
+void write_file(const std::filesystem::path& target, std::string_view bytes);
+
 }  // namespace ricochet

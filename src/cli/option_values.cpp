@@ -1,0 +1,53 @@
+#include "cli/option_values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet::cli {
+namespace {
+
+template <typename Number>
+std::optional<Number> parse_all(std::string_view text) {
+    Number value{};
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+}  // namespace
+
+std::vector<double> parse_number_list(const std::string& option, const std::string& text) {
+    std::vector<double> numbers;
+    std::string_view rest = text;
+    while (true) {
+        const std::size_t comma = rest.find(',');
+        const auto value = parse_all<double>(rest.substr(0, comma));
+        if (!value || !std::isfinite(*value)) {
+            throw InputError(fmt::format("{} {}: expected numbers with commas between them", option, text));
+        }
+        numbers.push_back(*value);
+        if (comma == std::string_view::npos) return numbers;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+PictureSize parse_picture_size(const std::string& text) {
+    constexpr int kLargest = 16384;
+    const std::size_t cross = text.find('x');
+    if (cross != std::string::npos) {
+        const auto width = parse_all<int>(std::string_view(text).substr(0, cross));
+        const auto height = parse_all<int>(std::string_view(text).substr(cross + 1));
+        if (width && height && *width >= 1 && *height >= 1 && *width <= kLargest && *height <= kLargest) {
+            return {*width, *height};
+        }
+    }
+    throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each from 1 to {}", text, kLargest));
+}
+
+}  // namespace ricochet::cli

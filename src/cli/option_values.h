@@ -1,0 +1,19 @@
+// Values of options that are more than one number.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ricochet::cli {
+
+/// The numbers of a comma-separated list. Throws InputError, naming the option, when one is no finite number.
+[[nodiscard]] std::vector<double> parse_number_list(const std::string& option, const std::string& text);
+
+struct PictureSize {
+    int width = 0;
+    int height = 0;
+};
+/// WIDTHxHEIGHT, each 1..16384. Throws InputError.
+[[nodiscard]] PictureSize parse_picture_size(const std::string& text);
+
+}  // namespace ricochet::cli

@@ -1,0 +1,176 @@
+#include "cli/run_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/io/vtk_reader.h"
+
+namespace ricochet::cli {
+namespace {
+
+constexpr std::size_t kSurveyedFrames = 12;
+constexpr const char* kSpeed = "speed";
+
+// Muted earth and stone, so that the particles' colours stand out.
+constexpr std::array<Vec3, 6> kColliderColors = {{{0.24, 0.21, 0.18},
+                                                  {0.20, 0.22, 0.25},
+                                                  {0.28, 0.23, 0.16},
+                                                  {0.18, 0.21, 0.19},
+                                                  {0.26, 0.19, 0.16},
+                                                  {0.24, 0.26, 0.29}}};
+constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
+constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
+
+std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
+    if (frames.size() <= kSurveyedFrames) return frames;
+    std::vector<FrameFile> sample;
+    for (std::size_t i = 0; i < kSurveyedFrames; ++i) {
+        sample.push_back(frames[i * (frames.size() - 1) / (kSurveyedFrames - 1)]);
+    }
+    return sample;
+}
+
+std::string known_arrays(const VtkPolyData& frame) {
+    std::string names = kSpeed;
+    for (const VtkArray& array : frame.point_arrays) names += ", " + array.name;
+    return names;
+}
+
+Vec3 vec3_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
+
+// Counts span orders of magnitude: they are shown by their logarithm.
+std::vector<Vec3> hit_colors(const VtkPolyData& collider, ColorMap map) {
+    const VtkArray* hits = find_array(collider.cell_arrays, "hits");
+    if (hits == nullptr) return {};
+    std::vector<double> values = scalar_values(*hits);
+    double largest = 1.0;
+    for (double& value : values) {
+        value = std::log1p(value);
+        largest = std::max(largest, value);
+    }
+    std::vector<Vec3> colors;
+    colors.reserve(values.size());
+    for (const double value : values) colors.push_back(map_color(map, value / largest));
+    return colors;
+}
+
+std::string collider_name(const RunInfo& info, const std::filesystem::path& file) {
+    for (const ColliderInfo& collider : info.colliders) {
+        if (collider.file == file.filename().string()) return collider.name;
+    }
+    return file.stem().string();
+}
+
+void check_hidden(const PictureStyle& style, const RunFolder& folder) {
+    for (const std::string& name : style.hidden) {
+        std::string known;
+        bool found = false;
+        for (const auto& file : folder.colliders) {
+            const std::string other = collider_name(folder.info, file);
+            known += (known.empty() ? "" : ", ") + other;
+            found = found || other == name;
+        }
+        if (!found) throw InputError(fmt::format("--hide {}: no such collider in the run; it has: {}", name, known));
+    }
+}
+
+}  // namespace
+
+RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style,
+                         double aspect)
+    : style_(std::move(style)) {
+    check_hidden(style_, folder);
+    survey(chosen);
+    load_colliders(folder);
+    choose_camera(folder, aspect);
+    preview_.emplace(std::move(meshes_), planes_, camera_.target);
+}
+
+void RunPictures::survey(const std::vector<FrameFile>& chosen) {
+    std::vector<double> values;
+    for (const FrameFile& file : spread_sample(chosen)) {
+        const VtkPolyData frame = read_vtp(file.path);
+        const std::vector<double> here = shown_values(frame, file);
+        values.insert(values.end(), here.begin(), here.end());
+        subject_.particles.insert(subject_.particles.end(), frame.points.begin(), frame.points.end());
+        most_particles_ = std::max(most_particles_, frame.points.size());
+    }
+    range_ = style_.range ? *style_.range : robust_range(std::move(values));
+    if (!style_.range && style_.color_by == kSpeed) range_.low = 0.0;
+}
+
+void RunPictures::load_colliders(const RunFolder& folder) {
+    for (std::size_t i = 0; i < folder.colliders.size(); ++i) {
+        const std::string name = collider_name(folder.info, folder.colliders[i]);
+        if (std::find(style_.hidden.begin(), style_.hidden.end(), name) != style_.hidden.end()) continue;
+        VtkPolyData data = read_vtp(folder.colliders[i]);
+        const std::vector<double>* point = find_field(data, "plane_point");
+        const std::vector<double>* normal = find_field(data, "plane_normal");
+        if (point != nullptr && normal != nullptr && point->size() == 3 && normal->size() == 3) {
+            planes_.push_back({vec3_of(*point), normalized(vec3_of(*normal)), kPlaneColor});
+            continue;
+        }
+        subject_.colliders.insert(subject_.colliders.end(), data.points.begin(), data.points.end());
+        std::vector<Vec3> colors = style_.collider_hits ? hit_colors(data, ColorMap::viridis) : std::vector<Vec3>{};
+        meshes_.push_back({{std::move(data.points), std::move(data.triangles)},
+                           kColliderColors[i % kColliderColors.size()],
+                           std::move(colors)});
+    }
+}
+
+void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
+    const Vec3 up = style_.up ? *style_.up : folder.info.up;
+    if (style_.camera) {
+        camera_ = *style_.camera;
+        camera_.up = up;
+    } else if (folder.info.camera) {
+        camera_ = {folder.info.camera->position, folder.info.camera->target, up, folder.info.camera->fov_degrees};
+    } else {
+        camera_ = automatic_camera(subject_, up, aspect);
+    }
+    subject_ = {};
+}
+
+std::vector<double> RunPictures::shown_values(const VtkPolyData& frame, const FrameFile& file) const {
+    const bool speed = style_.color_by == kSpeed;
+    const VtkArray* array = find_array(frame.point_arrays, speed ? "velocity" : style_.color_by);
+    if (array == nullptr) {
+        throw InputError(fmt::format("{}: no array named {}; known arrays: {}", file.path.string(), style_.color_by,
+                                     known_arrays(frame)));
+    }
+    return scalar_values(*array);
+}
+
+PreviewSpheres RunPictures::spheres(const VtkPolyData& frame, const FrameFile& file) const {
+    const std::vector<double> values = shown_values(frame, file);
+    const VtkArray* own = find_array(frame.point_arrays, "radius");
+    const std::vector<double> radii =
+        own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
+    // Points have no size: they get one that can be seen, the smaller the more there are.
+    const double view =
+        std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
+    const double count = std::max(1.0, static_cast<double>(most_particles_));
+    const double visible = view * std::clamp(0.7 / std::sqrt(count), 0.0024, 0.02);
+    PreviewSpheres spheres;
+    spheres.centers = frame.points;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double radius = style_.particle_radius ? *style_.particle_radius : radii[i];
+        spheres.radii.push_back(radius > 0.0 ? radius : visible);
+        spheres.colors.push_back(kParticleAlbedo *
+                                 map_color(style_.map, (values[i] - range_.low) / (range_.high - range_.low)));
+    }
+    return spheres;
+}
+
+Image RunPictures::picture(const FrameFile& frame, const PictureOptions& options) {
+    preview_->set_spheres(spheres(read_vtp(frame.path), frame));
+    return render_picture(*preview_, camera_, options);
+}
+
+}  // namespace ricochet::cli

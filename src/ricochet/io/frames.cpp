@@ -1,0 +1,72 @@
+#include "ricochet/io/frames.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+template <typename T>
+std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+    std::vector<T> sorted;
+    sorted.reserve(order.size());
+    for (const std::uint32_t i : order) sorted.push_back(values[i]);
+    return sorted;
+}
+
+std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
+
+std::vector<VtkArray> total_arrays(std::vector<std::uint64_t> hits, std::vector<Vec3> impulse) {
+    return {{"hits", as_signed(hits)}, {"impulse", std::move(impulse)}};
+}
+
+}  // namespace
+
+VtkPolyData particle_frame(const Particles& particles, double time) {
+    const std::vector<std::uint32_t> order = particles.order_by_id();
+    std::vector<double> age = gathered(particles.birth_time, order);
+    for (double& value : age) value = time - value;
+    VtkPolyData frame;
+    frame.time = time;
+    frame.points = gathered(particles.position, order);
+    frame.point_arrays = {{"id", as_signed(gathered(particles.id, order))},
+                          {"velocity", gathered(particles.velocity, order)},
+                          {"mass", gathered(particles.mass, order)},
+                          {"radius", gathered(particles.radius, order)},
+                          {"age", std::move(age)},
+                          {"contacts", gathered(particles.contacts, order)},
+                          {"resting", gathered(particles.resting, order)},
+                          {"unsimulated_time", gathered(particles.unsimulated_time, order)}};
+    return frame;
+}
+
+VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time) {
+    VtkPolyData frame;
+    frame.time = time;
+    frame.points = mesh.vertices;
+    frame.triangles = mesh.triangles;
+    frame.cell_arrays = total_arrays(totals.hits, totals.impulse);
+    return frame;
+}
+
+VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, const TriangleTotals& totals,
+                                 double time) {
+    const Vec3 normal = normalized(plane.normal);
+    const Vec3 center = region.empty() ? plane.point : region.center();
+    const Vec3 foot = center - dot(center - plane.point, normal) * normal;
+    const double half = std::max(1.0, 2.0 * region.diagonal());
+    const auto [u, v] = tangent_frame(normal);
+    VtkPolyData frame;
+    frame.time = time;
+    frame.fields = {{"plane_point", {foot.x, foot.y, foot.z}}, {"plane_normal", {normal.x, normal.y, normal.z}}};
+    frame.points = {foot - half * u - half * v, foot + half * u - half * v, foot + half * u + half * v,
+                    foot - half * u + half * v};
+    frame.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const std::uint64_t hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
+    const Vec3 impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
+    frame.cell_arrays = total_arrays({hits, hits}, {impulse, impulse});
+    return frame;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,26 @@
+/// \file
+/// What a run's frames hold: particles and colliders as VTK data.
+#pragma once
+
+#include "ricochet/collision/collider.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/io/vtk.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// The particles at a time, in the order of their ids, with the arrays id, velocity, mass, radius, age, contacts,
+/// resting and unsimulated_time.
+[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time);
+
+/// A mesh in world coordinates with the cell arrays hits and impulse (N s).
+[[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);
+
+/// A plane as a square of two triangles around the foot point of the region's centre, its edge four times the region's
+/// diagonal (at least 2 m), with the fields plane_point and plane_normal (of unit length). Both triangles carry the
+/// plane's totals.
+[[nodiscard]] VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region,
+                                               const TriangleTotals& totals, double time);
+
+}  // namespace ricochet

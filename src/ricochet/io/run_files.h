@@ -1,0 +1,31 @@
+/// \file
+/// The names of the files that a run writes into its output folder.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ricochet {
+
+inline constexpr const char* kRunMarkerFile = ".ricochet-run";  ///< says that the folder is a run's own
+inline constexpr const char* kRunInfoFile = "run.json";         ///< what is being run; written at the start
+inline constexpr const char* kSummaryFile = "summary.json";     ///< what came out; written at the end
+inline constexpr const char* kParticleSeriesFile = "particles.pvd";
+inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
+
+/// particles_NNNNNN.vtp; the number is the step.
+[[nodiscard]] std::string frame_file_name(std::uint64_t step);
+/// The step of a frame file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_frame_file(std::string_view name);
+
+/// collider_NN_name.vtp; characters other than letters, digits, '-' and '_' become '_'.
+[[nodiscard]] std::string collider_file_name(std::size_t index, std::string_view name);
+/// The index in a collider file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::size_t> index_of_collider_file(std::string_view name);
+
+/// True for every name that a run may give to a file in its folder, unfinished ones included; not for the marker.
+[[nodiscard]] bool is_run_file(std::string_view name);
+
+}  // namespace ricochet

@@ -1,0 +1,42 @@
+/// \file
+/// run.json: what a run is about, written before its first step so that pictures can be made of an unfinished run too.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// Where a picture is taken from.
+struct CameraInfo {
+    Vec3 position;              ///< m
+    Vec3 target;                ///< m
+    double fov_degrees = 35.0;  ///< vertical field of view
+};
+
+/// One collider of the run.
+struct ColliderInfo {
+    std::string name;
+    std::string type;      ///< "mesh" or "plane"
+    std::string file;      ///< its file in the run's folder
+    std::string material;  ///< name of its material
+};
+
+/// Everything that run.json says.
+struct RunInfo {
+    std::string version;  ///< of ricochet
+    std::string scene;    ///< the scene file as it was named
+    Vec3 up{0, 0, 1};     ///< against gravity, along the nearest axis
+    std::optional<CameraInfo> camera;
+    std::vector<ColliderInfo> colliders;
+};
+
+[[nodiscard]] std::string run_info_text(const RunInfo& info);
+/// Reads run.json. Throws InputError when it is not one.
+[[nodiscard]] RunInfo read_run_info(const std::filesystem::path& path);
+
+}  // namespace ricochet

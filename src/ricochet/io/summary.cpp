@@ -1,0 +1,63 @@
+#include "ricochet/io/summary.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ricochet/core/hash.h"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const ColliderSummary& collider) {
+    return {{"name", collider.name}, {"type", collider.type},
+            {"file", collider.file}, {"triangles", collider.triangles},
+            {"hits", collider.hits}, {"impulse", {collider.impulse.x, collider.impulse.y, collider.impulse.z}}};
+}
+
+void add_statistics(Json& json, const SimulationStatistics& statistics) {
+    json["particles_emitted"] = statistics.emitted;
+    json["expired"] = statistics.expired;
+    json["out_of_bounds"] = statistics.out_of_bounds;
+    json["frozen"] = statistics.frozen;
+    json["particle_steps"] = statistics.particle_steps;
+    json["contacts"] = statistics.contacts;
+    json["bounces_per_step_max"] = statistics.bounces_per_step_max;
+    json["resting"] = statistics.resting;
+    json["unsimulated_time"] = statistics.unsimulated_time;
+    json["budget_exhausted"] = statistics.budget_exhausted;
+    json["started_inside"] = statistics.started_inside;
+    json["stayed"] = statistics.stayed;
+    json["leaks"] = nullptr;  // known only to a run that verifies itself
+}
+
+}  // namespace
+
+std::string summary_text(const RunSummary& summary) {
+    Json json;
+    json["version"] = summary.version;
+    json["scene"] = summary.scene;
+    json["threads"] = summary.threads;
+    json["seed"] = summary.seed;
+    json["time_step"] = summary.time_step;
+    json["steps"] = summary.statistics.steps;
+    json["frames"] = summary.frames;
+    json["simulated_time"] = summary.simulated_time;
+    json["wall_seconds"] = summary.wall_seconds;
+    json["interrupted"] = summary.interrupted;
+    json["particles_alive"] = summary.particles_alive;
+    add_statistics(json, summary.statistics);
+    json["kinetic_energy"] = summary.kinetic_energy;
+    json["potential_energy"] = summary.potential_energy ? Json(*summary.potential_energy) : Json(nullptr);
+    json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
+    json["state_hash_algorithm"] = StateHash::kName;
+    json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["colliders"] = Json::array();
+    for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
+    // Names come from files and may hold bytes that are no UTF-8: they are replaced, never a reason to lose the run.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace ricochet

@@ -1,0 +1,231 @@
+#include "ricochet/io/vtk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <type_traits>
+
+#include "ricochet/core/atomic_file.h"
+
+namespace ricochet {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the files are written as the memory stands: little endian");
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+
+template <typename T>
+std::string_view bytes_of(const std::vector<T>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::string_view bytes_of(const VtkValues& values) {
+    return std::visit([](const auto& v) { return bytes_of(v); }, values);
+}
+
+struct TypeName {
+    const char* operator()(const std::vector<double>&) const { return "Float64"; }
+    const char* operator()(const std::vector<Vec3>&) const { return "Float64"; }
+    const char* operator()(const std::vector<std::int64_t>&) const { return "Int64"; }
+    const char* operator()(const std::vector<std::uint32_t>&) const { return "UInt32"; }
+    const char* operator()(const std::vector<std::uint8_t>&) const { return "UInt8"; }
+};
+
+std::string escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+// Lays out the header text and remembers which bytes follow it.
+class Layout {
+public:
+    void text(std::string_view line) { header_ += line; }
+
+    void block(std::string_view type, std::string_view name, int components, std::string_view bytes) {
+        header_ +=
+            fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)",
+                        type, escaped(name), components, offset_);
+        header_ += '\n';
+        blocks_.push_back(bytes);
+        offset_ += sizeof(std::uint64_t) + bytes.size();
+    }
+
+    void array(const VtkArray& array) {
+        block(std::visit(TypeName{}, array.values), array.name,
+              std::holds_alternative<std::vector<Vec3>>(array.values) ? 3 : 1, bytes_of(array.values));
+    }
+
+    std::uint64_t write(AtomicFile& file) const {
+        file.write(header_);
+        for (const std::string_view bytes : blocks_) {
+            const std::uint64_t size = bytes.size();
+            file.write({reinterpret_cast<const char*>(&size), sizeof size});
+            file.write(bytes);
+        }
+        constexpr std::string_view kEnd = "\n</AppendedData>\n</VTKFile>\n";
+        file.write(kEnd);
+        return header_.size() + offset_ + kEnd.size();
+    }
+
+private:
+    std::string header_;
+    std::vector<std::string_view> blocks_;
+    std::uint64_t offset_ = 0;
+};
+
+// Connectivity and offsets of the cells, kept alive until they are written.
+struct Cells {
+    std::vector<std::int32_t> narrow_corners, narrow_offsets;
+    std::vector<std::int64_t> wide_corners, wide_offsets;
+};
+
+template <typename Index>
+void fill_cells(const VtkPolyData& data, std::vector<Index>& corners, std::vector<Index>& offsets) {
+    if (data.triangles.empty()) {
+        corners.resize(data.points.size());
+        std::iota(corners.begin(), corners.end(), Index{0});
+        if (!corners.empty()) offsets.push_back(static_cast<Index>(corners.size()));
+        return;
+    }
+    corners.reserve(3 * data.triangles.size());
+    offsets.reserve(data.triangles.size());
+    for (const Triangle& triangle : data.triangles) {
+        for (const std::uint32_t corner : triangle) corners.push_back(static_cast<Index>(corner));
+        offsets.push_back(static_cast<Index>(corners.size()));
+    }
+}
+
+Cells make_cells(const VtkPolyData& data, VtkIndexWidth width) {
+    Cells cells;
+    const std::size_t largest = std::max(data.points.size(), 3 * data.triangles.size());
+    if (width == VtkIndexWidth::bits64 || largest > std::numeric_limits<std::int32_t>::max()) {
+        fill_cells(data, cells.wide_corners, cells.wide_offsets);
+    } else {
+        fill_cells(data, cells.narrow_corners, cells.narrow_offsets);
+    }
+    return cells;
+}
+
+void lay_out_cells(Layout& layout, const Cells& cells) {
+    if (!cells.wide_corners.empty()) {
+        layout.block("Int64", "connectivity", 1, bytes_of(cells.wide_corners));
+        layout.block("Int64", "offsets", 1, bytes_of(cells.wide_offsets));
+    } else {
+        layout.block("Int32", "connectivity", 1, bytes_of(cells.narrow_corners));
+        layout.block("Int32", "offsets", 1, bytes_of(cells.narrow_offsets));
+    }
+}
+
+void lay_out_fields(Layout& layout, const VtkPolyData& data) {
+    const auto field = [&](std::string_view name, std::span<const double> values) {
+        layout.text(
+            fmt::format(R"(<DataArray type="Float64" Name="{}" NumberOfTuples="{}" format="ascii">{:.17g}</DataArray>)",
+                        escaped(name), values.size(), fmt::join(values, " ")));
+        layout.text("\n");
+    };
+    layout.text("<FieldData>\n");
+    field("TimeValue", {&data.time, 1});
+    for (const VtkField& entry : data.fields) field(entry.name, entry.values);
+    layout.text("</FieldData>\n");
+}
+
+Layout lay_out(const VtkPolyData& data, const Cells& cells) {
+    const std::size_t vertex_cells = data.triangles.empty() && !data.points.empty() ? 1 : 0;
+    Layout layout;
+    layout.text(
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "<PolyData>\n");
+    lay_out_fields(layout, data);
+    layout.text(
+        fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
+                    "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n<PointData>\n",
+                    data.points.size(), vertex_cells, data.triangles.size()));
+    for (const VtkArray& array : data.point_arrays) layout.array(array);
+    layout.text("</PointData>\n<CellData>\n");
+    for (const VtkArray& array : data.cell_arrays) layout.array(array);
+    layout.text("</CellData>\n<Points>\n");
+    layout.block("Float64", "Points", 3, bytes_of(data.points));
+    layout.text("</Points>\n");
+    const char* cell_kind = data.triangles.empty() ? "Verts" : "Polys";
+    layout.text(fmt::format("<{}>\n", cell_kind));
+    lay_out_cells(layout, cells);
+    layout.text(fmt::format("</{}>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", cell_kind));
+    return layout;
+}
+
+}  // namespace
+
+std::size_t VtkArray::size() const {
+    return std::visit([](const auto& v) { return v.size(); }, values);
+}
+
+std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data, VtkIndexWidth width) {
+    const Cells cells = make_cells(data, width);
+    AtomicFile file(path);
+    const std::uint64_t size = lay_out(data, cells).write(file);
+    file.commit();
+    return size;
+}
+
+std::string pvd_text(const std::vector<PvdEntry>& entries) {
+    std::string text =
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+    for (const PvdEntry& entry : entries) {
+        text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" file=\"{}\"/>\n", entry.time, entry.part,
+                            escaped(entry.file));
+    }
+    return text + "</Collection>\n</VTKFile>\n";
+}
+
+const VtkArray* find_array(const std::vector<VtkArray>& arrays, std::string_view name) {
+    const auto found =
+        std::find_if(arrays.begin(), arrays.end(), [&](const VtkArray& array) { return array.name == name; });
+    return found == arrays.end() ? nullptr : &*found;
+}
+
+const std::vector<double>* find_field(const VtkPolyData& data, std::string_view name) {
+    const auto found =
+        std::find_if(data.fields.begin(), data.fields.end(), [&](const VtkField& field) { return field.name == name; });
+    return found == data.fields.end() ? nullptr : &found->values;
+}
+
+std::vector<double> scalar_values(const VtkArray& array) {
+    const auto convert = [](const auto& values) {
+        std::vector<double> numbers;
+        numbers.reserve(values.size());
+        for (const auto& value : values) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3>) {
+                numbers.push_back(length(value));
+            } else {
+                numbers.push_back(static_cast<double>(value));
+            }
+        }
+        return numbers;
+    };
+    return std::visit(convert, array.values);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,72 @@
+/// \file
+/// VTK PolyData files (.vtp) and the series file (.pvd) that ParaView opens: raw appended data, little endian, 64-bit
+/// block headers, times with 17 significant digits. A file appears under its name only when it is complete.
+/// Source of the format: VTK File Formats, "XML File Formats", Kitware.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Values of an array, one entry a point or cell: Float64, Float64 with three components, Int64, UInt32 or UInt8.
+using VtkValues = std::variant<std::vector<double>, std::vector<Vec3>, std::vector<std::int64_t>,
+                               std::vector<std::uint32_t>, std::vector<std::uint8_t>>;
+
+/// A named array over the points or cells of a file.
+struct VtkArray {
+    std::string name;
+    VtkValues values;
+
+    [[nodiscard]] std::size_t size() const;
+};
+
+/// A few named numbers that belong to the whole file.
+struct VtkField {
+    std::string name;
+    std::vector<double> values;
+};
+
+/// What one .vtp file holds: points as one poly-vertex cell, or a triangle mesh.
+struct VtkPolyData {
+    double time = 0.0;  ///< s; stored as the field TimeValue, which ParaView takes as the file's time
+    std::vector<VtkField> fields;
+    std::vector<Vec3> points;
+    std::vector<VtkArray> point_arrays;  ///< each as long as points
+    std::vector<Triangle> triangles;     ///< empty: the points are one poly-vertex cell
+    std::vector<VtkArray> cell_arrays;   ///< each as long as triangles; none for points
+};
+
+/// Integers that list the corners of cells. Automatic: 32 bits while they can count the points.
+enum class VtkIndexWidth { automatic, bits64 };
+
+/// Writes a .vtp file. Throws RunError when the disk does not take it, InputError when the name is not one of a regular
+/// file. Returns the file's size in bytes.
+std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data,
+                        VtkIndexWidth width = VtkIndexWidth::automatic);
+
+/// One line of a series file.
+struct PvdEntry {
+    double time = 0.0;       ///< s
+    std::uint64_t part = 0;  ///< parts of one time are shown together
+    std::string file;        ///< relative to the series file
+};
+
+/// Text of a .pvd series file.
+[[nodiscard]] std::string pvd_text(const std::vector<PvdEntry>& entries);
+
+/// The array of that name; nullptr when there is none.
+[[nodiscard]] const VtkArray* find_array(const std::vector<VtkArray>& arrays, std::string_view name);
+/// The values of the field of that name; nullptr when there is none.
+[[nodiscard]] const std::vector<double>* find_field(const VtkPolyData& data, std::string_view name);
+/// The array as one number an entry: lengths for vectors.
+[[nodiscard]] std::vector<double> scalar_values(const VtkArray& array);
+
+}  // namespace ricochet

@@ -1,0 +1,361 @@
+#include "ricochet/io/vtk_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kLargestHeader = 1 << 20;
+constexpr std::string_view kFileEnd = "\n</AppendedData>\n</VTKFile>\n";
+constexpr std::string_view kDataStart = "<AppendedData encoding=\"raw\">\n_";
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+    throw InputError(fmt::format("{}: {}; expected a .vtp file as ricochet writes it", path.string(), what));
+}
+
+// The bytes of a regular file, by position.
+class FileBytes {
+public:
+    explicit FileBytes(const std::filesystem::path& path) : path_(path) {
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(path, error)) refuse(path, "not a regular file");
+        size_ = std::filesystem::file_size(path, error);
+        file_.reset(std::fopen(path.c_str(), "rb"));
+        if (error || !file_) refuse(path, fmt::format("cannot open ({})", std::strerror(errno)));
+    }
+
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+
+    void read(std::uint64_t position, void* target, std::uint64_t count) {
+        if (count == 0) return;
+        if (position > size_ || count > size_ - position ||
+            ::fseeko(file_.get(), static_cast<off_t>(position), SEEK_SET) != 0 ||
+            std::fread(target, 1, count, file_.get()) != count) {
+            refuse(path_, fmt::format("the file ends inside the {} bytes at byte {}", count, position));
+        }
+    }
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { (void)std::fclose(file); }
+    };
+    std::filesystem::path path_;
+    std::uint64_t size_ = 0;
+    std::unique_ptr<std::FILE, Close> file_;
+};
+
+struct Tag {
+    std::string name;  // with a leading slash when it closes
+    std::map<std::string, std::string, std::less<>> attributes;
+    bool closed = false;    // <name/>
+    std::string_view text;  // between this tag and the next
+};
+
+std::string unescaped(std::string_view text) {
+    constexpr std::pair<std::string_view, char> kEntities[] = {
+        {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}};
+    std::string out;
+    while (!text.empty()) {
+        const auto entity = std::find_if(std::begin(kEntities), std::end(kEntities),
+                                         [&](const auto& e) { return text.substr(0, e.first.size()) == e.first; });
+        out += entity == std::end(kEntities) ? text.front() : entity->second;
+        text.remove_prefix(entity == std::end(kEntities) ? 1 : entity->first.size());
+    }
+    return out;
+}
+
+// Cuts the header into tags.
+class Tags {
+public:
+    Tags(std::filesystem::path path, std::string_view text) : path_(std::move(path)), rest_(text) {}
+
+    std::optional<Tag> next() {
+        const std::size_t open = rest_.find('<');
+        if (open == std::string_view::npos) return std::nullopt;
+        const std::size_t close = rest_.find('>', open);
+        if (close == std::string_view::npos) refuse(path_, "a tag of the header is not closed");
+        Tag tag = parse(rest_.substr(open + 1, close - open - 1));
+        rest_.remove_prefix(close + 1);
+        tag.text = rest_.substr(0, rest_.find('<'));
+        return tag;
+    }
+
+private:
+    Tag parse(std::string_view inside) const {
+        Tag tag;
+        if (!inside.empty() && inside.back() == '/') {
+            tag.closed = true;
+            inside.remove_suffix(1);
+        }
+        tag.name = inside.substr(0, inside.find(' '));
+        inside.remove_prefix(std::min(inside.size(), tag.name.size() + 1));
+        while (!inside.empty() && inside != "?") {
+            const std::size_t equals = inside.find("=\"");
+            const std::size_t end = equals == std::string_view::npos ? equals : inside.find('"', equals + 2);
+            if (end == std::string_view::npos) refuse(path_, fmt::format("bad attribute in the tag <{}>", tag.name));
+            tag.attributes[std::string(inside.substr(0, equals))] =
+                unescaped(inside.substr(equals + 2, end - equals - 2));
+            inside.remove_prefix(std::min(inside.size(), end + 2));
+        }
+        return tag;
+    }
+
+    std::filesystem::path path_;
+    std::string_view rest_;
+};
+
+// One array's place in the file, as the header says it.
+struct ArrayHeader {
+    std::string section;
+    std::string type;
+    std::string name;
+    std::uint64_t components = 1;
+    std::uint64_t offset = 0;
+};
+
+struct Header {
+    std::uint64_t points = 0, verts = 0, polys = 0;
+    double time = 0.0;
+    std::vector<VtkField> fields;
+    std::vector<ArrayHeader> arrays;
+    std::uint64_t data_start = 0;  // first byte after the underscore
+};
+
+class HeaderParser {
+public:
+    HeaderParser(const std::filesystem::path& path, std::string_view text) : path_(path), tags_(path, text) {}
+
+    Header parse() {
+        while (const std::optional<Tag> tag = tags_.next()) take(*tag);
+        if (!has_piece_) refuse(path_, "no <Piece> in the header");
+        return std::move(header_);
+    }
+
+private:
+    void take(const Tag& tag) {
+        static constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData",
+                                                         "Points",    "Verts",     "Polys"};
+        if (tag.name.starts_with('/') || tag.name.starts_with('?') || tag.name == "PolyData") return;
+        if (tag.name == "VTKFile") {
+            expect(tag, "type", "PolyData");
+            expect(tag, "byte_order", "LittleEndian");
+            expect(tag, "header_type", "UInt64");
+        } else if (tag.name == "Piece") {
+            take_piece(tag);
+        } else if (tag.name == "DataArray") {
+            section_ == "FieldData" ? take_field(tag) : take_array(tag);
+        } else if (std::find(std::begin(kSections), std::end(kSections), tag.name) != std::end(kSections)) {
+            section_ = tag.name;
+        } else {
+            refuse(path_, fmt::format("unknown tag <{}>", tag.name));
+        }
+    }
+
+    void take_piece(const Tag& tag) {
+        if (std::exchange(has_piece_, true)) refuse(path_, "more than one <Piece>");
+        header_.points = number(tag, "NumberOfPoints");
+        header_.verts = number(tag, "NumberOfVerts");
+        header_.polys = number(tag, "NumberOfPolys");
+        if (number(tag, "NumberOfLines") != 0 || number(tag, "NumberOfStrips") != 0) {
+            refuse(path_, "lines or strips in the file");
+        }
+    }
+
+    void take_field(const Tag& tag) {
+        VtkField field{attribute(tag, "Name"), {}};
+        const char* at = tag.text.data();
+        const char* end = at + tag.text.size();
+        while (at != end) {
+            double value = 0.0;
+            const auto [stop, error] = std::from_chars(at, end, value);
+            if (error != std::errc{} || (stop != end && *stop != ' ')) {
+                refuse(path_, fmt::format("the field {} is not a list of numbers", field.name));
+            }
+            field.values.push_back(value);
+            at = stop == end ? end : stop + 1;
+        }
+        if (field.values.size() != number(tag, "NumberOfTuples")) {
+            refuse(path_, fmt::format("the field {} has {} numbers", field.name, field.values.size()));
+        }
+        if (field.name == "TimeValue") {
+            if (field.values.size() != 1) refuse(path_, "TimeValue is not one number");
+            header_.time = field.values.front();
+        } else {
+            header_.fields.push_back(std::move(field));
+        }
+    }
+
+    void take_array(const Tag& tag) {
+        expect(tag, "format", "appended");
+        header_.arrays.push_back({section_, attribute(tag, "type"), attribute(tag, "Name"),
+                                  number(tag, "NumberOfComponents"), number(tag, "offset")});
+    }
+
+    const std::string& attribute(const Tag& tag, const char* name) const {
+        const auto found = tag.attributes.find(name);
+        if (found == tag.attributes.end()) refuse(path_, fmt::format("no {} in the tag <{}>", name, tag.name));
+        return found->second;
+    }
+
+    void expect(const Tag& tag, const char* name, std::string_view value) const {
+        if (attribute(tag, name) != value) {
+            refuse(path_, fmt::format("{}=\"{}\" instead of \"{}\"", name, attribute(tag, name), value));
+        }
+    }
+
+    std::uint64_t number(const Tag& tag, const char* name) const {
+        const std::string& text = attribute(tag, name);
+        std::uint64_t value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc{} || stop != text.data() + text.size()) {
+            refuse(path_, fmt::format("{}=\"{}\" is not a count", name, text));
+        }
+        return value;
+    }
+
+    std::filesystem::path path_;
+    Tags tags_;
+    Header header_;
+    std::string section_;
+    bool has_piece_ = false;
+};
+
+Header read_header(const std::filesystem::path& path, FileBytes& file) {
+    std::string text(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kLargestHeader)), '\0');
+    file.read(0, text.data(), text.size());
+    const std::size_t end = text.find(kDataStart);
+    if (end == std::string::npos) refuse(path, "no raw appended data");
+    text.resize(end);
+    std::string tail(kFileEnd.size(), '\0');
+    file.read(file.size() - tail.size(), tail.data(), tail.size());
+    if (tail != kFileEnd) refuse(path, "the end of the file is missing");
+    if (text.find("<VTKFile ") == std::string::npos) refuse(path, "no <VTKFile>");
+    Header header = HeaderParser(path, text).parse();
+    header.data_start = end + kDataStart.size();
+    return header;
+}
+
+// Reads the blocks that a header announces.
+class BlockReader {
+public:
+    BlockReader(std::filesystem::path path, FileBytes& file, std::uint64_t data_start)
+        : path_(std::move(path)), file_(file), data_start_(data_start) {}
+
+    template <typename T>
+    std::vector<T> read(const ArrayHeader& array, std::uint64_t count) {
+        const std::uint64_t place = data_start_ + array.offset;
+        std::uint64_t bytes = 0;
+        if (array.offset > file_.size()) refuse(path_, fmt::format("array {} starts past the end", array.name));
+        file_.read(place, &bytes, sizeof bytes);
+        if (bytes % sizeof(T) != 0 || bytes / sizeof(T) != count) {
+            refuse(path_, fmt::format("array {} has {} bytes at byte {}, not {} entries of {}", array.name, bytes,
+                                      place, count, sizeof(T)));
+        }
+        if (bytes > file_.size() - place - sizeof bytes) {
+            refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, place));
+        }
+        std::vector<T> values(static_cast<std::size_t>(count));
+        file_.read(place + sizeof bytes, values.data(), bytes);
+        return values;
+    }
+
+    VtkArray array(const ArrayHeader& array, std::uint64_t count) {
+        if (array.components == 3 && array.type == "Float64") return {array.name, read<Vec3>(array, count)};
+        if (array.components == 1) {
+            if (array.type == "Float64") return {array.name, read<double>(array, count)};
+            if (array.type == "Int64") return {array.name, read<std::int64_t>(array, count)};
+            if (array.type == "UInt32") return {array.name, read<std::uint32_t>(array, count)};
+            if (array.type == "UInt8") return {array.name, read<std::uint8_t>(array, count)};
+        }
+        refuse(path_, fmt::format("array {} has type {} and {} components", array.name, array.type, array.components));
+    }
+
+    /// Integers that name points or ends of cells.
+    std::vector<std::int64_t> indices(const ArrayHeader& array, std::uint64_t count) {
+        if (array.type == "Int64") return read<std::int64_t>(array, count);
+        if (array.type != "Int32") refuse(path_, fmt::format("{} has type {}", array.name, array.type));
+        const std::vector<std::int32_t> narrow = read<std::int32_t>(array, count);
+        return {narrow.begin(), narrow.end()};
+    }
+
+private:
+    std::filesystem::path path_;
+    FileBytes& file_;
+    std::uint64_t data_start_;
+};
+
+const ArrayHeader& only_array(const std::filesystem::path& path, const Header& header, std::string_view section,
+                              std::string_view name) {
+    const auto found = std::find_if(header.arrays.begin(), header.arrays.end(), [&](const ArrayHeader& array) {
+        return array.section == section && array.name == name;
+    });
+    if (found == header.arrays.end()) refuse(path, fmt::format("no array {} in <{}>", name, section));
+    return *found;
+}
+
+std::vector<Triangle> read_triangles(const std::filesystem::path& path, const Header& header, BlockReader& blocks) {
+    if (header.polys == 0) return {};
+    if (header.polys > std::numeric_limits<std::uint32_t>::max()) refuse(path, "too many triangles");
+    const auto corners = blocks.indices(only_array(path, header, "Polys", "connectivity"), 3 * header.polys);
+    const auto offsets = blocks.indices(only_array(path, header, "Polys", "offsets"), header.polys);
+    std::vector<Triangle> triangles(offsets.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (offsets[t] != static_cast<std::int64_t>(3 * (t + 1)))
+            refuse(path, fmt::format("cell {} is no triangle", t));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int64_t corner = corners[3 * t + k];
+            if (corner < 0 || static_cast<std::uint64_t>(corner) >= header.points ||
+                corner > std::numeric_limits<std::uint32_t>::max()) {
+                refuse(path, fmt::format("corner {} of triangle {} names point {} of {}", k, t, corner, header.points));
+            }
+            triangles[t][k] = static_cast<std::uint32_t>(corner);
+        }
+    }
+    return triangles;
+}
+
+void check_vertex_cell(const std::filesystem::path& path, const Header& header, BlockReader& blocks) {
+    if (header.polys > 0) {
+        if (header.verts != 0) refuse(path, "both vertices and triangles");
+        return;
+    }
+    if (header.verts != (header.points == 0 ? 0U : 1U)) refuse(path, "the points are not one poly-vertex cell");
+    if (header.points == 0) return;
+    const auto corners = blocks.indices(only_array(path, header, "Verts", "connectivity"), header.points);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (corners[i] != static_cast<std::int64_t>(i)) refuse(path, fmt::format("vertex {} is out of order", i));
+    }
+}
+
+}  // namespace
+
+VtkPolyData read_vtp(const std::filesystem::path& path) {
+    FileBytes file(path);
+    const Header header = read_header(path, file);
+    BlockReader blocks(path, file, header.data_start);
+    VtkPolyData data;
+    data.time = header.time;
+    data.fields = header.fields;
+    data.points = blocks.read<Vec3>(only_array(path, header, "Points", "Points"), header.points);
+    for (const ArrayHeader& array : header.arrays) {
+        if (array.section == "PointData") data.point_arrays.push_back(blocks.array(array, header.points));
+        if (array.section == "CellData") data.cell_arrays.push_back(blocks.array(array, header.polys));
+    }
+    check_vertex_cell(path, header, blocks);
+    data.triangles = read_triangles(path, header, blocks);
+    return data;
+}
+
+}  // namespace ricochet

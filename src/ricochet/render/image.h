@@ -1,0 +1,28 @@
+/// \file
+/// Pictures in memory and as PNG files.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// An RGB picture, 8 bits a channel, sRGB, rows from the top.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgb;  ///< 3 * width * height bytes
+
+    /// Red, green and blue of a pixel; x to the right, y down.
+    [[nodiscard]] std::array<int, 3> pixel(int x, int y) const;
+};
+
+/// The picture as the bytes of a PNG file. Throws RunError when memory is short.
+[[nodiscard]] std::string png_bytes(const Image& image);
+/// Writes a PNG file, which appears under its name only when it is complete. Throws like AtomicFile.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace ricochet

@@ -1,0 +1,202 @@
+#include "ricochet/render/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/render/color_map.h"
+#include "ricochet/render/light.h"
+
+namespace ricochet {
+namespace {
+
+// Numbers that a sample needs: place in the pixel, place on the sun (twice), direction into the sky.
+enum Dimension { kPixelX, kPixelY, kSunU, kSunV, kSkyU, kSkyV, kFarSunU, kFarSunV, kDimensions };
+
+// Powers of 1/phi where phi is the root of x^9 = x + 1: an additive sequence that fills the 8-cube evenly.
+// Method: M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
+std::array<double, kDimensions> additive_steps() {
+    double phi = 1.1;
+    for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / (kDimensions + 1));
+    std::array<double, kDimensions> steps{};
+    double power = 1.0;
+    for (double& step : steps) step = (power /= phi);
+    return steps;
+}
+
+// A well-mixed 32-bit value. Method: the integer finaliser of the hash "lowbias32", C. Wellons, 2018.
+std::uint32_t mixed(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352dU;
+    x ^= x >> 15;
+    x *= 0x846ca68bU;
+    x ^= x >> 16;
+    return x;
+}
+
+// The samples of one pixel: the same additive sequence everywhere, shifted by the pixel's own random offset.
+class PixelSamples {
+public:
+    PixelSamples(const std::array<double, kDimensions>& steps, std::uint32_t x, std::uint32_t y) : steps_(steps) {
+        for (std::uint32_t d = 0; d < kDimensions; ++d) {
+            offset_[d] = mixed(x + mixed(y + mixed(d))) * (1.0 / 4294967296.0);
+        }
+    }
+    [[nodiscard]] double get(int sample, Dimension d) const {
+        const double value = offset_[d] + (sample + 1) * steps_[d];
+        return value - std::floor(value);
+    }
+
+private:
+    const std::array<double, kDimensions>& steps_;
+    std::array<double, kDimensions> offset_{};
+};
+
+Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+// Brightness to display range: L (1 + L / white^2) / (1 + L) on the luminance, colours kept.
+// Method: E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, eq. 4.
+Vec3 tone_mapped(const Vec3& light) {
+    constexpr double kWhite = 3.0;
+    const double luminance = 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z;
+    if (!(luminance > 0.0)) return {};
+    const double shown = luminance * (1.0 + luminance / (kWhite * kWhite)) / (1.0 + luminance);
+    return light * (shown / luminance);
+}
+
+std::uint8_t channel(double linear) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * srgb_from_linear(std::clamp(linear, 0.0, 1.0))));
+}
+
+class Painter {
+public:
+    Painter(const Preview& preview, const Camera& camera, const PictureOptions& options)
+        : preview_(preview),
+          camera_(camera),
+          frame_(camera_frame(camera)),
+          options_(options),
+          daylight_(daylight_for(camera)),
+          steps_(additive_steps()),
+          tangent_(std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0)),
+          extent_(tangent_ * length(camera.target - camera.position)),
+          tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}
+
+    [[nodiscard]] Vec3 pixel_light(int x, int y) const {
+        const PixelSamples samples(steps_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+        Vec3 sum;
+        for (int s = 0; s < options_.samples; ++s) {
+            const PreviewRay ray = camera_ray(x + samples.get(s, kPixelX), y + samples.get(s, kPixelY));
+            sum += tone_mapped(options_.exposure * seen(ray, samples, s));
+        }
+        return sum / options_.samples;
+    }
+
+private:
+    [[nodiscard]] PreviewRay camera_ray(double x, double y) const {
+        const double aspect = static_cast<double>(options_.width) / options_.height;
+        const double across = (2.0 * x / options_.width - 1.0) * aspect * tangent_;
+        const double along = (1.0 - 2.0 * y / options_.height) * tangent_;
+        return {camera_.position, normalized(frame_.forward + across * frame_.right + along * frame_.up)};
+    }
+
+    [[nodiscard]] Vec3 seen(const PreviewRay& ray, const PixelSamples& samples, int s) const {
+        const std::optional<PreviewHit> hit = preview_.trace(ray);
+        if (!hit) return daylight_.backdrop(ray.direction);
+        const Vec3 color = surface_color(*hit);
+        Vec3 light = times(color, sun_light(*hit, samples.get(s, kSunU), samples.get(s, kSunV)));
+        light += times(color, sky_light(*hit, samples, s));
+        if (hit->kind == PreviewHit::Kind::sphere) light += gloss(*hit, ray);
+        return hit->kind == PreviewHit::Kind::plane ? faded(light, *hit, ray) : light;
+    }
+
+    // Light of the sun on a surface, unless something stands in between.
+    [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, double u, double v) const {
+        const Vec3 to_sun = daylight_.sun_direction(u, v);
+        const double cosine = dot(hit.normal, to_sun);
+        if (cosine <= 0.0 || dot(hit.face, to_sun) <= 0.0) return {};
+        return preview_.occluded({off_surface(hit), to_sun}) ? Vec3{} : cosine * daylight_.sun;
+    }
+
+    // Light from one direction of the sky, or from the sunlit surface that is seen in its place.
+    [[nodiscard]] Vec3 sky_light(const PreviewHit& hit, const PixelSamples& samples, int s) const {
+        const Vec3 direction = cosine_direction(hit.normal, samples.get(s, kSkyU), samples.get(s, kSkyV));
+        const std::optional<PreviewHit> other = preview_.trace({off_surface(hit), direction});
+        if (!other) return daylight_.sky(direction);
+        const Vec3 sun = sun_light(*other, samples.get(s, kFarSunU), samples.get(s, kFarSunV));
+        constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // stands for all further bounces
+        return times(other->color, sun + kFarSky);
+    }
+
+    // A soft highlight of the sky and its brightest part on particles.
+    [[nodiscard]] Vec3 gloss(const PreviewHit& hit, const PreviewRay& ray) const {
+        const double facing = -dot(hit.normal, ray.direction);
+        const Vec3 mirrored = ray.direction + 2.0 * facing * hit.normal;
+        const double grazing = 1.0 - std::clamp(facing, 0.0, 1.0);
+        const double fresnel = 0.04 + 0.5 * std::pow(grazing, 5.0);
+        const double sun_spot = std::pow(std::max(0.0, dot(mirrored, daylight_.to_sun)), 60.0);
+        return fresnel * (0.5 * daylight_.sky(mirrored) + 4.0 * sun_spot * daylight_.sun);
+    }
+
+    // Starting points of further rays stand off the surface by what single precision cannot tell apart.
+    [[nodiscard]] Vec3 off_surface(const PreviewHit& hit) const {
+        constexpr double kSinglePrecision = 2e-6;
+        const double scale = std::max(max_abs(hit.point - preview_.origin()), hit.distance);
+        return hit.point + kSinglePrecision * scale * hit.face;
+    }
+
+    // Planes carry a faint chequer that gives the eye a scale.
+    [[nodiscard]] Vec3 surface_color(const PreviewHit& hit) const {
+        if (hit.kind != PreviewHit::Kind::plane) return hit.color;
+        const auto [u, v] = tangent_frame(hit.normal);
+        const double cells = std::floor(dot(hit.point, u) / tile_) + std::floor(dot(hit.point, v) / tile_);
+        const bool odd = cells - 2.0 * std::floor(0.5 * cells) > 0.5;
+        const double fade = std::exp(-hit.distance / (12.0 * extent_));
+        return hit.color * (odd ? 1.0 : 1.0 - 0.10 * fade);
+    }
+
+    // Planes go on for ever; far away they turn into the horizon.
+    [[nodiscard]] Vec3 faded(const Vec3& light, const PreviewHit& hit, const PreviewRay& ray) const {
+        const double reach = hit.distance / (14.0 * extent_);
+        const double left = std::exp(-reach * reach);
+        const Vec3 level = ray.direction - dot(ray.direction, daylight_.up) * daylight_.up;
+        return left * light + (1.0 - left) * daylight_.backdrop(length(level) > 1e-9 ? normalized(level) : level);
+    }
+
+    const Preview& preview_;
+    Camera camera_;
+    CameraFrame frame_;
+    PictureOptions options_;
+    Daylight daylight_;
+    std::array<double, kDimensions> steps_;
+    double tangent_;
+    double extent_;  // half the height of what the picture shows at the target, m
+    double tile_;    // edge of the chequer on planes, m
+};
+
+}  // namespace
+
+Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options) {
+    const Painter painter(preview, camera, options);
+    Image image{options.width, options.height, {}};
+    const auto row_bytes = 3 * static_cast<std::size_t>(options.width);
+    const auto rows = static_cast<std::size_t>(options.height);
+    image.rgb.resize(row_bytes * rows);
+    std::atomic<std::size_t> rows_done{0};
+    parallel_for_blocks(rows, 1, [&](std::size_t row, std::size_t, std::size_t) {
+        for (int x = 0; x < options.width; ++x) {
+            const Vec3 light = painter.pixel_light(x, static_cast<int>(row));
+            std::uint8_t* pixel = &image.rgb[row * row_bytes + 3 * static_cast<std::size_t>(x)];
+            pixel[0] = channel(light.x);
+            pixel[1] = channel(light.y);
+            pixel[2] = channel(light.z);
+        }
+        if (options.progress) options.progress(static_cast<double>(++rows_done) / static_cast<double>(rows));
+    });
+    return image;
+}
+
+}  // namespace ricochet

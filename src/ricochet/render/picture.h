@@ -1,0 +1,26 @@
+/// \file
+/// Makes a picture of colliders and particles: sun with soft shadows, sky light, one bounce of light between surfaces.
+/// The same scene and options give the same bytes for any thread count.
+#pragma once
+
+#include <functional>
+
+#include "ricochet/render/camera.h"
+#include "ricochet/render/image.h"
+#include "ricochet/render/preview.h"
+
+namespace ricochet {
+
+/// How a picture is made.
+struct PictureOptions {
+    int width = 1280;  ///< pixels, 1..16384
+    int height = 720;  ///< pixels, 1..16384
+    int samples = 16;  ///< rays a pixel, 1..4096
+    double exposure = 1.0;
+    /// Called now and then, from any thread, with the part that is done, 0..1. May be empty.
+    std::function<void(double)> progress;
+};
+
+[[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options);
+
+}  // namespace ricochet

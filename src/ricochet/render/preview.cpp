@@ -1,0 +1,219 @@
+#include "ricochet/render/preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/geometry/embree.h"
+#include "ricochet/render/corner_normals.h"
+
+namespace ricochet {
+namespace {
+
+// Debian builds Embree with assertions: rays beyond 1.8e18 or not finite end the process.
+constexpr double kLargestCoordinate = 1e15;
+constexpr double kCreaseDegrees = 40.0;
+
+bool drawable(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestCoordinate; }
+
+void store(float* target, const Vec3& p) {
+    target[0] = static_cast<float>(p.x);
+    target[1] = static_cast<float>(p.y);
+    target[2] = static_cast<float>(p.z);
+}
+
+embree::Scene new_scene(RTCDevice device) {
+    embree::Scene scene(rtcNewScene(device));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    return scene;
+}
+
+// Gives a finished geometry to the scene under the given number.
+void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
+    rtcSetGeometryMask(geometry, 0xffffffffU);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+RTCRay embree_ray(const PreviewRay& ray, const Vec3& origin) {
+    const Vec3 from = ray.origin - origin;
+    RTCRay out{};
+    out.org_x = static_cast<float>(from.x);
+    out.org_y = static_cast<float>(from.y);
+    out.org_z = static_cast<float>(from.z);
+    out.dir_x = static_cast<float>(ray.direction.x);
+    out.dir_y = static_cast<float>(ray.direction.y);
+    out.dir_z = static_cast<float>(ray.direction.z);
+    out.tfar = std::numeric_limits<float>::infinity();
+    out.mask = 0xffffffffU;
+    return out;
+}
+
+Vec3 towards(const Vec3& normal, const Vec3& direction) { return dot(normal, direction) > 0.0 ? -normal : normal; }
+
+// A mesh and what its shading needs.
+struct DrawnMesh {
+    PreviewMesh source;
+    std::vector<std::array<Vec3, 3>> normals;
+};
+
+void make_drawable(TriangleMesh& mesh) {
+    std::vector<bool> bad(mesh.vertices.size());
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) bad[v] = !drawable(mesh.vertices[v]);
+    for (Triangle& triangle : mesh.triangles) {
+        // A triangle with a hopeless corner shrinks to nothing; its number stays taken.
+        if (bad[triangle[0]] || bad[triangle[1]] || bad[triangle[2]]) triangle = {0, 0, 0};
+    }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        if (bad[v]) mesh.vertices[v] = {};
+    }
+}
+
+}  // namespace
+
+struct Preview::Impl {
+    embree::Device device = embree::make_device();
+    embree::Scene mesh_scene, sphere_scene;
+    std::vector<DrawnMesh> meshes;
+    std::vector<PreviewPlane> planes;
+    std::vector<Vec3> sphere_colors;  // in the order of the drawn spheres
+    bool has_meshes = false;
+    bool has_spheres = false;
+    Vec3 origin;
+
+    void add_mesh(const TriangleMesh& mesh, unsigned id) const;
+    [[nodiscard]] PreviewHit mesh_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
+    [[nodiscard]] PreviewHit sphere_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
+    void trace_planes(const PreviewRay& ray, std::optional<PreviewHit>& nearest) const;
+};
+
+void Preview::Impl::add_mesh(const TriangleMesh& mesh, unsigned id) const {
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices.size()));
+    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
+    embree::check_device(device.get(), "storing a mesh for the picture");
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) store(vertices + 3 * v, mesh.vertices[v] - origin);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), corners + 3 * t);
+    }
+    attach(mesh_scene.get(), geometry, id);
+}
+
+PreviewHit Preview::Impl::mesh_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
+    const DrawnMesh& mesh = meshes[hit.hit.geomID];
+    const auto& corner = mesh.normals[hit.hit.primID];
+    const double u = hit.hit.u;
+    const double v = hit.hit.v;
+    PreviewHit out;
+    out.distance = hit.ray.tfar;
+    out.point = ray.origin + out.distance * ray.direction;
+    out.face = towards(normalized(Vec3{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}), ray.direction);
+    const Vec3 smooth = (1.0 - u - v) * corner[0] + u * corner[1] + v * corner[2];
+    out.normal = length(smooth) > 1e-6 ? normalized(smooth) : out.face;
+    if (dot(out.normal, out.face) < 0.0) out.normal = -out.normal;
+    out.color = mesh.source.triangle_colors.empty() ? mesh.source.color : mesh.source.triangle_colors[hit.hit.primID];
+    return out;
+}
+
+PreviewHit Preview::Impl::sphere_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
+    PreviewHit out;
+    out.kind = PreviewHit::Kind::sphere;
+    out.distance = hit.ray.tfar;
+    out.point = ray.origin + out.distance * ray.direction;
+    out.face = towards(normalized(Vec3{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}), ray.direction);
+    out.normal = out.face;
+    out.color = sphere_colors[hit.hit.primID];
+    return out;
+}
+
+void Preview::Impl::trace_planes(const PreviewRay& ray, std::optional<PreviewHit>& nearest) const {
+    for (const PreviewPlane& plane : planes) {
+        const double slope = dot(plane.normal, ray.direction);
+        const double distance = dot(plane.point - ray.origin, plane.normal) / slope;
+        if (slope >= 0.0 || !(distance > 0.0) || distance > kLargestCoordinate) continue;
+        if (nearest && nearest->distance <= distance) continue;
+        nearest = PreviewHit{distance,     ray.origin + distance * ray.direction,
+                             plane.normal, plane.normal,
+                             plane.color,  PreviewHit::Kind::plane};
+    }
+}
+
+Preview::Preview(std::vector<PreviewMesh> meshes, std::vector<PreviewPlane> planes, const Vec3& origin)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->planes = std::move(planes);
+    impl_->origin = origin;
+    impl_->mesh_scene = new_scene(impl_->device.get());
+    for (PreviewMesh& mesh : meshes) {
+        make_drawable(mesh.mesh);
+        impl_->add_mesh(mesh.mesh, static_cast<unsigned>(impl_->meshes.size()));
+        auto normals = corner_normals(mesh.mesh, kCreaseDegrees);
+        impl_->meshes.push_back({std::move(mesh), std::move(normals)});
+    }
+    rtcCommitScene(impl_->mesh_scene.get());
+    embree::check_device(impl_->device.get(), "building the picture's meshes");
+    impl_->has_meshes = !impl_->meshes.empty();
+}
+
+Preview::~Preview() = default;
+Preview::Preview(Preview&&) noexcept = default;
+Preview& Preview::operator=(Preview&&) noexcept = default;
+
+void Preview::set_spheres(const PreviewSpheres& spheres) {
+    std::vector<std::size_t> drawn;
+    for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
+        if (drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 && spheres.radii[i] < kLargestCoordinate)
+            drawn.push_back(i);
+    }
+    impl_->sphere_scene = new_scene(impl_->device.get());
+    impl_->sphere_colors.clear();
+    impl_->has_spheres = !drawn.empty();
+    if (drawn.empty()) return;
+    RTCGeometry geometry = rtcNewGeometry(impl_->device.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    auto* buffer = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                               4 * sizeof(float), drawn.size()));
+    embree::check_device(impl_->device.get(), "storing the particles for the picture");
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+        const Vec3& center = spheres.centers[drawn[k]];
+        store(buffer + 4 * k, center - impl_->origin);
+        buffer[4 * k + 3] = static_cast<float>(spheres.radii[drawn[k]]);
+        impl_->sphere_colors.push_back(spheres.colors[drawn[k]]);
+    }
+    attach(impl_->sphere_scene.get(), geometry, 0);
+    rtcCommitScene(impl_->sphere_scene.get());
+    embree::check_device(impl_->device.get(), "building the picture's particles");
+}
+
+std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
+    std::optional<PreviewHit> nearest;
+    if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return nearest;
+    embree::QueryContext context;
+    embree::init_context(context, nullptr);
+    RTCRayHit hit{};
+    hit.ray = embree_ray(ray, impl_->origin);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    if (impl_->has_meshes) embree::intersect1(impl_->mesh_scene.get(), context, hit);
+    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->mesh_hit(hit, ray);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    if (impl_->has_spheres) embree::intersect1(impl_->sphere_scene.get(), context, hit);
+    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->sphere_hit(hit, ray);
+    impl_->trace_planes(ray, nearest);
+    return nearest;
+}
+
+bool Preview::occluded(const PreviewRay& ray) const {
+    if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return false;
+    embree::QueryContext context;
+    embree::init_context(context, nullptr);
+    RTCRay shadow = embree_ray(ray, impl_->origin);
+    if (impl_->has_meshes) embree::occluded1(impl_->mesh_scene.get(), context, shadow);
+    if (shadow.tfar >= 0.0F && impl_->has_spheres) embree::occluded1(impl_->sphere_scene.get(), context, shadow);
+    return shadow.tfar < 0.0F;
+}
+
+const Vec3& Preview::origin() const { return impl_->origin; }
+
+}  // namespace ricochet

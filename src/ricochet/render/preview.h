@@ -1,0 +1,77 @@
+/// \file
+/// What a picture shows, as a thing that rays can be shot at.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet {
+
+/// A mesh with a colour. Colours are linear light, 0..1.
+struct PreviewMesh {
+    TriangleMesh mesh;
+    Vec3 color{0.5, 0.5, 0.5};
+    std::vector<Vec3> triangle_colors;  ///< one a triangle, or empty
+};
+
+/// An infinite plane, seen from the side that its normal points to; from behind it is not there.
+struct PreviewPlane {
+    Vec3 point;
+    Vec3 normal{0, 0, 1};  ///< of unit length
+    Vec3 color{0.5, 0.5, 0.5};
+};
+
+/// Spheres; the three vectors have the same length.
+struct PreviewSpheres {
+    std::vector<Vec3> centers;
+    std::vector<double> radii;
+    std::vector<Vec3> colors;
+};
+
+/// A ray from a point along a unit vector.
+struct PreviewRay {
+    Vec3 origin;
+    Vec3 direction;
+};
+
+/// Where a ray meets something.
+struct PreviewHit {
+    double distance = 0.0;  ///< m along the ray
+    Vec3 point;
+    Vec3 normal;  ///< smoothed, of unit length, towards the ray's origin
+    Vec3 face;    ///< of the surface itself, of unit length, towards the ray's origin
+    Vec3 color;
+    enum class Kind { mesh, plane, sphere } kind = Kind::mesh;
+};
+
+/// Colliders and particles behind Embree. Coordinates are single precision about the given origin: good for pictures.
+/// Points that are not finite, or absurdly far away, are left out.
+class Preview {
+public:
+    /// Throws RunError when Embree runs out of memory.
+    Preview(std::vector<PreviewMesh> meshes, std::vector<PreviewPlane> planes, const Vec3& origin);
+    ~Preview();
+    Preview(Preview&&) noexcept;
+    Preview& operator=(Preview&&) noexcept;
+
+    /// Replaces the spheres. Not while rays are being shot.
+    void set_spheres(const PreviewSpheres& spheres);
+
+    /// The first thing on the ray; may be called from any thread.
+    [[nodiscard]] std::optional<PreviewHit> trace(const PreviewRay& ray) const;
+    /// True when a mesh or sphere stands on the ray; planes throw no shadow.
+    [[nodiscard]] bool occluded(const PreviewRay& ray) const;
+    /// The point about which coordinates are rounded.
+    [[nodiscard]] const Vec3& origin() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,43 @@
+// Small frames that several tests write and read.
+#pragma once
+
+#include <cstdint>
+
+#include "ricochet/core/random.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/io/vtk.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet::test {
+
+/// Particles with all attributes different, their entries not in the order of their ids.
+inline Particles example_particles(std::uint64_t count) {
+    Particles particles;
+    RandomSequence random(11, 0, 0);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        Particle particle;
+        particle.id = (std::uint64_t{1} << 40) + count - i;
+        particle.position = 3.0 * random.unit_vector();
+        particle.velocity = random.unit_vector() * random.uniform();
+        particle.mass = 1.0 + random.uniform();
+        particle.radius = 0.01 * random.uniform();
+        particle.birth_time = -random.uniform();
+        particles.append(particle);
+        particles.contacts.back() = static_cast<std::uint32_t>(i);
+        particles.resting.back() = static_cast<std::uint8_t>(i % 2);
+        particles.unsimulated_time.back() = 0.001 * static_cast<double>(i);
+    }
+    return particles;
+}
+
+/// A tetrahedron.
+inline TriangleMesh example_mesh() {
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+}
+
+inline TriangleTotals example_totals() {
+    return {{0, 1, 7, std::uint64_t{1} << 33}, {{0, 0, 0}, {1, 2, 3}, {-1, 0.5, 0}, {0, 0, 1e-300}}};
+}
+
+}  // namespace ricochet::test

@@ -1,0 +1,96 @@
+"""Opens a series with VTK's own readers, the ones that ParaView uses: paraview_reader_test.py FOLDER."""
+
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+
+try:
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+    from vtkmodules.vtkCommonCore import vtkOutputWindow
+except ImportError:
+    print("skipped: VTK's Python module is not installed (apt install python3-vtk9)")
+    sys.exit(77)
+
+POINT_ARRAYS = {
+    "id": ("long long", 1),
+    "velocity": ("double", 3),
+    "mass": ("double", 1),
+    "radius": ("double", 1),
+    "age": ("double", 1),
+    "contacts": ("unsigned int", 1),
+    "resting": ("unsigned char", 1),
+    "unsimulated_time": ("double", 1),
+}
+CELL_ARRAYS = {"hits": ("long long", 1), "impulse": ("double", 3)}
+LONG_NAMES = {"long": "long long"}  # the same 64 bits
+
+
+def check(condition, message):
+    if not condition:
+        print("FAILED:", message)
+        sys.exit(1)
+
+
+def series(path):
+    root = ElementTree.parse(path).getroot()
+    return [(float(entry.get("timestep")), entry.get("file")) for entry in root.iter("DataSet")]
+
+
+def read(path):
+    errors = []
+    reader = vtkXMLPolyDataReader()
+    reader.AddObserver("ErrorEvent", lambda *_: errors.append(path))
+    reader.SetFileName(path)
+    reader.Update()
+    check(not errors, f"VTK reports an error in {path}")
+    return reader.GetOutput()
+
+
+def check_arrays(data, expected, count, path):
+    check(data.GetNumberOfArrays() == len(expected), f"{path}: {data.GetNumberOfArrays()} arrays")
+    for name, (kind, components) in expected.items():
+        array = data.GetArray(name)
+        check(array is not None, f"{path}: no array {name}")
+        found = array.GetDataTypeAsString()
+        check(LONG_NAMES.get(found, found) == kind, f"{path}: {name} is {found}")
+        check(array.GetNumberOfComponents() == components, f"{path}: {name} components")
+        check(array.GetNumberOfTuples() == count, f"{path}: {name} has {array.GetNumberOfTuples()} tuples")
+
+
+def check_frame(folder, time, name):
+    path = os.path.join(folder, name)
+    data = read(path)
+    points = data.GetNumberOfPoints()
+    check(data.GetFieldData().GetArray("TimeValue").GetValue(0) == time, f"{path}: TimeValue")
+    check(data.GetNumberOfVerts() == (1 if points else 0), f"{path}: vertex cells")
+    check_arrays(data.GetPointData(), POINT_ARRAYS, points, path)
+    if points:
+        check(data.GetPoints().GetData().GetDataTypeAsString() == "double", f"{path}: points are not double")
+        check(data.GetCell(0).GetNumberOfPoints() == points, f"{path}: the cell does not hold every point")
+        ids = data.GetPointData().GetArray("id")
+        check(all(ids.GetValue(i) < ids.GetValue(i + 1) for i in range(points - 1)), f"{path}: ids are not in order")
+    return points
+
+
+def check_collider(folder, name):
+    path = os.path.join(folder, name)
+    data = read(path)
+    check(data.GetNumberOfPolys() > 0, f"{path}: no triangles")
+    check_arrays(data.GetCellData(), CELL_ARRAYS, data.GetNumberOfPolys(), path)
+    return data.GetNumberOfPolys()
+
+
+def main(folder):
+    vtkOutputWindow.SetGlobalWarningDisplay(0)
+    frames = series(os.path.join(folder, "particles.pvd"))
+    check(frames, "the series is empty")
+    times = [time for time, _ in frames]
+    check(all(a < b for a, b in zip(times, times[1:])), f"times do not rise: {times}")
+    on_disk = sorted(name for name in os.listdir(folder) if name.startswith("particles_"))
+    check(on_disk == sorted(name for _, name in frames), f"listed {frames}, found {on_disk}")
+    counts = [check_frame(folder, time, name) for time, name in frames]
+    triangles = [check_collider(folder, name) for _, name in series(os.path.join(folder, "colliders.pvd"))]
+    print(f"{len(frames)} frames with {counts} particles, colliders of {triangles} triangles, last time {times[-1]!r}")
+
+
+main(sys.argv[1])

@@ -1,0 +1,79 @@
+#include "ricochet/io/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace ricochet {
+namespace {
+
+nlohmann::json parsed(const RunSummary& summary) { return nlohmann::json::parse(summary_text(summary)); }
+
+TEST(Summary, HoldsEveryKeyOfTheContract) {
+    const nlohmann::json json = parsed(RunSummary{});
+    for (const char* key : {"version",
+                            "scene",
+                            "threads",
+                            "steps",
+                            "simulated_time",
+                            "wall_seconds",
+                            "particles_alive",
+                            "particles_emitted",
+                            "particle_steps",
+                            "contacts",
+                            "bounces_per_step_max",
+                            "resting",
+                            "unsimulated_time",
+                            "started_inside",
+                            "leaks",
+                            "kinetic_energy",
+                            "potential_energy",
+                            "state_hash",
+                            "state_hash_algorithm",
+                            "peak_memory_bytes",
+                            "expired",
+                            "out_of_bounds",
+                            "frozen",
+                            "stayed",
+                            "budget_exhausted",
+                            "seed",
+                            "time_step",
+                            "interrupted",
+                            "colliders"}) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_TRUE(json["leaks"].is_null());
+    EXPECT_TRUE(json["potential_energy"].is_null());
+}
+
+TEST(Summary, NumbersReadBackToTheSameBits) {
+    RunSummary summary;
+    summary.kinetic_energy = 1.0 / 3.0;
+    summary.potential_energy = -1e-300;
+    summary.statistics.particle_steps = (std::uint64_t{1} << 63) + 1;
+    summary.state_hash = 0x0123456789abcdef;
+    const nlohmann::json json = parsed(summary);
+    EXPECT_EQ(json["kinetic_energy"].get<double>(), 1.0 / 3.0);
+    EXPECT_EQ(json["potential_energy"].get<double>(), -1e-300);
+    EXPECT_EQ(json["particle_steps"].get<std::uint64_t>(), (std::uint64_t{1} << 63) + 1);
+    EXPECT_EQ(json["state_hash"], "0123456789abcdef");
+}
+
+TEST(Summary, NumbersThatAreNotFiniteBecomeNull) {
+    RunSummary summary;
+    summary.kinetic_energy = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(parsed(summary)["kinetic_energy"].is_null());
+}
+
+TEST(Summary, NamesThatAreNoUtf8DoNotLoseTheRun) {
+    RunSummary summary;
+    summary.scene = "caf\xe9.json";
+    summary.colliders = {{"floor", "plane", "collider_00_floor.vtp", 2, 7, {0, 0, -1.5}}};
+    const nlohmann::json json = parsed(summary);
+    EXPECT_EQ(json["colliders"][0]["hits"], 7);
+    EXPECT_EQ(json["colliders"][0]["impulse"][2], -1.5);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,235 @@
+#include "ricochet/io/vtk.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "geometry/temporary_folder.h"
+#include "io/example_frames.h"
+#include "ricochet/core/error.h"
+#include "ricochet/io/frames.h"
+#include "ricochet/io/vtk_reader.h"
+
+namespace ricochet {
+namespace {
+
+using test::TemporaryFolder;
+
+VtkPolyData written_and_read(const VtkPolyData& data, VtkIndexWidth width = VtkIndexWidth::automatic) {
+    const TemporaryFolder folder;
+    const std::uint64_t size = write_vtp(folder.path("a.vtp"), data, width);
+    EXPECT_EQ(size, std::filesystem::file_size(folder.path("a.vtp")));
+    return read_vtp(folder.path("a.vtp"));
+}
+
+void expect_same_arrays(const std::vector<VtkArray>& a, const std::vector<VtkArray>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].name, b[i].name);
+        EXPECT_TRUE(a[i].values == b[i].values) << a[i].name;
+    }
+}
+
+TEST(Vtk, ParticlesReadBackToTheSameBits) {
+    const VtkPolyData frame = particle_frame(test::example_particles(100), 1.0 / 3.0);
+    const VtkPolyData read = written_and_read(frame);
+    EXPECT_EQ(read.time, 1.0 / 3.0);
+    EXPECT_TRUE(read.points == frame.points);
+    expect_same_arrays(read.point_arrays, frame.point_arrays);
+    EXPECT_TRUE(read.triangles.empty());
+}
+
+TEST(Vtk, FramesListParticlesInTheOrderOfTheirIds) {
+    const Particles particles = test::example_particles(5);
+    const VtkPolyData frame = particle_frame(particles, 2.0);
+    const auto& ids = std::get<std::vector<std::int64_t>>(find_array(frame.point_arrays, "id")->values);
+    EXPECT_EQ(ids.front(), static_cast<std::int64_t>(particles.id.back()));
+    EXPECT_EQ(frame.points.front(), particles.position.back());
+    const auto& ages = std::get<std::vector<double>>(find_array(frame.point_arrays, "age")->values);
+    EXPECT_EQ(ages.front(), 2.0 - particles.birth_time.back());
+}
+
+TEST(Vtk, AFrameWithoutParticlesIsAValidFile) {
+    const VtkPolyData read = written_and_read(particle_frame(Particles{}, 4.0));
+    EXPECT_EQ(read.time, 4.0);
+    EXPECT_TRUE(read.points.empty());
+    EXPECT_EQ(read.point_arrays.size(), 8U);
+}
+
+TEST(Vtk, MeshesKeepTheirTrianglesAndTotals) {
+    const VtkPolyData frame = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
+    for (const VtkIndexWidth width : {VtkIndexWidth::automatic, VtkIndexWidth::bits64}) {
+        const VtkPolyData read = written_and_read(frame, width);
+        EXPECT_EQ(read.triangles, frame.triangles);
+        EXPECT_TRUE(read.points == frame.points);
+        expect_same_arrays(read.cell_arrays, frame.cell_arrays);
+    }
+}
+
+TEST(Vtk, SixtyFourBitConnectivityOfPointsReadsBack) {
+    const VtkPolyData frame = particle_frame(test::example_particles(10), 0.0);
+    EXPECT_TRUE(written_and_read(frame, VtkIndexWidth::bits64).points == frame.points);
+}
+
+TEST(Vtk, PlanesAreSquaresInTheirPlaneWithItsPointAndNormal) {
+    const PlaneShape plane{{0, 0, 2}, {0, 3, 4}};
+    Box3 region;
+    region.include({10, 10, 10});
+    region.include({13, 14, 10});
+    const TriangleTotals totals{{5}, {{0, 0, 2}}};
+    const VtkPolyData read = written_and_read(plane_collider_frame(plane, region, totals, 0.0));
+    const Vec3 normal{0, 0.6, 0.8};
+    ASSERT_EQ(read.points.size(), 4U);
+    for (const Vec3& p : read.points) EXPECT_NEAR(dot(p - plane.point, normal), 0.0, 1e-12);
+    EXPECT_NEAR(length(read.points[1] - read.points[0]), 20.0, 1e-12);
+    ASSERT_NE(find_field(read, "plane_normal"), nullptr);
+    EXPECT_NEAR(find_field(read, "plane_normal")->at(2), 0.8, 1e-15);
+    const Vec3 winding = cross(read.points[1] - read.points[0], read.points[2] - read.points[0]);
+    EXPECT_GT(dot(winding, normal), 0.0);
+    EXPECT_EQ(std::get<std::vector<std::int64_t>>(read.cell_arrays[0].values), (std::vector<std::int64_t>{5, 5}));
+}
+
+TEST(Vtk, ValuesThatAreNotFiniteReadBack) {
+    VtkPolyData data;
+    data.points = {{std::numeric_limits<double>::infinity(), 0, 0}};
+    EXPECT_TRUE(written_and_read(data).points == data.points);
+}
+
+TEST(Vtk, NamesWithMarkupReadBack) {
+    VtkPolyData data;
+    data.points = {{1, 2, 3}};
+    data.point_arrays = {{"a<b>&\"c\"", std::vector<double>{1.0}}};
+    expect_same_arrays(written_and_read(data).point_arrays, data.point_arrays);
+}
+
+TEST(Vtk, AnEarlierFileStaysWhenTheNewOneCannotBeWritten) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path("a.vtp"));
+    EXPECT_THROW(write_vtp(folder.path("a.vtp"), VtkPolyData{}), InputError);
+    EXPECT_THROW(write_vtp(folder.path("none") / "a.vtp", VtkPolyData{}), RunError);
+}
+
+TEST(Pvd, ListsTimesWithAllTheirDigits) {
+    const std::string text = pvd_text({{0.1, 0, "a.vtp"}, {1.0 / 3.0, 2, "b.vtp"}});
+    EXPECT_NE(text.find(R"(timestep="0.10000000000000001" part="0" file="a.vtp")"), std::string::npos) << text;
+    EXPECT_NE(text.find(R"(timestep="0.33333333333333331" part="2" file="b.vtp")"), std::string::npos) << text;
+}
+
+TEST(ScalarValues, TakesTheLengthOfVectors) {
+    EXPECT_EQ(scalar_values({"v", std::vector<Vec3>{{3, 4, 0}}}), std::vector<double>{5.0});
+    EXPECT_EQ(scalar_values({"n", std::vector<std::uint8_t>{200}}), std::vector<double>{200.0});
+}
+
+// Malformed files: each is a good file with one change.
+struct Damage {
+    const char* name;
+    std::function<void(std::string&)> apply;
+    const char* message;  // part of the error
+};
+
+void replace(std::string& text, std::string_view from, std::string_view to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+}
+
+std::vector<Damage> damages() {
+    const auto swap = [](const char* from, const char* to) {
+        return [from, to](std::string& text) { replace(text, from, to); };
+    };
+    return {
+        {"empty", [](std::string& t) { t.clear(); }, "no raw appended data"},
+        {"text", [](std::string& t) { t = "hello\n"; }, "no raw appended data"},
+        {"cut header", [](std::string& t) { t.resize(100); }, "no raw appended data"},
+        {"cut data", [](std::string& t) { t.resize(t.size() - 60); }, "the end of the file is missing"},
+        {"cut last byte", [](std::string& t) { t.pop_back(); }, "the end of the file is missing"},
+        {"big endian", swap("LittleEndian", "BigEndian"), "byte_order"},
+        {"short headers", swap("UInt64", "UInt32"), "header_type"},
+        {"other kind", swap("\"PolyData\"", "\"ImageData\""), "type"},
+        {"compressed", swap("<PointData>", "<Zipped>"), "unknown tag"},
+        {"huge count", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"18446744073709551615\""),
+         "not 18446744073709551615"},
+        {"count wraps around", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"768614336404564651\""), "entries"},
+        {"negative count", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"-4\""), "not a count"},
+        {"wrong count", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""), "entries"},
+        {"huge cells", swap("NumberOfPolys=\"4\"", "NumberOfPolys=\"6148914691236517206\""), "entries"},
+        {"no such cells", swap("NumberOfPolys=\"4\"", "NumberOfPolys=\"3\""), "entries"},
+        {"offset past end", swap("offset=\"0\"", "offset=\"99999999\""), "past the end"},
+        {"offset wraps", swap("offset=\"0\"", "offset=\"18446744073709551610\""), "past the end"},
+        {"offset is text", swap("offset=\"0\"", "offset=\"zero\""), "not a count"},
+        {"unknown type", swap("type=\"Int64\"", "type=\"Int16\""), "has type Int16"},
+        {"components", swap("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""), "2 components"},
+        {"no points", swap("Name=\"Points\"", "Name=\"Pointz\""), "no array Points"},
+        {"missing attribute sign", swap("type=\"Int64\"", "type Int64"), "no type"},
+        {"open quote", swap("type=\"Int64\"", "type=\"Int64"), "no Name"},
+        {"time is text", swap(">0</DataArray>", ">soon</DataArray>"), "not a list of numbers"},
+        {"two times", swap(">0</DataArray>", ">0 1</DataArray>"), "has 2 numbers"},
+        {"no name", swap("Name=\"hits\"", "Nome=\"hits\""), "no Name"},
+        {"ascii data", swap("format=\"appended\"", "format=\"ascii\""), "format"},
+        {"second piece",
+         swap("<Points>",
+              "<Piece NumberOfPoints=\"1\" NumberOfVerts=\"0\" NumberOfPolys=\"0\" "
+              "NumberOfLines=\"0\" NumberOfStrips=\"0\">"),
+         "more than one"},
+        {"no piece", swap("<Piece ", "<PolyData "), "no <Piece>"},
+        {"lines", swap("NumberOfLines=\"0\"", "NumberOfLines=\"1\""), "lines or strips"},
+        {"verts and polys", swap("NumberOfVerts=\"0\"", "NumberOfVerts=\"1\""), "both vertices and triangles"},
+    };
+}
+
+TEST(VtkReader, RefusesEveryKindOfDamageWithOneLineThatNamesTheFile) {
+    const TemporaryFolder folder;
+    write_vtp(folder.path("good.vtp"), mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0));
+    for (const Damage& damage : damages()) {
+        SCOPED_TRACE(damage.name);
+        std::string bytes = folder.read("good.vtp");
+        damage.apply(bytes);
+        try {
+            (void)read_vtp(folder.write("bad.vtp", bytes));
+            ADD_FAILURE() << "was read";
+        } catch (const InputError& error) {
+            const std::string message = error.what();
+            EXPECT_NE(message.find("bad.vtp"), std::string::npos) << message;
+            EXPECT_NE(message.find(damage.message), std::string::npos) << message;
+            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        }
+    }
+}
+
+TEST(VtkReader, RefusesCornersThatNameNoPoint) {
+    for (const std::uint32_t corner : {4U, 4294967295U}) {
+        VtkPolyData data = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
+        data.triangles[2][1] = corner;
+        const TemporaryFolder folder;
+        write_vtp(folder.path("a.vtp"), data, VtkIndexWidth::bits64);
+        EXPECT_THROW((void)read_vtp(folder.path("a.vtp")), InputError);
+    }
+}
+
+TEST(VtkReader, RefusesAFolderAndAMissingFile) {
+    const TemporaryFolder folder;
+    EXPECT_THROW((void)read_vtp(folder.path("")), InputError);
+    EXPECT_THROW((void)read_vtp(folder.path("none.vtp")), InputError);
+}
+
+TEST(VtkReader, NeverCrashesOnAnyCutOrChangedByte) {
+    const TemporaryFolder folder;
+    write_vtp(folder.path("good.vtp"), particle_frame(test::example_particles(3), 0.5));
+    const std::string good = folder.read("good.vtp");
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string changed = good;
+        changed[i] = static_cast<char>(changed[i] ^ 0x55);
+        for (const std::string& bytes : {changed, good.substr(0, i)}) {
+            try {
+                const VtkPolyData data = read_vtp(folder.write("bad.vtp", bytes));
+                EXPECT_EQ(data.points.size(), 3U) << i;  // a change of a value or a name goes unnoticed
+            } catch (const InputError&) {
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,53 @@
+#include "ricochet/render/image.h"
+
+#include <gtest/gtest.h>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+#include <memory>
+
+#include "geometry/temporary_folder.h"
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+Image gradient(int width, int height) {
+    Image image{width, height, {}};
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (const int value : {x, y, x * y}) image.rgb.push_back(static_cast<std::uint8_t>(value));
+        }
+    }
+    return image;
+}
+
+TEST(Png, DecodesToTheSamePixels) {
+    const Image image = gradient(37, 21);
+    const test::TemporaryFolder folder;
+    write_png(folder.path("a.png"), image);
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load(folder.path("a.png").c_str(), &width, &height, &channels, 3), stbi_image_free);
+    ASSERT_NE(pixels, nullptr);
+    EXPECT_EQ(width, 37);
+    EXPECT_EQ(height, 21);
+    EXPECT_EQ(channels, 3);
+    EXPECT_TRUE(std::equal(image.rgb.begin(), image.rgb.end(), pixels.get()));
+}
+
+TEST(Png, LeavesNothingBehindWhenItCannotBeWritten) {
+    const test::TemporaryFolder folder;
+    EXPECT_THROW(write_png(folder.path("none") / "a.png", gradient(2, 2)), RunError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
+}
+
+TEST(Image, PixelsAreCountedFromTheTopLeft) { EXPECT_EQ(gradient(5, 4).pixel(3, 2), (std::array<int, 3>{3, 2, 6})); }
+
+}  // namespace
+}  // namespace ricochet

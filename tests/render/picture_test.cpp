@@ -1,0 +1,115 @@
+#include "ricochet/render/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+constexpr int kSize = 64;
+
+// A red ball above a grey floor, seen from the front and a little above.
+Preview ball_on_floor() {
+    Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
+    preview.set_spheres({{{0, 0, 1}}, {1.0}, {{0.6, 0.05, 0.05}}});
+    return preview;
+}
+
+Camera front_camera() { return {{0, -9, 4}, {0, 0, 1}, {0, 0, 1}, 50.0}; }
+
+PictureOptions small_picture() {
+    PictureOptions options;
+    options.width = kSize;
+    options.height = kSize;
+    options.samples = 16;
+    return options;
+}
+
+int brightness(const Image& image, int x, int y) {
+    const auto [r, g, b] = image.pixel(x, y);
+    return r + g + b;
+}
+
+TEST(Picture, ShowsALitBallInTheMiddleWithItsShadowOnTheFloor) {
+    const Image image = render_picture(ball_on_floor(), front_camera(), small_picture());
+    const auto [red, green, blue] = image.pixel(kSize / 2 - 3, kSize / 2 - 3);
+    EXPECT_GT(red, 2 * green);
+    EXPECT_GT(red, 100);
+    // The sun stands behind the camera's left shoulder: the shadow falls to the right and away.
+    int darkest = 1000;
+    for (int x = kSize / 2 + 8; x < kSize - 4; ++x) {
+        for (int y = kSize / 2 - 8; y < kSize / 2 + 12; ++y) darkest = std::min(darkest, brightness(image, x, y));
+    }
+    const int lit_floor = brightness(image, 8, kSize - 12);
+    EXPECT_LT(darkest, lit_floor * 3 / 4);
+}
+
+TEST(Picture, ShowsTheSkyWhereNothingIs) {
+    const Preview nothing({}, {}, {});
+    const Image image = render_picture(nothing, {{0, -9, 0}, {0, 0, 3}, {0, 0, 1}, 50.0}, small_picture());
+    const auto [red, green, blue] = image.pixel(kSize / 2, 2);
+    EXPECT_GT(blue, red);
+    EXPECT_GT(red + green + blue, 400);
+}
+
+TEST(Picture, TheSideTowardsTheSunIsBrighter) {
+    const Image image = render_picture(ball_on_floor(), front_camera(), small_picture());
+    EXPECT_GT(brightness(image, kSize / 2 - 4, kSize / 2 - 4), brightness(image, kSize / 2 + 5, kSize / 2 + 4));
+}
+
+TEST(Picture, HasTheSameBytesForAnyNumberOfThreads) {
+    const Preview preview = ball_on_floor();
+    const auto render = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return render_picture(preview, front_camera(), small_picture()).rgb;
+    };
+    const auto one = render(1);
+    EXPECT_EQ(one, render(2));
+    EXPECT_EQ(one, render(7));
+}
+
+TEST(Picture, MoreSamplesMakeLessNoiseAroundTheSamePicture) {
+    const Preview preview = ball_on_floor();
+    const auto render = [&](int samples) {
+        PictureOptions options = small_picture();
+        options.samples = samples;
+        return render_picture(preview, front_camera(), options).rgb;
+    };
+    const std::vector<std::uint8_t> settled = render(256);
+    const auto difference = [&](int samples) {
+        const std::vector<std::uint8_t> rgb = render(samples);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rgb.size(); ++i) sum += std::abs(rgb[i] - settled[i]);
+        return sum / static_cast<double>(rgb.size());
+    };
+    const double rough = difference(4);
+    const double fine = difference(32);
+    EXPECT_LT(fine, 0.5 * rough);
+    EXPECT_LT(fine, 2.0);
+}
+
+TEST(Picture, ReportsProgressUpToTheEnd) {
+    std::atomic<int> calls{0};
+    std::atomic<bool> ended{false};
+    PictureOptions options = small_picture();
+    options.progress = [&](double done) {
+        ++calls;
+        if (done == 1.0) ended = true;
+    };
+    (void)render_picture(ball_on_floor(), front_camera(), options);
+    EXPECT_EQ(calls, kSize);
+    EXPECT_TRUE(ended);
+}
+
+TEST(Picture, CanBeGivenUpFromTheProgressCall) {
+    PictureOptions options = small_picture();
+    options.progress = [](double) { throw std::runtime_error("stop"); };
+    EXPECT_THROW((void)render_picture(ball_on_floor(), front_camera(), options), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,97 @@
+#include "ricochet/render/preview.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ricochet {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+PreviewMesh square(double height) {
+    return {{{{-1, -1, height}, {1, -1, height}, {1, 1, height}, {-1, 1, height}}, {{0, 1, 2}, {0, 2, 3}}},
+            {0.1, 0.2, 0.3},
+            {}};
+}
+
+PreviewSpheres one_sphere(const Vec3& center, double radius) { return {{center}, {radius}, {{1, 0, 0}}}; }
+
+TEST(Preview, FindsTheFirstThingOnARay) {
+    const Vec3 far_away{1e6, 2e6, 0};
+    PreviewMesh mesh = square(0.0);
+    for (Vec3& v : mesh.mesh.vertices) v += far_away;
+    Preview preview({mesh}, {{far_away + Vec3{0, 0, -1}, {0, 0, 1}, {}}}, far_away);
+    preview.set_spheres(one_sphere(far_away + Vec3{0, 0, 2}, 0.5));
+    const auto sphere = preview.trace({far_away + Vec3{0, 0, 5}, {0, 0, -1}});
+    ASSERT_TRUE(sphere);
+    EXPECT_EQ(sphere->kind, PreviewHit::Kind::sphere);
+    EXPECT_NEAR(sphere->distance, 2.5, 1e-5);
+    EXPECT_NEAR(sphere->normal.z, 1.0, 1e-5);
+    const auto beside = preview.trace({far_away + Vec3{0.8, 0.8, 5}, {0, 0, -1}});
+    ASSERT_TRUE(beside);
+    EXPECT_EQ(beside->kind, PreviewHit::Kind::mesh);
+    EXPECT_NEAR(beside->distance, 5.0, 1e-5);
+    EXPECT_EQ(beside->color, Vec3(0.1, 0.2, 0.3));
+    const auto outside = preview.trace({far_away + Vec3{3, 3, 5}, {0, 0, -1}});
+    ASSERT_TRUE(outside);
+    EXPECT_EQ(outside->kind, PreviewHit::Kind::plane);
+    EXPECT_NEAR(outside->distance, 6.0, 1e-9);
+    EXPECT_FALSE(preview.trace({far_away + Vec3{3, 3, 5}, {0, 0, 1}}));
+}
+
+TEST(Preview, NormalsFaceTheRayOnBothSidesOfAMesh) {
+    const Preview preview({square(0.0)}, {}, {});
+    EXPECT_NEAR(preview.trace({{0.1, 0.2, 1}, {0, 0, -1}})->normal.z, 1.0, 1e-12);
+    EXPECT_NEAR(preview.trace({{0.1, 0.2, -1}, {0, 0, 1}})->normal.z, -1.0, 1e-12);
+}
+
+TEST(Preview, PlanesAreNotThereFromBehindAndThrowNoShadow) {
+    const Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {}}}, {});
+    EXPECT_TRUE(preview.trace({{0, 0, 1}, {0, 0, -1}}));
+    EXPECT_FALSE(preview.trace({{0, 0, -1}, {0, 0, 1}}));
+    EXPECT_FALSE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
+}
+
+TEST(Preview, MeshesAndSpheresThrowShadows) {
+    Preview preview({square(0.0)}, {}, {});
+    EXPECT_TRUE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
+    EXPECT_FALSE(preview.occluded({{5, 0, 1}, {0, 0, -1}}));
+    preview.set_spheres(one_sphere({5, 0, 0}, 0.1));
+    EXPECT_TRUE(preview.occluded({{5, 0, 1}, {0, 0, -1}}));
+    preview.set_spheres({});
+    EXPECT_FALSE(preview.occluded({{5, 0, 1}, {0, 0, -1}}));
+}
+
+TEST(Preview, LeavesOutWhatCannotBeDrawnAndKeepsTheRest) {
+    PreviewMesh mesh = square(0.0);
+    mesh.mesh.vertices.push_back({kNaN, 0, 0});
+    mesh.mesh.triangles.push_back({0, 1, 4});
+    Preview preview({mesh}, {}, {});
+    preview.set_spheres({{{kNaN, 0, 0}, {1e300, 0, 0}, {0, 0, 2}, {0, 0, 3}}, {1, 1, 0.5, 0}, {{}, {}, {0, 1, 0}, {}}});
+    const auto hit = preview.trace({{0, 0, 5}, {0, 0, -1}});
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->kind, PreviewHit::Kind::sphere);
+    EXPECT_EQ(hit->color, Vec3(0, 1, 0));
+    EXPECT_NEAR(hit->distance, 2.5, 1e-5);
+    EXPECT_TRUE(preview.trace({{0.9, 0.9, 5}, {0, 0, -1}}));
+}
+
+TEST(Preview, RaysThatAreNoRaysHitNothing) {
+    const Preview preview({square(0.0)}, {}, {});
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const PreviewRay& ray : {PreviewRay{{kNaN, 0, 1}, {0, 0, -1}}, PreviewRay{{0, 0, 1}, {0, kNaN, -1}},
+                                  PreviewRay{{0, 0, 1e30}, {0, 0, -1}}, PreviewRay{{0, 0, 1}, {0, 0, -infinity}}}) {
+        EXPECT_FALSE(preview.trace(ray));
+        EXPECT_FALSE(preview.occluded(ray));
+    }
+}
+
+TEST(Preview, CanBeEmpty) {
+    const Preview preview({}, {}, {});
+    EXPECT_FALSE(preview.trace({{0, 0, 1}, {0, 0, -1}}));
+    EXPECT_FALSE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
+}
+
+}  // namespace
+}  // namespace ricochet

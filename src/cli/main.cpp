@@ -13,6 +13,7 @@
 #include "cli/check_command.h"
 #include "cli/info_command.h"
 #include "cli/render_command.h"
+#include "cli/run_command.h"
 #include "cli/schema_command.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -33,10 +34,7 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 // One line a command.
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
-        add_check_command,
-        add_info_command,
-        add_render_command,
-        add_schema_command,
+        add_check_command, add_info_command, add_render_command, add_run_command, add_schema_command,
     };
     return list;
 }

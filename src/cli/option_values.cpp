@@ -50,4 +50,13 @@ PictureSize parse_picture_size(const std::string& text) {
     throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each from 1 to {}", text, kLargest));
 }
 
+int parse_thread_count(const std::string& text) {
+    constexpr int kMost = 1024;
+    if (text.empty()) return 0;
+    const auto threads = parse_all<int>(text);
+    if (threads && *threads >= 1 && *threads <= kMost) return *threads;
+    throw InputError(fmt::format("--threads {}: expected a whole number from 1 to {}; leave it out for all processors",
+                                 text, kMost));
+}
+
 }  // namespace ricochet::cli

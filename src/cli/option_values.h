@@ -16,4 +16,7 @@ struct PictureSize {
 /// WIDTHxHEIGHT, each 1..16384. Throws InputError.
 [[nodiscard]] PictureSize parse_picture_size(const std::string& text);
 
+/// A number of worker threads, 1..1024; 0 (all) for an empty text. Throws InputError.
+[[nodiscard]] int parse_thread_count(const std::string& text);
+
 }  // namespace ricochet::cli

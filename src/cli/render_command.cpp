@@ -39,7 +39,7 @@ struct RenderArguments {
     int samples = 16;
     int frames_per_second = 30;
     double exposure = 1.0;
-    int threads = 0;
+    std::string threads;
     bool quiet = false;
 };
 
@@ -126,7 +126,6 @@ void check_numbers(const RenderArguments& arguments) {
     in_range("--fps", arguments.frames_per_second, 1, 240);
     in_range("--exposure", arguments.exposure, 0.01, 100);
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
-    in_range("--threads", arguments.threads, 0, 4096);
 }
 
 // Shows how far the pictures are and listens to Ctrl-C.
@@ -192,7 +191,7 @@ void render(const RenderArguments& arguments) {
     const RunFolder folder = open_run_folder(arguments.folder);
     const std::vector<FrameFile> frames =
         chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame);
-    const ThreadLimit limit(arguments.threads);
+    const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
     const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, {}};
     film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
@@ -219,7 +218,7 @@ void add_options(CLI::App& command, RenderArguments& a) {
     command.add_option("--samples", a.samples, "Rays a pixel")->capture_default_str();
     command.add_option("--exposure", a.exposure, "Brightness factor")->capture_default_str();
     command.add_option("--fps", a.frames_per_second, "Pictures a second of a film")->capture_default_str();
-    command.add_option("--threads", a.threads, "Worker threads, 0 for all")->capture_default_str();
+    command.add_option("--threads", a.threads, "Worker threads (default: all)");
     command.add_flag("--quiet", a.quiet, "No progress, no report");
 }
 

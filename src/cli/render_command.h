@@ -1,13 +1,12 @@
-// ricochet render DIR --output FILE.png|.mp4
+/// \file
+/// `ricochet render DIR --output FILE.png|.mp4`: pictures and films of a run.
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include <CLI/CLI.hpp>
 
 namespace ricochet {
 
-/// Adds `render` to the parser.
+/// Adds the command; its callback throws InputError and RunError and sets exit_code to 128 + signal when interrupted.
 void add_render_command(CLI::App& app, int& exit_code);
 
 }  // namespace ricochet

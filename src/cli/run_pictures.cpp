@@ -60,6 +60,14 @@ std::vector<Vec3> hit_colors(const VtkPolyData& collider, ColorMap map) {
     return colors;
 }
 
+// Colliders of one material share a colour.
+std::size_t color_index(const RunInfo& info, const std::filesystem::path& file) {
+    for (const ColliderInfo& collider : info.colliders) {
+        if (collider.file == file.filename().string()) return collider.material % kColliderColors.size();
+    }
+    return 0;
+}
+
 std::string collider_name(const RunInfo& info, const std::filesystem::path& file) {
     for (const ColliderInfo& collider : info.colliders) {
         if (collider.file == file.filename().string()) return collider.name;
@@ -106,10 +114,10 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
 }
 
 void RunPictures::load_colliders(const RunFolder& folder) {
-    for (std::size_t i = 0; i < folder.colliders.size(); ++i) {
-        const std::string name = collider_name(folder.info, folder.colliders[i]);
+    for (const std::filesystem::path& file : folder.colliders) {
+        const std::string name = collider_name(folder.info, file);
         if (std::find(style_.hidden.begin(), style_.hidden.end(), name) != style_.hidden.end()) continue;
-        VtkPolyData data = read_vtp(folder.colliders[i]);
+        VtkPolyData data = read_vtp(file);
         const std::vector<double>* point = find_field(data, "plane_point");
         const std::vector<double>* normal = find_field(data, "plane_normal");
         if (point != nullptr && normal != nullptr && point->size() == 3 && normal->size() == 3) {
@@ -119,7 +127,7 @@ void RunPictures::load_colliders(const RunFolder& folder) {
         subject_.colliders.insert(subject_.colliders.end(), data.points.begin(), data.points.end());
         std::vector<Vec3> colors = style_.collider_hits ? hit_colors(data, ColorMap::viridis) : std::vector<Vec3>{};
         meshes_.push_back({{std::move(data.points), std::move(data.triangles)},
-                           kColliderColors[i % kColliderColors.size()],
+                           kColliderColors[color_index(folder.info, file)],
                            std::move(colors)});
     }
 }

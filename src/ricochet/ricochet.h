@@ -39,6 +39,7 @@
 #include "ricochet/io/run_files.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/run_info.h"
+#include "ricochet/io/run_writer.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/state_csv.h"
 #include "ricochet/io/summary.h"

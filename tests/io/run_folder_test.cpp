@@ -17,7 +17,7 @@ TEST(RunInfo, ReadsBackWhatWasWritten) {
     info.scene = "scenes/a \"b\".json";
     info.up = {0, 1, 0};
     info.camera = CameraInfo{{1, 2, 3}, {0, 0, 0.1}, 40.0};
-    info.colliders = {{"floor", "plane", "collider_00_floor.vtp", "rubber"}};
+    info.colliders = {{"floor", "plane", "collider_00_floor.vtp", 3}};
     const RunInfo read = read_run_info(folder.write("run.json", run_info_text(info)));
     EXPECT_EQ(read.scene, info.scene);
     EXPECT_EQ(read.up, info.up);
@@ -25,7 +25,7 @@ TEST(RunInfo, ReadsBackWhatWasWritten) {
     EXPECT_EQ(read.camera->target, info.camera->target);
     EXPECT_EQ(read.camera->fov_degrees, 40.0);
     ASSERT_EQ(read.colliders.size(), 1U);
-    EXPECT_EQ(read.colliders[0].material, "rubber");
+    EXPECT_EQ(read.colliders[0].material, 3U);
 }
 
 TEST(RunInfo, RefusesAnythingElse) {

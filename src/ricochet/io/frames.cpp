@@ -17,8 +17,10 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::uin
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
 
-std::vector<VtkArray> total_arrays(std::vector<std::uint64_t> hits, std::vector<Vec3> impulse) {
-    return {{"hits", as_signed(hits)}, {"impulse", std::move(impulse)}};
+// A simulation that keeps no totals per triangle gives none.
+std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
+    if (totals.hits.empty()) return {};
+    return {{"hits", as_signed(totals.hits)}, {"impulse", totals.impulse}};
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& 
     frame.time = time;
     frame.points = mesh.vertices;
     frame.triangles = mesh.triangles;
-    frame.cell_arrays = total_arrays(totals.hits, totals.impulse);
+    frame.cell_arrays = total_arrays(totals);
     return frame;
 }
 
@@ -63,9 +65,11 @@ VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, co
     frame.points = {foot - half * u - half * v, foot + half * u - half * v, foot + half * u + half * v,
                     foot - half * u + half * v};
     frame.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const std::uint64_t hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
-    const Vec3 impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
-    frame.cell_arrays = total_arrays({hits, hits}, {impulse, impulse});
+    if (!totals.hits.empty()) {
+        const std::uint64_t hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
+        const Vec3 impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
+        frame.cell_arrays = total_arrays({{hits, hits}, {impulse, impulse}});
+    }
     return frame;
 }
 

@@ -14,12 +14,12 @@ namespace ricochet {
 /// resting and unsimulated_time.
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time);
 
-/// A mesh in world coordinates with the cell arrays hits and impulse (N s).
+/// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);
 
 /// A plane as a square of two triangles around the foot point of the region's centre, its edge four times the region's
 /// diagonal (at least 2 m), with the fields plane_point and plane_normal (of unit length). Both triangles carry the
-/// plane's totals.
+/// plane's totals; there are no arrays when the totals are empty.
 [[nodiscard]] VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region,
                                                const TriangleTotals& totals, double time);
 

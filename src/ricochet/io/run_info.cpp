@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -32,12 +33,39 @@ RunInfo run_info_of(const Json& json) {
     }
     for (const Json& collider : json.at("colliders")) {
         info.colliders.push_back({collider.at("name").get<std::string>(), collider.at("type").get<std::string>(),
-                                  collider.at("file").get<std::string>(), collider.at("material").get<std::string>()});
+                                  collider.at("file").get<std::string>(),
+                                  collider.at("material").get<std::uint32_t>()});
     }
     return info;
 }
 
+// The axis that points most against the uniform forces; z where there are none.
+Vec3 upward_axis(const SimulationSetup& setup) {
+    Vec3 fall;
+    for (const auto& force : setup.forces) {
+        if (force->is_uniform()) fall += force->acceleration({Vec3{}, Vec3{}, 1.0, 0.0, 0.0});
+    }
+    Vec3 up{0, 0, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::fabs(fall[axis]) < max_abs(fall) || fall[axis] == 0.0) continue;
+        up = {};
+        up[axis] = fall[axis] > 0.0 ? -1.0 : 1.0;
+    }
+    return up;
+}
+
 }  // namespace
+
+RunInfo run_info_of(const SceneDescription& scene) {
+    RunInfo info;
+    info.scene = scene.file;
+    info.up = upward_axis(scene.setup);
+    if (scene.camera) {
+        info.camera = CameraInfo{scene.camera->position, scene.camera->target, scene.camera->field_of_view_degrees};
+        if (scene.camera->up) info.up = normalized(*scene.camera->up);
+    }
+    return info;
+}
 
 std::string run_info_text(const RunInfo& info) {
     Json json;

@@ -2,12 +2,14 @@
 /// run.json: what a run is about, written before its first step so that pictures can be made of an unfinished run too.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet {
 
@@ -21,9 +23,9 @@ struct CameraInfo {
 /// One collider of the run.
 struct ColliderInfo {
     std::string name;
-    std::string type;      ///< "mesh" or "plane"
-    std::string file;      ///< its file in the run's folder
-    std::string material;  ///< name of its material
+    std::string type;            ///< "mesh" or "plane"
+    std::string file;            ///< its file in the run's folder
+    std::uint32_t material = 0;  ///< index of its material
 };
 
 /// Everything that run.json says.
@@ -35,6 +37,8 @@ struct RunInfo {
     std::vector<ColliderInfo> colliders;
 };
 
+/// What a scene says about its own picture: camera and the upward axis. Version and colliders are left empty.
+[[nodiscard]] RunInfo run_info_of(const SceneDescription& scene);
 [[nodiscard]] std::string run_info_text(const RunInfo& info);
 /// Reads run.json. Throws InputError when it is not one.
 [[nodiscard]] RunInfo read_run_info(const std::filesystem::path& path);

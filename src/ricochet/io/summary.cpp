@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "ricochet/core/hash.h"
 
@@ -30,10 +31,42 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["budget_exhausted"] = statistics.budget_exhausted;
     json["started_inside"] = statistics.started_inside;
     json["stayed"] = statistics.stayed;
+    json["lost_impulses"] = statistics.lost_impulses;
     json["leaks"] = nullptr;  // known only to a run that verifies itself
 }
 
+ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
+    const ColliderDescription& collider = simulation.colliders()[i];
+    const TriangleTotals totals = simulation.triangle_totals(i);
+    ColliderSummary summary;
+    summary.name = collider.name;
+    summary.type = "plane";
+    if (const auto mesh = simulation.collider_mesh(i)) {
+        summary.type = "mesh";
+        summary.triangles = mesh->triangles.size();
+    }
+    summary.hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
+    summary.impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
+    return summary;
+}
+
 }  // namespace
+
+RunSummary summarize(const Simulation& simulation) {
+    RunSummary summary;
+    summary.seed = simulation.options().seed;
+    summary.time_step = simulation.options().time_step;
+    summary.simulated_time = simulation.time();
+    summary.particles_alive = simulation.particles().size();
+    summary.statistics = simulation.statistics();
+    summary.kinetic_energy = simulation.kinetic_energy();
+    summary.potential_energy = simulation.potential_energy();
+    summary.state_hash = simulation.state_hash();
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        summary.colliders.push_back(collider_summary(simulation, i));
+    }
+    return summary;
+}
 
 std::string summary_text(const RunSummary& summary) {
     Json json;

@@ -42,6 +42,8 @@ struct RunSummary {
     std::vector<ColliderSummary> colliders;
 };
 
+/// What the simulation itself knows for its summary; the colliders' files are left empty.
+[[nodiscard]] RunSummary summarize(const Simulation& simulation);
 /// The JSON text of summary.json. Numbers that are not finite become null.
 [[nodiscard]] std::string summary_text(const RunSummary& summary);
 

@@ -1,0 +1,162 @@
+#include "cli/run_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/progress_line.h"
+#include "cli/scene_arguments.h"
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/peak_memory.h"
+#include "ricochet/io/output_directory.h"
+#include "ricochet/io/run_writer.h"
+#include "ricochet/io/state_csv.h"
+
+namespace ricochet {
+namespace {
+
+using cli::InterruptGuard;
+using Clock = std::chrono::steady_clock;
+
+// The arguments as they stand on the command line.
+struct RunArguments {
+    SceneArguments scene;
+    std::string output;
+    std::string output_state;
+    std::string threads;
+    bool quiet = false;
+    bool resume = false;
+    bool verify = false;
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void refuse_what_is_not_built(const RunArguments& arguments) {
+    const char* option = arguments.resume ? "--resume" : (arguments.verify ? "--verify" : nullptr);
+    if (option != nullptr) throw InputError(fmt::format("{} is not built yet; leave it out", option));
+}
+
+Simulation make_simulation(SimulationSetup setup, const std::string& file) {
+    try {
+        return Simulation(std::move(setup));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", file, error.what()));
+    }
+}
+
+// Finds out before the work, not after it, whether the file can be written.
+void check_writable(const std::string& file) {
+    if (!file.empty()) const AtomicFile probe(file);
+}
+
+void show_progress(cli::ProgressLine& line, const Simulation& simulation, Clock::time_point start) {
+    if (!line.due()) return;
+    const double spent = seconds_since(start);
+    const auto done = static_cast<double>(simulation.step_index());
+    const auto all = static_cast<double>(simulation.step_count());
+    line.show(fmt::format("{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {} left", 100.0 * done / all,
+                          simulation.step_index(), simulation.step_count(),
+                          cli::short_number(static_cast<double>(simulation.particles().size())),
+                          cli::short_number(static_cast<double>(simulation.statistics().particle_steps) / spent),
+                          cli::duration_text(spent * (all - done) / done)));
+}
+
+// Steps to the end, or to the end of the step in which a signal came.
+void step_and_write(Simulation& simulation, RunWriter& writer, std::uint64_t every, bool quiet) {
+    cli::ProgressLine line(quiet);
+    const Clock::time_point start = Clock::now();
+    writer.write_frame(simulation);
+    while (!simulation.finished() && InterruptGuard::signal() == 0) {
+        simulation.step();
+        if (simulation.step_index() % every == 0) writer.write_frame(simulation);
+        show_progress(line, simulation, start);
+    }
+}
+
+void print_warnings(const SimulationStatistics& statistics) {
+    const auto warn = [](std::uint64_t count, const char* what) {
+        if (count > 0) fmt::print("  note: {} {}\n", count, what);
+    };
+    warn(statistics.frozen, "particles were stopped because their state was not finite or absurdly large (frozen)");
+    warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
+    warn(statistics.started_inside, "particles were born exactly on a surface (started_inside)");
+    warn(statistics.stayed, "impacts left the particle where it was (stayed)");
+    warn(statistics.lost_impulses, "impulses were too large to be added to a triangle's total (lost_impulses)");
+}
+
+void print_report(const RunSummary& summary, const std::string& output) {
+    const SimulationStatistics& statistics = summary.statistics;
+    fmt::print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}\n", summary.scene, statistics.steps,
+               summary.simulated_time, summary.wall_seconds, summary.threads,
+               summary.threads == 1 ? "thread" : "threads", summary.interrupted ? " (interrupted)" : "");
+    fmt::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
+               statistics.emitted, summary.particles_alive, statistics.particle_steps,
+               cli::short_number(static_cast<double>(statistics.particle_steps) / summary.wall_seconds),
+               statistics.contacts, statistics.bounces_per_step_max);
+    print_warnings(statistics);
+    fmt::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
+}
+
+int run(const RunArguments& arguments) {
+    refuse_what_is_not_built(arguments);
+    const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
+    SceneDescription scene = load_scene(arguments.scene);
+    RunInfo info = run_info_of(scene);
+    info.version = RICOCHET_VERSION;
+    const Box3 region = particle_region(scene.setup);
+    Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
+
+    const InterruptGuard guard;
+    const OutputDirectory folder(arguments.output);
+    check_writable(arguments.output_state);
+    const Clock::time_point start = Clock::now();
+    RunWriter writer(folder.path(), info, simulation, region);
+    step_and_write(simulation, writer, scene.output.every, arguments.quiet);
+    RunSummary summary = writer.finish(simulation);
+    if (!arguments.output_state.empty()) {
+        write_state_csv(arguments.output_state, simulation.particles(), simulation.time());
+    }
+    summary.version = info.version;
+    summary.scene = info.scene;
+    summary.threads = thread_count();
+    summary.interrupted = !simulation.finished();
+    summary.peak_memory_bytes = peak_memory_bytes();
+    summary.wall_seconds = seconds_since(start);
+    writer.write_summary(summary);
+    if (!arguments.quiet) print_report(summary, arguments.output);
+    return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
+}
+
+void add_options(CLI::App& command, RunArguments& a) {
+    add_scene_arguments(command, a.scene);
+    command.add_option("--output", a.output, "Folder for frames and summary: new, empty, or an earlier run's")
+        ->type_name("DIR")
+        ->required();
+    command
+        .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
+        ->type_name("FILE.csv");
+    command.add_option("--threads", a.threads, "Worker threads (default: all processors)")->type_name("N");
+    command.add_flag("--quiet", a.quiet, "No progress, no report");
+    // Of the contract, not built yet: refused by name.
+    command.add_flag("--resume", a.resume)->group("");
+    command.add_flag("--verify", a.verify)->group("");
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<RunArguments>();
+    CLI::App* const command = app.add_subcommand("run", "Simulate a scene; write frames and a summary");
+    add_options(*command, *arguments);
+    command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace ricochet

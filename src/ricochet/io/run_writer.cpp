@@ -1,0 +1,105 @@
+#include "ricochet/io/run_writer.h"
+
+#include <utility>
+#include <variant>
+
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/io/frames.h"
+#include "ricochet/io/run_files.h"
+#include "ricochet/io/vtk.h"
+
+namespace ricochet {
+namespace {
+
+// Half the size of the box around an emitter's shape, about its centre.
+struct ShapeBox {
+    Box3 operator()(const PointShape& point) const { return around(point.center, {}); }
+    Box3 operator()(const DiskShape& disk) const {
+        return around(disk.center, {disk.radius, disk.radius, disk.radius});
+    }
+    Box3 operator()(const BoxShape& box) const { return around(box.center, 0.5 * box.size); }
+    Box3 operator()(const SphereShape& sphere) const {
+        return around(sphere.center, {sphere.radius, sphere.radius, sphere.radius});
+    }
+    Box3 operator()(const MeshSurfaceShape& surface) const { return bounds(*surface.mesh); }
+
+    static Box3 around(const Vec3& center, const Vec3& half) {
+        Box3 box;
+        box.include(center - half);
+        box.include(center + half);
+        return box;
+    }
+};
+
+Box3 mesh_region(const Simulation& simulation) {
+    Box3 region;
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        if (const auto mesh = simulation.collider_mesh(i)) region.include(bounds(*mesh));
+    }
+    return region;
+}
+
+std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
+    std::vector<ColliderInfo> infos;
+    for (const ColliderDescription& collider : simulation.colliders()) {
+        const bool plane = std::holds_alternative<PlaneShape>(collider.shape);
+        infos.push_back({collider.name, plane ? "plane" : "mesh", collider_file_name(infos.size(), collider.name),
+                         collider.material});
+    }
+    return infos;
+}
+
+}  // namespace
+
+Box3 particle_region(const SimulationSetup& setup) {
+    Box3 region;
+    for (const Particle& particle : setup.particles) region.include(particle.position);
+    for (const EmitterDescription& emitter : setup.emitters) region.include(std::visit(ShapeBox{}, emitter.shape));
+    if (setup.bounds) region.include(*setup.bounds);
+    return region;
+}
+
+RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region)
+    : folder_(std::move(folder)), info_(std::move(info)), region_(region), frames_(folder_) {
+    region_.include(mesh_region(simulation));
+    info_.colliders = describe_colliders(simulation);
+    write_file(folder_ / kRunInfoFile, run_info_text(info_));
+    write_colliders(simulation);
+    std::vector<PvdEntry> series;
+    for (const ColliderInfo& collider : info_.colliders) series.push_back({0.0, series.size(), collider.file});
+    if (!series.empty()) write_file(folder_ / kColliderSeriesFile, pvd_text(series));
+}
+
+void RunWriter::write_frame(const Simulation& simulation) {
+    if (last_frame_ == simulation.step_index()) return;
+    frames_.submit(simulation.step_index(), particle_frame(simulation.particles(), simulation.time()));
+    last_frame_ = simulation.step_index();
+}
+
+RunSummary RunWriter::finish(const Simulation& simulation) {
+    write_frame(simulation);
+    frames_.finish();
+    write_colliders(simulation);
+    RunSummary summary = summarize(simulation);
+    summary.frames = frames_.submitted();
+    for (std::size_t i = 0; i < summary.colliders.size(); ++i) summary.colliders[i].file = info_.colliders[i].file;
+    return summary;
+}
+
+void RunWriter::write_summary(const RunSummary& summary) const {
+    write_file(folder_ / kSummaryFile, summary_text(summary));
+}
+
+void RunWriter::write_colliders(const Simulation& simulation) const {
+    for (std::size_t i = 0; i < info_.colliders.size(); ++i) {
+        const TriangleTotals totals = simulation.triangle_totals(i);
+        const auto mesh = simulation.collider_mesh(i);
+        const double time = simulation.time();
+        write_vtp(
+            folder_ / info_.colliders[i].file,
+            mesh ? mesh_collider_frame(*mesh, totals, time)
+                 : plane_collider_frame(std::get<PlaneShape>(simulation.colliders()[i].shape), region_, totals, time));
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,46 @@
+/// \file
+/// Everything that a run leaves in its output folder, from its first step to its summary.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/io/frame_writer.h"
+#include "ricochet/io/run_info.h"
+#include "ricochet/io/summary.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// Where particles are at the start, are born, and are kept: what a picture of a scene without meshes should show.
+[[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
+
+/// Writes a run: first run.json and the colliders, then frames, at the end the colliders with their totals and the
+/// summary. What is on disk at any moment can be opened, however the run ends.
+class RunWriter {
+public:
+    /// folder: an OutputDirectory's, which must outlive the writer. region: what a plane has to be large enough for,
+    /// besides the meshes. Fills in info.colliders. Throws RunError when the disk does not take it.
+    RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region);
+
+    /// Hands the present state over as a frame. Throws what an earlier frame's writing threw.
+    void write_frame(const Simulation& simulation);
+    /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
+    /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
+    [[nodiscard]] RunSummary finish(const Simulation& simulation);
+    void write_summary(const RunSummary& summary) const;
+
+private:
+    void write_colliders(const Simulation& simulation) const;
+
+    std::filesystem::path folder_;
+    RunInfo info_;
+    Box3 region_;
+    std::optional<std::uint64_t> last_frame_;
+    FrameWriter frames_;
+};
+
+}  // namespace ricochet

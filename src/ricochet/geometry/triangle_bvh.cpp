@@ -6,6 +6,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "ricochet/core/hand_over.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/embree.h"
 
@@ -98,6 +99,7 @@ struct TriangleBvh::Impl {
     double padding = 0.0;  ///< in the float frame: rounding, slack and curvature
     Box3 clip_box;         ///< world; generously larger than the padded boxes
     std::atomic<std::ptrdiff_t> memory{0};
+    LoopOrder* build_order = nullptr;  ///< while the hierarchy is built
     embree::Device device;
     embree::Scene scene;
 
@@ -146,7 +148,9 @@ void TriangleBvh::Impl::build() {
     rtcSetGeometryBoundsFunction(
         geometry,
         [](const RTCBoundsFunctionArguments* args) {
-            static_cast<const Impl*>(args->geometryUserPtr)->write_bounds(args->primID, *args->bounds_o);
+            const auto& impl = *static_cast<const Impl*>(args->geometryUserPtr);
+            const LoopOrder::Body in_order(*impl.build_order);
+            impl.write_bounds(args->primID, *args->bounds_o);
         },
         nullptr);
     rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
@@ -163,7 +167,10 @@ void TriangleBvh::Impl::build() {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
     rtcReleaseGeometry(geometry);
+    LoopOrder order;
+    build_order = &order;
     rtcCommitScene(scene.get());
+    build_order = nullptr;
     embree::check_device(device.get(), "building the hierarchy of a collider");
 }
 

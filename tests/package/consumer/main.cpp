@@ -2,8 +2,10 @@
 
 #include "ricochet/ricochet.h"
 
-int main() {
-    const double sum =
-        ricochet::ordered_sum(1000, 10, [](std::size_t begin, std::size_t end) { return double(end - begin); });
-    std::printf("sum %g\n", sum);
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    ricochet::Simulation simulation(ricochet::read_scene(argv[1]).setup);
+    while (!simulation.finished()) simulation.step();
+    std::printf("%zu particles after %g s, state %016lx\n", simulation.particles().size(), simulation.time(),
+                simulation.state_hash());
 }

@@ -1,0 +1,43 @@
+# Checks the Markdown files of the repository: every relative link names a file or folder, every name in backquotes that
+# looks like a path into the repository exists, and the README's example is tests/package/consumer/main.cpp.
+cmake_minimum_required(VERSION 3.25)
+set(wrong)
+
+file(GLOB documents RELATIVE ${root} ${root}/*.md)
+file(GLOB_RECURSE more RELATIVE ${root} ${root}/docs/*.md ${root}/meshes/*.md ${root}/scenes/*.md ${root}/bench/*.md)
+list(APPEND documents ${more})
+
+foreach(document IN LISTS documents)
+  file(READ ${root}/${document} text)
+  # CMake cuts lists at semicolons, except between brackets: neither may be in the items.
+  string(REPLACE ";" "," text "${text}")
+  string(REPLACE "[" "<" text "${text}")
+  string(REPLACE "]" ">" text "${text}")
+  cmake_path(GET document PARENT_PATH folder)
+  string(REGEX MATCHALL ">\\([^)#: ]+[)#]" links "${text}")
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^>\\((.*)[)#]$" "\\1" target "${link}")
+    if(NOT EXISTS ${root}/${folder}/${target})
+      list(APPEND wrong "${document}: the link ${target} leads nowhere")
+    endif()
+  endforeach()
+  string(REGEX MATCHALL "`(src|tests|scripts|scenes|docs|cmake)/[A-Za-z0-9_./-]+`" names "${text}")
+  foreach(name IN LISTS names)
+    string(REPLACE "`" "" name "${name}")
+    if(NOT EXISTS ${root}/${name})
+      list(APPEND wrong "${document}: there is no ${name}")
+    endif()
+  endforeach()
+endforeach()
+
+file(READ ${root}/README.md readme)
+file(READ ${root}/tests/package/consumer/main.cpp example)
+string(FIND "${readme}" "```cpp\n${example}```" position)
+if(position EQUAL -1)
+  list(APPEND wrong "README.md: the program in it is not tests/package/consumer/main.cpp")
+endif()
+
+if(wrong)
+  list(JOIN wrong "\n  " lines)
+  message(FATAL_ERROR "The documents are wrong:\n  ${lines}")
+endif()

@@ -18,8 +18,8 @@ constexpr std::size_t kSurveyedFrames = 12;
 constexpr const char* kSpeed = "speed";
 
 // Muted earth and stone, so that the particles' colours stand out.
-constexpr std::array<Vec3, 6> kColliderColors = {{{0.24, 0.21, 0.18},
-                                                  {0.20, 0.22, 0.25},
+constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
+                                                  {0.21, 0.23, 0.265},
                                                   {0.28, 0.23, 0.16},
                                                   {0.18, 0.21, 0.19},
                                                   {0.26, 0.19, 0.16},
@@ -164,7 +164,7 @@ PreviewSpheres RunPictures::spheres(const VtkPolyData& frame, const FrameFile& f
     const double view =
         std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
     const double count = std::max(1.0, static_cast<double>(most_particles_));
-    const double visible = view * std::clamp(0.7 / std::sqrt(count), 0.0024, 0.02);
+    const double visible = view * std::clamp(0.8 / std::sqrt(count), 0.0029, 0.02);
     PreviewSpheres spheres;
     spheres.centers = frame.points;
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "cli/run_program.h"
+#include "geometry/temporary_folder.h"
+#include "io/example_frames.h"
+#include "ricochet/io/frame_writer.h"
+#include "ricochet/io/frames.h"
+#include "ricochet/io/run_files.h"
+
+namespace ricochet {
+namespace {
+
+using test::ProgramResult;
+using test::run_ricochet;
+using test::TemporaryFolder;
+
+// A folder as a run leaves it that was cut off: three frames, a mesh, and no run.json.
+struct RunFolderFiles {
+    TemporaryFolder folder;
+
+    RunFolderFiles() {
+        write_vtp(folder.path(collider_file_name(0, "block")),
+                  mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0));
+        FrameWriter writer(folder.path(""));
+        for (const std::uint64_t step : {0U, 5U, 10U}) {
+            Particles particles = test::example_particles(40);
+            for (double& radius : particles.radius) radius = 0.5;  // large enough for tiny pictures
+            writer.submit(step, particle_frame(particles, 0.1 * static_cast<double>(step)));
+        }
+        writer.finish();
+    }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder.path(name).string(); }
+    [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder.path(name)); }
+    [[nodiscard]] ProgramResult render(const std::string& output, std::vector<std::string> more = {}) const {
+        more.insert(more.begin(), {"render", path(""), "--output", path(output), "--samples", "1"});
+        if (std::find(more.begin(), more.end(), "--size") == more.end()) more.insert(more.end(), {"--size", "48x32"});
+        return run_ricochet(more);
+    }
+};
+
+std::string png_size(const std::string& bytes) { return bytes.substr(16, 8); }
+
+TEST(RenderCommand, DrawsTheLastFrameOrTheOneThatIsAskedFor) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("last.png").exit_code, 0);
+    EXPECT_EQ(files.render("ten.png", {"--frame", "10"}).exit_code, 0);
+    const std::string png = files.folder.read("last.png");
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(png_size(png), std::string({0, 0, 0, 48, 0, 0, 0, 32}));
+    EXPECT_TRUE(png == files.folder.read("ten.png"));
+}
+
+TEST(RenderCommand, NumbersThePicturesOfAllFramesByTheirStep) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("p.png", {"--frame", "all", "--color-by", "contacts", "--color-map", "viridis"}).exit_code,
+              0);
+    for (const char* name : {"p_000000.png", "p_000005.png", "p_000010.png"}) EXPECT_TRUE(files.exists(name)) << name;
+    EXPECT_FALSE(files.exists("p.png"));
+}
+
+TEST(RenderCommand, EveryOptionChangesThePicture) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("plain.png").exit_code, 0);
+    const std::vector<std::vector<std::string>> options = {{"--camera", "5,5,5,0,0,0,60"},
+                                                           {"--color-by", "mass"},
+                                                           {"--color-map", "turbo"},
+                                                           {"--range", "0.2,0.3"},
+                                                           {"--collider-color", "hits"},
+                                                           {"--particle-radius", "0.3"},
+                                                           {"--size", "32x48"},
+                                                           {"--exposure", "0.5"},
+                                                           {"--up", "y"},
+                                                           {"--hide", "collider_00_block"}};
+    for (const auto& option : options) {
+        const ProgramResult result = files.render("other.png", option);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_TRUE(files.folder.read("other.png") != files.folder.read("plain.png")) << option.front();
+    }
+}
+
+TEST(RenderCommand, ThePictureDoesNotDependOnThreads) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("one.png", {"--threads", "1"}).exit_code, 0);
+    EXPECT_EQ(files.render("seven.png", {"--threads", "7"}).exit_code, 0);
+    EXPECT_TRUE(files.folder.read("one.png") == files.folder.read("seven.png"));
+}
+
+TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
+    const RunFolderFiles files;
+    struct Wrong {
+        std::vector<std::string> arguments;
+        const char* message;
+    };
+    const std::vector<Wrong> wrongs = {
+        {{"--frame", "7"}, "no such frame"},
+        {{"--frame", "first"}, "expected a step number, last or all"},
+        {{"--frame", "-1"}, "expected a step number"},
+        {{"--size", "0x10"}, "expected WIDTHxHEIGHT"},
+        {{"--size", "640"}, "expected WIDTHxHEIGHT"},
+        {{"--size", "99999x99999"}, "expected WIDTHxHEIGHT"},
+        {{"--camera", "1,2,3"}, "expected px,py,pz,tx,ty,tz"},
+        {{"--camera", "1,2,3,1,2,3"}, "position and target are the same"},
+        {{"--camera", "1,2,3,0,0,nan"}, "expected numbers"},
+        {{"--camera", "1,2,3,0,0,0,180"}, "field of view"},
+        {{"--color-by", "temperature"}, "known arrays: speed, id, velocity, mass, radius"},
+        {{"--color-map", "jet"}, "expected one of viridis, plasma, turbo"},
+        {{"--range", "3,1"}, "low < high"},
+        {{"--range", "a,b"}, "expected numbers"},
+        {{"--collider-color", "pink"}, "expected plain or hits"},
+        {{"--hide", "nothing"}, "no such collider"},
+        {{"--up", "w"}, "expected x, y or z"},
+        {{"--samples", "0"}, "expected 1 to 4096"},
+        {{"--exposure", "0"}, "expected 0.01 to 100"},
+        {{"--particle-radius", "-1"}, "expected 0 to"},
+        {{"--threads", "0"}, "expected a whole number"},
+        {{"--fps", "0"}, "expected 1 to 240"},
+        {{"--unknown"}, "--unknown"},
+    };
+    for (const Wrong& wrong : wrongs) {
+        SCOPED_TRACE(wrong.arguments.front() + " " + wrong.arguments.back());
+        std::vector<std::string> arguments = wrong.arguments;
+        const bool own_size = arguments.front() == "--size" || arguments.front() == "--samples";
+        arguments.insert(arguments.begin(), {"render", files.path(""), "--output", files.path("a.png")});
+        if (!own_size) arguments.insert(arguments.end(), {"--size", "48x32"});
+        const ProgramResult result = run_ricochet(arguments);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+        EXPECT_NE(result.errors.find(wrong.message), std::string::npos) << result.errors;
+        EXPECT_FALSE(files.exists("a.png"));
+    }
+}
+
+TEST(RenderCommand, RefusesFoldersAndNamesThatAreWrong) {
+    const RunFolderFiles files;
+    const TemporaryFolder empty;
+    EXPECT_EQ(files.render("a.jpg").exit_code, 2);
+    EXPECT_EQ(files.render("none/a.png").exit_code, 1);
+    EXPECT_EQ(run_ricochet({"render", files.path("none"), "--output", files.path("a.png")}).exit_code, 2);
+    EXPECT_EQ(run_ricochet({"render", empty.path("").string(), "--output", files.path("a.png")}).exit_code, 2);
+    (void)files.folder.write("particles_000010.vtp", "no longer a frame");
+    const ProgramResult damaged = files.render("a.png");
+    EXPECT_EQ(damaged.exit_code, 2);
+    EXPECT_NE(damaged.errors.find("particles_000010.vtp"), std::string::npos) << damaged.errors;
+}
+
+TEST(RenderCommand, MakesAFilmWithFfmpegAndNothingWithoutIt) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("odd.mp4", {"--size", "47x32"}).exit_code, 2);
+    const std::string path = std::getenv("PATH");
+    ASSERT_EQ(::setenv("PATH", files.path("no/programs").c_str(), 1), 0);
+    const ProgramResult without = files.render("film.mp4");
+    ASSERT_EQ(::setenv("PATH", path.c_str(), 1), 0);
+    EXPECT_EQ(without.exit_code, 1);
+    EXPECT_NE(without.errors.find("install ffmpeg"), std::string::npos) << without.errors;
+    EXPECT_FALSE(files.exists("film.mp4"));
+    if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+    const ProgramResult with = files.render("film.mp4");
+    EXPECT_EQ(with.exit_code, 0) << with.errors;
+    EXPECT_EQ(files.folder.read("film.mp4").substr(4, 4), "ftyp");
+    for (const auto& entry : std::filesystem::directory_iterator(files.folder.path(""))) {
+        EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/run_program.h"
+#include "geometry/temporary_folder.h"
+
+namespace ricochet {
+namespace {
+
+using test::ProgramResult;
+using test::run_ricochet;
+using test::TemporaryFolder;
+
+constexpr const char* kScene = R"({
+  "ricochet": 1,
+  "simulation": {"time_step": 0.01, "duration": 0.5, "seed": 3},
+  "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+  "materials": {"plain": {"restitution": 0.7}},
+  "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "plain"}],
+  "emitters": [{"type": "box", "center": [0, 0, 0.5], "size": [1, 1, 0.4], "burst": 1000}],
+  "output": {"every": 20}
+})";
+
+struct RunFiles {
+    TemporaryFolder folder;
+    std::string scene = folder.write("scene.json", kScene).string();
+    std::string output = folder.path("out").string();
+
+    [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder.path(name)); }
+    [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(folder.read("out/summary.json")); }
+    [[nodiscard]] ProgramResult run(std::vector<std::string> more = {}) const {
+        more.insert(more.begin(), {"run", scene, "--output", output});
+        return run_ricochet(more);
+    }
+};
+
+bool is_one_line(const std::string& text) { return std::count(text.begin(), text.end(), '\n') == 1; }
+
+TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
+    const RunFiles files;
+    const ProgramResult result = files.run({"--output-state", files.folder.path("state.csv").string()});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    for (const char* name :
+         {"particles_000000.vtp", "particles_000020.vtp", "particles_000040.vtp", "particles_000050.vtp",
+          "particles.pvd", "collider_00_floor.vtp", "colliders.pvd", "run.json"}) {
+        EXPECT_TRUE(files.exists(std::string("out/") + name)) << name;
+    }
+    EXPECT_FALSE(files.exists("out/particles_000010.vtp"));
+    const nlohmann::json summary = files.summary();
+    EXPECT_EQ(summary["steps"], 50);
+    EXPECT_EQ(summary["frames"], 4);
+    EXPECT_EQ(summary["particles_emitted"], 1000);
+    EXPECT_FALSE(summary["interrupted"].get<bool>());
+    const std::string state = files.folder.read("state.csv");
+    EXPECT_EQ(std::count(state.begin(), state.end(), '\n'), 1001);
+    EXPECT_NE(result.output.find(summary["state_hash"].get<std::string>()), std::string::npos) << result.output;
+}
+
+TEST(RunCommand, TheStateDoesNotDependOnThreads) {
+    const RunFiles files;
+    std::vector<std::string> hashes;
+    for (const char* threads : {"1", "2", "7"}) {
+        EXPECT_EQ(files.run({"--threads", threads}).exit_code, 0);
+        EXPECT_EQ(files.summary()["threads"], std::stoi(threads));
+        hashes.push_back(files.summary()["state_hash"]);
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+TEST(RunCommand, OverridesChangeTheScene) {
+    const RunFiles files;
+    EXPECT_EQ(files.run({"--set", "simulation.duration=0.1", "--set", "output.every=1000"}).exit_code, 0);
+    EXPECT_EQ(files.summary()["steps"], 10);
+    EXPECT_EQ(files.summary()["frames"], 2);
+}
+
+TEST(RunCommand, QuietPrintsNothing) {
+    const RunFiles files;
+    const ProgramResult result = files.run({"--quiet"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.output + result.errors, "");
+}
+
+TEST(RunCommand, ASecondRunReplacesTheFirst) {
+    const RunFiles files;
+    EXPECT_EQ(files.run().exit_code, 0);
+    (void)files.folder.write("out/notes.txt", "mine");
+    EXPECT_EQ(files.run({"--set", "simulation.duration=0.1"}).exit_code, 0);
+    EXPECT_FALSE(files.exists("out/particles_000050.vtp"));
+    EXPECT_TRUE(files.exists("out/particles_000010.vtp"));
+    EXPECT_EQ(files.folder.read("out/notes.txt"), "mine");
+}
+
+TEST(RunCommand, AWrongSceneTouchesNothing) {
+    const RunFiles files;
+    EXPECT_EQ(files.run().exit_code, 0);
+    const std::string before = files.folder.read("out/summary.json");
+    const ProgramResult result = files.run({"--set", "simulation.time_step=-1"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(is_one_line(result.errors)) << result.errors;
+    EXPECT_EQ(files.folder.read("out/summary.json"), before);
+    const RunFiles fresh;
+    EXPECT_EQ(fresh.run({"--set", "simulation.time_step=-1"}).exit_code, 2);
+    EXPECT_FALSE(fresh.exists("out"));
+}
+
+// Wrong arguments end with 2, what the system refuses with 1; each says why in one line and names the culprit.
+void expect_refused(const ProgramResult& result, int exit_code, const std::string& culprit) {
+    SCOPED_TRACE(culprit);
+    EXPECT_EQ(result.exit_code, exit_code) << result.errors;
+    EXPECT_EQ(result.output, "");
+    EXPECT_TRUE(is_one_line(result.errors)) << result.errors;
+    EXPECT_NE(result.errors.find(culprit), std::string::npos) << result.errors;
+}
+
+TEST(RunCommand, RefusesThreadCountsThatMakeNoSense) {
+    const RunFiles files;
+    for (const char* threads : {"0", "-1", "1000000", "two", "1.5", "", "99999999999999999999"}) {
+        if (*threads == '\0') continue;
+        expect_refused(files.run({std::string("--threads=") + threads}), 2, std::string("--threads ") + threads);
+    }
+    EXPECT_FALSE(files.exists("out"));
+}
+
+TEST(RunCommand, RefusesWhatIsNotBuiltYetByName) {
+    const RunFiles files;
+    expect_refused(files.run({"--resume"}), 2, "--resume is not built yet");
+    expect_refused(files.run({"--verify"}), 2, "--verify is not built yet");
+    EXPECT_FALSE(files.exists("out"));
+}
+
+TEST(RunCommand, RefusesOutputFoldersThatAreNotItsOwn) {
+    const RunFiles files;
+    (void)files.folder.write("other", "x");
+    std::filesystem::create_directory(files.folder.path("out"));
+    (void)files.folder.write("out/thesis.txt", "years of work");
+    expect_refused(files.run(), 2, "not empty");
+    EXPECT_EQ(files.folder.read("out/thesis.txt"), "years of work");
+    expect_refused(run_ricochet({"run", files.scene, "--output", files.folder.path("other").string()}), 2,
+                   "not a folder");
+    expect_refused(run_ricochet({"run", files.scene, "--output", "/proc/ricochet"}), 1, "/proc/ricochet");
+}
+
+TEST(RunCommand, RefusesAMissingSceneOutputOrStateFolder) {
+    const RunFiles files;
+    expect_refused(run_ricochet({"run", files.folder.path("none.json").string(), "--output", files.output}), 2,
+                   "none.json");
+    expect_refused(run_ricochet({"run", files.scene}), 2, "--output");
+    expect_refused(files.run({"--output-state", files.folder.path("none/state.csv").string()}), 1, "state.csv");
+    expect_refused(files.run({"--output-state", files.folder.path("").string()}), 2, "not a regular file");
+}
+
+TEST(RunCommand, AFullDiskIsAFailureThatIsTold) {
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    const RunFiles files;
+    const ProgramResult result =
+        run_ricochet({"run", files.scene, "--output", files.output, "--output-state", "/dev/full"});
+    expect_refused(result, 2, "/dev/full");
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -57,27 +57,47 @@ void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
 }
 
-void show_progress(cli::ProgressLine& line, const Simulation& simulation, Clock::time_point start) {
-    if (!line.due()) return;
-    const double spent = seconds_since(start);
-    const auto done = static_cast<double>(simulation.step_index());
-    const auto all = static_cast<double>(simulation.step_count());
-    line.show(fmt::format("{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {} left", 100.0 * done / all,
-                          simulation.step_index(), simulation.step_count(),
-                          cli::short_number(static_cast<double>(simulation.particles().size())),
-                          cli::short_number(static_cast<double>(simulation.statistics().particle_steps) / spent),
-                          cli::duration_text(spent * (all - done) / done)));
-}
+// The progress line of a run. Steps cost more as particles are born, so the time left is told from the latest steps.
+class RunProgress {
+public:
+    explicit RunProgress(bool quiet) : line_(quiet) {}
+
+    void show(const Simulation& simulation) {
+        if (!line_.due()) return;
+        const Clock::time_point now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_time_).count();
+        const auto steps = static_cast<double>(simulation.step_index() - last_step_);
+        const auto moved = static_cast<double>(simulation.statistics().particle_steps - last_particle_steps_);
+        seconds_per_step_ =
+            seconds_per_step_ == 0.0 ? seconds / steps : 0.8 * seconds_per_step_ + 0.2 * seconds / steps;
+        last_time_ = now;
+        last_step_ = simulation.step_index();
+        last_particle_steps_ = simulation.statistics().particle_steps;
+        const auto left = static_cast<double>(simulation.step_count() - simulation.step_index());
+        line_.show(fmt::format(
+            "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {} left",
+            100.0 * static_cast<double>(simulation.step_index()) / static_cast<double>(simulation.step_count()),
+            simulation.step_index(), simulation.step_count(),
+            cli::short_number(static_cast<double>(simulation.particles().size())), cli::short_number(moved / seconds),
+            cli::duration_text(left * seconds_per_step_)));
+    }
+
+private:
+    cli::ProgressLine line_;
+    Clock::time_point last_time_ = Clock::now();
+    std::uint64_t last_step_ = 0;
+    std::uint64_t last_particle_steps_ = 0;
+    double seconds_per_step_ = 0.0;
+};
 
 // Steps to the end, or to the end of the step in which a signal came.
 void step_and_write(Simulation& simulation, RunWriter& writer, std::uint64_t every, bool quiet) {
-    cli::ProgressLine line(quiet);
-    const Clock::time_point start = Clock::now();
+    RunProgress progress(quiet);
     writer.write_frame(simulation);
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
         simulation.step();
         if (simulation.step_index() % every == 0) writer.write_frame(simulation);
-        show_progress(line, simulation, start);
+        progress.show(simulation);
     }
 }
 

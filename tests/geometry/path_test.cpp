@@ -2,12 +2,90 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <cstdint>
 
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/predicates.h"
+#include "support/counts.h"
 
 namespace ricochet {
 namespace {
+
+using Digits = boost::multiprecision::cpp_bin_float_100;
+
+Path cubic_path(RandomSequence& random) {
+    Path path;
+    for (Vec3& c : path.c) c = random.unit_vector();
+    path.degree = 3;
+    path.duration = 2.0;
+    path.end = path.c[0] + 2.0 * (path.c[1] + 2.0 * (path.c[2] + 2.0 * path.c[3]));
+    return path;
+}
+
+Digits component(const Path& path, int axis, const Digits& s) {
+    Digits value = 0;
+    for (std::size_t k = 4; k-- > 0;) value = value * s + Digits(path.c[k][axis]);
+    return value;
+}
+
+TEST(Path, BeginsAndEndsExactlyAtTheStoredPoints) {
+    const Path path = parabola_path({0.1, 0.2, 0.3}, {1, -2, 3}, {0, 0, -9.81}, 0.7);
+    EXPECT_EQ(path.position(0.0), path.c[0]);
+    EXPECT_EQ(path.position(-1.0), path.c[0]);
+    EXPECT_EQ(path.position(path.duration), path.end);
+    EXPECT_EQ(path.position(2.0), path.end);
+}
+
+TEST(Path, WithoutAccelerationIsALine) {
+    const Path path = parabola_path({1, 2, 3}, {4, 5, 6}, {}, 0.5);
+    EXPECT_EQ(path.degree, 1);
+    EXPECT_EQ(path.end, (Vec3{3, 4.5, 6}));
+    EXPECT_EQ(path.sagitta(0.0, 0.5), 0.0);
+}
+
+TEST(Path, PositionAndVelocityAgreeWithHundredDigits) {
+    RandomSequence random(1, 0, 0);
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        const Path path = cubic_path(random);
+        const double s = 2.0 * random.uniform();
+        const double step = 0x1p-100;
+        // Horner's rule errs by at most 6 roundings of the sum of the terms' magnitudes, 15 here (17 for the slope).
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(path.position(s)[axis], static_cast<double>(component(path, axis, s)), 15 * 6 * 0x1p-53);
+            const Digits slope = (component(path, axis, Digits(s) + step) - component(path, axis, s)) / step;
+            EXPECT_NEAR(path.velocity(s)[axis], static_cast<double>(slope), 17 * 6 * 0x1p-53);
+        }
+    }
+}
+
+TEST(Path, NeverLeavesItsChordByMoreThanItsSagitta) {
+    RandomSequence random(2, 0, 0);
+    for (int i = 0; i < test::scaled(5000); ++i) {
+        const Path path = cubic_path(random);
+        const double from = 2.0 * random.uniform();
+        const double to = from + (2.0 - from) * random.uniform();
+        const double share = random.uniform();
+        const Vec3 on_path = path.position(from + share * (to - from));
+        const Vec3 on_chord = path.position(from) + share * (path.position(to) - path.position(from));
+        EXPECT_LE(length(on_path - on_chord), path.sagitta(from, to) + 1e-14);
+    }
+}
+
+// For a parabola the bound is attained in the middle.
+TEST(Path, SagittaOfAParabolaIsExact) {
+    const Path path = parabola_path({0, 0, 0}, {1, 0, 5}, {0, 0, -10}, 1.0);
+    EXPECT_DOUBLE_EQ(path.sagitta(0.0, 1.0), 10.0 / 8.0);
+    EXPECT_DOUBLE_EQ(path.position(0.5).z, 10.0 / 8.0);
+}
+
+TEST(Path, HasNoCoordinatesTooSmallForThePredicates) {
+    const Path path = line_path({}, {1e-200, 0, 0}, 1.0);
+    EXPECT_EQ(path.end.x, 0.0);
+    EXPECT_EQ(path.position(0.5).x, 0.0);
+}
 
 constexpr std::uint64_t kSeed = 20240614;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/expansion.h"
 #include "ricochet/geometry/predicates.h"
 
@@ -45,7 +46,29 @@ struct TriangleSurface {
     }
     [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, a, b, c); }
     [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return crossing_fraction(p, q, a, b, c); }
+    /// Fraction of a segment in the triangle's plane, which meets the triangle, at which it enters: the last of the
+    /// crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
+    /// Clipping", Computers & Graphics 3, 1978).
+    [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };
+
+double TriangleSurface::entry(const Vec3& p, const Vec3& q) const {
+    const std::array<const Vec3*, 3> corners{&a, &b, &c};
+    const Vec3 n = abs(normal());
+    const int axis = n.x >= n.y && n.x >= n.z ? 0 : (n.y >= n.z ? 1 : 2);
+    double latest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& from = *corners[k];
+        const Vec3& to = *corners[(k + 1) % 3];
+        // The plane through the edge and parallel to the axis, exactly: only one coordinate differs.
+        Vec3 lifted = from;
+        lifted[axis] += std::max(max_abs(to - from), ulp(from[axis]));
+        const int inside = orient3d(from, to, lifted, *corners[(k + 2) % 3]);
+        if (orient3d(from, to, lifted, p) != -inside || orient3d(from, to, lifted, q) == -inside) continue;
+        latest = std::max(latest, crossing_fraction(p, q, from, to, lifted));
+    }
+    return latest;
+}
 
 Expansion<12> plane_expansion(const Plane& plane, const Vec3& p) {
     const auto term = [](double n, double x, double origin) { return Expansion<2>(two_diff(x, origin)) * n; };
@@ -67,23 +90,8 @@ struct PlaneSurface {
         const DoubleDouble at_p = plane_value(plane, p);
         return (at_p / (at_p - plane_value(plane, q))).hi;
     }
+    [[nodiscard]] double entry(const Vec3& /*p*/, const Vec3& /*q*/) const { return 0.0; }
 };
-
-/// Where a straight path runs inside the plane of a triangle it meets: the first point at which the rest of the path's
-/// beginning no longer meets it, found by halving (exact tests, so the answer errs towards early by at most an ulp).
-template <class Surface>
-double entry_in_plane(const Path& path, const Surface& surface) {
-    double free = 0.0;
-    double met = 1.0;
-    if (surface.contains(path.c[0])) return 0.0;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (free + met);
-        if (middle <= free || middle >= met) break;
-        const Vec3 p = path.position(middle * path.duration);
-        (surface.contains_crossing_of(path.c[0], p) ? met : free) = middle;
-    }
-    return free * path.duration;
-}
 
 template <class Surface>
 std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& surface) {
@@ -91,7 +99,7 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     const int after = surface.side(path.end);
     if (before == after && before != 0) return std::nullopt;
     if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
-    if (before == 0 && after == 0) return Crossing{entry_in_plane(path, surface), 0};
+    if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
     // A particle born on the surface is turned back from the side it heads for.
     if (before == 0) return Crossing{0.0, -after};
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};

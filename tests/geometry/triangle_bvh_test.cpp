@@ -1,0 +1,227 @@
+#include "ricochet/geometry/triangle_bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/predicates.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+std::vector<std::uint32_t> visited(const TriangleBvh& bvh, const Vec3& from, const Vec3& to) {
+    std::vector<std::uint32_t> triangles;
+    bvh.visit(from, to, [&](std::uint32_t triangle) {
+        triangles.push_back(triangle);
+        return 1.0;
+    });
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+}
+
+/// Every triangle that the segment meets exactly is visited.
+void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec3& from, const Vec3& to, int& met) {
+    const std::vector<std::uint32_t> seen = visited(bvh, from, to);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        if (!segment_meets_triangle(from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
+        ++met;
+        ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << "triangle " << t;
+    }
+}
+
+/// Slender, overlapping, of very different sizes.
+TriangleMesh soup(int count, std::uint64_t seed) {
+    TriangleMesh mesh;
+    RandomSequence random(seed, 0, 0);
+    for (int k = 0; k < count; ++k) {
+        const Vec3 center = random.in_unit_ball();
+        const double size = std::pow(10.0, -5.0 * random.uniform());
+        const Vec3 along = size * random.unit_vector();
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(center + along);
+        mesh.vertices.push_back(center - along);
+        mesh.vertices.push_back(center + std::pow(10.0, -4.0 * random.uniform()) * size * random.unit_vector());
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+/// Segments that are hard on boxes: aimed at corners and points of edges, along axes and box faces, starting far away,
+/// tiny, without length, ending on a triangle.
+std::array<Vec3, 2> hard_segment(const TriangleMesh& mesh, const Box3& box, int kind, RandomSequence& random) {
+    const auto& t =
+        mesh.triangles[static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()))];
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3& b = mesh.vertices[t[1]];
+    const double size = box.diagonal();
+    const Vec3 target = random.uniform() < 0.5 ? a : a + random.uniform() * (b - a);
+    const Vec3 heading = random.unit_vector();
+    switch (kind) {
+        case 0:
+            return {target - size * heading, target + size * heading};
+        case 1:
+            return {target - 1e9 * size * heading, target + size * heading};
+        case 2:
+            return {target - 1e-14 * size * heading, target + 1e-14 * size * heading};
+        case 3:
+            return {target, target};
+        case 4:
+            return {target - size * heading, target};
+        case 5: {  // along an axis, through the corner, which lies on faces of the triangle's box
+            Vec3 step;
+            step[static_cast<int>(3.0 * random.uniform())] = size;
+            return {a - step, a + step};
+        }
+        case 6:
+            return {a - 3.0 * (b - a), b + 3.0 * (b - a)};  // along an edge
+        case 7:
+            return {target - 1e5 * size * heading, target + 1e5 * size * heading};
+        default:
+            return {box.lower + random.uniform() * box.size(), box.lower + random.uniform() * box.size()};
+    }
+}
+
+struct Place {
+    std::string name;
+    double scale;
+    double offset;  // in diagonals
+};
+
+class TriangleBvhPlaces : public ::testing::TestWithParam<Place> {};
+
+INSTANTIATE_TEST_SUITE_P(All, TriangleBvhPlaces,
+                         ::testing::Values(Place{"AtTheOrigin", 1.0, 0.0}, Place{"Tiny", 0x1p-40, 0.0},
+                                           Place{"Huge", 0x1p40, 0.0}, Place{"Immense", 1e70, 0.0},
+                                           Place{"Minute", 1e-70, 0.0}, Place{"MovedByAThousand", 1.0, 1e3},
+                                           Place{"MovedByAMillion", 1.0, 1e6}, Place{"TinyAndMoved", 0x1p-40, 1e6}),
+                         [](const auto& place) { return place.param.name; });
+
+TEST_P(TriangleBvhPlaces, VisitsEveryTriangleThatASegmentMeets) {
+    for (const TriangleMesh& original :
+         {soup(300, 1), testing::sphere_mesh({}, 1.0, 3), testing::box_mesh({-1, -1, -1}, {1, 1, 1})}) {
+        TriangleMesh mesh = original;
+        const double size = bounds(mesh).diagonal();
+        for (Vec3& v : mesh.vertices)
+            v = flush_tiny(GetParam().scale * v + GetParam().scale * GetParam().offset * size * Vec3{1, -0.5, 0.3});
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+        const Box3 box = bounds(mesh);
+        RandomSequence random(2, 0, 0);
+        int met = 0;
+        for (int i = 0; i < test::scaled(900); ++i) {
+            SCOPED_TRACE(i);
+            const auto [from, to] = hard_segment(mesh, box, i % 9, random);
+            expect_complete(mesh, bvh, flush_tiny(from), flush_tiny(to), met);
+            if (HasFatalFailure()) return;
+        }
+        EXPECT_GT(met, 0);
+    }
+}
+
+/// Distance of triangle corners and edge points from a segment: a lower bound is not needed, samples suffice.
+double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
+    const Vec3 d = q - p;
+    const double s = length_squared(d) > 0.0 ? std::clamp(dot(x - p, d) / length_squared(d), 0.0, 1.0) : 0.0;
+    return length(x - (p + s * d));
+}
+
+TEST(TriangleBvh, VisitsWhatComesWithinTheAllowanceAndTheSlack) {
+    const TriangleMesh mesh = soup(500, 3);
+    for (const double allowance : {0.0, 1e-3, 0.1}) {
+        SCOPED_TRACE(allowance);
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, allowance);
+        EXPECT_EQ(bvh.curvature_allowance(), allowance);
+        const double reach = allowance + bvh.slack();
+        RandomSequence random(4, 0, 0);
+        int near = 0;
+        for (int i = 0; i < test::scaled(300); ++i) {
+            const auto& t = mesh.triangles[static_cast<std::size_t>(random.uniform() * 500.0)];
+            const Vec3 beside = mesh.vertices[t[0]] + 0.999 * reach * random.unit_vector();
+            const Vec3 heading = random.unit_vector();
+            const Vec3 from = beside - random.uniform() * heading;
+            const Vec3 to = beside + random.uniform() * heading;
+            const auto seen = visited(bvh, from, to);
+            for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+                const auto& corners = mesh.triangles[k];
+                const bool is_near = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+                    return distance(mesh.vertices[v], from, to) <= reach;
+                });
+                near += is_near ? 1 : 0;
+                ASSERT_TRUE(!is_near || std::binary_search(seen.begin(), seen.end(), k)) << i;
+            }
+        }
+        EXPECT_GE(near, test::scaled(300));
+    }
+}
+
+// Whatever the visitor narrows to, triangles up to there are still visited.
+TEST(TriangleBvh, NarrowingLosesNothingInFrontOfIt) {
+    const TriangleMesh mesh = testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({}, 0.5, 3));
+    const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+    RandomSequence random(5, 0, 0);
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        const Vec3 from = 3.0 * random.unit_vector();
+        const Vec3 to = -1.0 * from + 0.5 * random.in_unit_ball();
+        double first = 2.0;
+        const auto fraction_of = [&](std::uint32_t t) {
+            const auto& [a, b, c] = mesh.triangles[t];
+            const Vec3 &pa = mesh.vertices[a], &pb = mesh.vertices[b], &pc = mesh.vertices[c];
+            return segment_meets_triangle(from, to, pa, pb, pc) ? crossing_fraction(from, to, pa, pb, pc) : 2.0;
+        };
+        bvh.visit(from, to, [&](std::uint32_t t) {
+            first = std::min(first, fraction_of(t));
+            return std::min(first, 1.0);
+        });
+        double reference = 2.0;
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) reference = std::min(reference, fraction_of(t));
+        ASSERT_EQ(first, reference) << i;
+    }
+}
+
+TEST(TriangleBvh, VisitsTheOneTriangleAndEveryDuplicate) {
+    const std::vector<Vec3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const std::vector<Triangle> one{{0, 1, 2}};
+    const TriangleBvh single(vertices, one, 0.0);
+    EXPECT_EQ(visited(single, {0.2, 0.2, 1}, {0.2, 0.2, -1}).size(), 1U);
+    EXPECT_TRUE(visited(single, {5, 5, 1}, {5, 5, -1}).empty());
+    const std::vector<Triangle> many(1000, Triangle{0, 1, 2});
+    const TriangleBvh duplicated(vertices, many, 0.0);
+    const auto seen = visited(duplicated, {0.2, 0.2, 1}, {0.2, 0.2, -1});
+    EXPECT_EQ(std::set<std::uint32_t>(seen.begin(), seen.end()).size(), 1000U);
+}
+
+TEST(TriangleBvh, WithoutTrianglesVisitsNothing) {
+    const TriangleBvh empty({}, {}, 0.0);
+    EXPECT_TRUE(visited(empty, {0, 0, 0}, {1, 1, 1}).empty());
+    EXPECT_EQ(empty.memory_bytes(), 0U);
+}
+
+TEST(TriangleBvh, LooksAtFewTrianglesOfALargeMesh) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, test::scaled(7) > 3 ? 7 : 5);  // 131 072 triangles
+    const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+    EXPECT_GT(bvh.memory_bytes(), mesh.triangles.size());
+    RandomSequence random(6, 0, 0);
+    std::size_t seen = 0;
+    constexpr int kRays = 200;
+    int met = 0;
+    for (int i = 0; i < kRays; ++i) {
+        const Vec3 from = 0.5 * random.in_unit_ball();
+        const Vec3 to = 2.0 * random.unit_vector();
+        seen += visited(bvh, from, to).size();
+        if (i % 20 == 0) expect_complete(mesh, bvh, from, to, met);
+    }
+    EXPECT_GE(met, kRays / 20);
+    EXPECT_LT(seen, std::size_t{20} * kRays);
+}
+
+TEST(TriangleBvh, NamesTheRayLibrary) { EXPECT_EQ(ray_library_version().rfind("Embree ", 0), 0U); }
+
+}  // namespace
+}  // namespace ricochet

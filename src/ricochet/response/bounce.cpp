@@ -4,11 +4,17 @@
 #include <array>
 #include <limits>
 
+#include "ricochet/core/double_double.h"
+
 namespace ricochet {
 namespace {
 
 /// Rounding that a projection onto a plane leaves in w . n, relative to |v|.
 constexpr double kProjectionRounding = 0x1p-48;
+
+DoubleDouble squared_length(const Vec3& v) {
+    return two_product(v.x, v.x) + two_product(v.y, v.y) + two_product(v.z, v.z);
+}
 
 bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale) {
     return std::all_of(normals.begin(), normals.end(),
@@ -27,8 +33,9 @@ Vec3 bounce(const Vec3& v, const Vec3& n, double restitution, double friction) {
         const double loss = friction * (1.0 + restitution) * approach;
         after -= slip <= loss ? tangential : (loss / slip) * tangential;
     } else if (restitution == 1.0) {
-        // The rounded normal is not exactly of unit length; without this its error would add up over many bounces.
-        after *= std::sqrt(length_squared(v) / length_squared(after));
+        // The rounded normal is not exactly of unit length; without this its error would add up over many bounces. The
+        // correction itself must not lean to one side, hence the exact products.
+        after += (0.5 * (squared_length(v) - squared_length(after)).hi / length_squared(after)) * after;
     }
     return after;
 }

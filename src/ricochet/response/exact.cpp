@@ -40,6 +40,7 @@ public:
           state_(state),
           scratch_(scratch),
           search_(rules.world_, scratch.contacts),
+          start_(state.position),
           remaining_(duration) {}
 
     /// The loop that moves one particle: fly until something is in the way, answer, go on with the time that is left.
@@ -90,6 +91,7 @@ private:
     void leave_surface(const Flight& flight) {
         state_.velocity = velocity_at(flight, 0.0);
         if (const auto place = step_off(search_, state_.position)) {
+            start_ = *place;
             state_.position = *place;
             return;
         }
@@ -208,6 +210,8 @@ private:
 
     void rest(SurfaceId support, const Vec3& a) {
         push(support, -remaining_ * a, false);
+        // Landing again from one gap above, step after step, it would creep downhill.
+        if (length(state_.position - start_) <= kTouchingGaps * parking_gap(start_)) state_.position = start_;
         state_.velocity = Vec3{};
         state_.time += remaining_;
         remaining_ = 0.0;
@@ -266,6 +270,7 @@ private:
     ForceInput& state_;
     MoveScratch& scratch_;
     ContactSearch search_;
+    Vec3 start_;  // where the step began
     MoveOutcome outcome_;
     double remaining_;
     std::array<SurfaceId, 3> touched_{};

@@ -109,6 +109,7 @@ TEST(MeshTopology, OfAMeshWithoutFacesIsEmpty) {
     const TopologyReport report = report_of(3, {});
     EXPECT_EQ(report.shells, 0U);
     EXPECT_EQ(report.unused_vertices, 3U);
+    EXPECT_EQ(MeshTopology(TriangleMesh{}).report().shells, 0U);
 }
 
 TEST(MeshTopology, TakesAFaceThatWalksABridgeBothWaysForManifold) {

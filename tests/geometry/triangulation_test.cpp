@@ -286,8 +286,8 @@ bool is_simple(const Outline& p) {
     const auto flat = [&](std::size_t i) { return Point2{p[i % n].x, p[i % n].y}; };
     const auto on_segment = [&](std::size_t k, std::size_t i) {
         if (orient2d(flat(i), flat(i + 1), flat(k)) != 0) return false;
-        const auto [u0, u1] = std::minmax(flat(i).u, flat(i + 1).u);
-        const auto [v0, v1] = std::minmax(flat(i).v, flat(i + 1).v);
+        const auto [u0, u1] = std::minmax({flat(i).u, flat(i + 1).u});
+        const auto [v0, v1] = std::minmax({flat(i).v, flat(i + 1).v});
         return flat(k).u >= u0 && flat(k).u <= u1 && flat(k).v >= v0 && flat(k).v <= v1;
     };
     for (std::size_t i = 0; i < n; ++i) {

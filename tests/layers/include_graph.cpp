@@ -51,7 +51,7 @@ constexpr std::array kDoors = {
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"boost/", "tests/.*"},
-    Door{"(unistd|fcntl|signal|spawn)\\.h|sys/", ".*\\.cpp|tests/.*"},
+    Door{"(unistd|fcntl|signal|spawn|malloc)\\.h|sys/", ".*\\.cpp|tests/.*"},
 };
 
 bool matches(const std::string& text, const std::string& pattern) {

@@ -54,6 +54,12 @@ FaceList faces_of(const PolygonMesh& mesh) {
     return faces;
 }
 
+// Triangles stand one after the other in memory, and so do their corners.
+Corners corners_of(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
+    return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
+}
+
 FaceList faces_of(const TriangleMesh& mesh) {
     FaceList faces = with_room_for(mesh.triangles.size(), 3 * mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) add_face(t, faces);
@@ -260,8 +266,7 @@ MeshTopology::MeshTopology(const PolygonMesh& mesh) : MeshTopology(Impl::of(face
 }
 
 MeshTopology::MeshTopology(const TriangleMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
-    const Corners corners(mesh.triangles.data()->data(), 3 * mesh.triangles.size());
-    impl_->report.unused_vertices = count_unnamed(corners, mesh.vertices.size());
+    impl_->report.unused_vertices = count_unnamed(corners_of(mesh), mesh.vertices.size());
 }
 
 MeshTopology::~MeshTopology() = default;

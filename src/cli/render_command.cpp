@@ -35,6 +35,7 @@ struct RenderArguments {
     std::string range;
     std::string collider_color = "plain";
     std::vector<std::string> hidden;
+    std::vector<std::string> glass;
     double particle_radius = 0.0;
     int samples = 16;
     int frames_per_second = 30;
@@ -113,6 +114,7 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     }
     style.collider_hits = arguments.collider_color == "hits";
     style.hidden = arguments.hidden;
+    style.glass = arguments.glass;
     style.camera = parse_camera(arguments.camera);
     style.up = parse_up(arguments.up);
     return style;
@@ -213,7 +215,9 @@ void add_options(CLI::App& command, RenderArguments& a) {
     command.add_option("--color-map", a.color_map, "viridis, plasma or turbo")->capture_default_str();
     command.add_option("--range", a.range, "low,high of the colours (default: from the frames)");
     command.add_option("--collider-color", a.collider_color, "plain, or hits per triangle")->capture_default_str();
-    command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)");
+    command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)")->allow_extra_args(false);
+    command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)")
+        ->allow_extra_args(false);
     command.add_option("--particle-radius", a.particle_radius, "Radius drawn, m (default: the particles' own)");
     command.add_option("--samples", a.samples, "Rays a pixel")->capture_default_str();
     command.add_option("--exposure", a.exposure, "Brightness factor")->capture_default_str();

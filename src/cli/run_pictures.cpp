@@ -24,6 +24,7 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
                                                   {0.18, 0.21, 0.19},
                                                   {0.26, 0.19, 0.16},
                                                   {0.24, 0.26, 0.29}}};
+constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
 constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
 
@@ -75,8 +76,8 @@ std::string collider_name(const RunInfo& info, const std::filesystem::path& file
     return file.stem().string();
 }
 
-void check_hidden(const PictureStyle& style, const RunFolder& folder) {
-    for (const std::string& name : style.hidden) {
+void check_names(const char* option, const std::vector<std::string>& names, const RunFolder& folder) {
+    for (const std::string& name : names) {
         std::string known;
         bool found = false;
         for (const auto& file : folder.colliders) {
@@ -84,8 +85,13 @@ void check_hidden(const PictureStyle& style, const RunFolder& folder) {
             known += (known.empty() ? "" : ", ") + other;
             found = found || other == name;
         }
-        if (!found) throw InputError(fmt::format("--hide {}: no such collider in the run; it has: {}", name, known));
+        if (!found)
+            throw InputError(fmt::format("{} {}: no such collider in the run; it has: {}", option, name, known));
     }
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
@@ -93,7 +99,8 @@ void check_hidden(const PictureStyle& style, const RunFolder& folder) {
 RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style,
                          double aspect)
     : style_(std::move(style)) {
-    check_hidden(style_, folder);
+    check_names("--hide", style_.hidden, folder);
+    check_names("--glass", style_.glass, folder);
     survey(chosen);
     load_colliders(folder);
     choose_camera(folder, aspect);
@@ -116,7 +123,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
 void RunPictures::load_colliders(const RunFolder& folder) {
     for (const std::filesystem::path& file : folder.colliders) {
         const std::string name = collider_name(folder.info, file);
-        if (std::find(style_.hidden.begin(), style_.hidden.end(), name) != style_.hidden.end()) continue;
+        if (contains(style_.hidden, name)) continue;
         VtkPolyData data = read_vtp(file);
         const std::vector<double>* point = find_field(data, "plane_point");
         const std::vector<double>* normal = find_field(data, "plane_normal");
@@ -127,8 +134,9 @@ void RunPictures::load_colliders(const RunFolder& folder) {
         subject_.colliders.insert(subject_.colliders.end(), data.points.begin(), data.points.end());
         std::vector<Vec3> colors = style_.collider_hits ? hit_colors(data, ColorMap::viridis) : std::vector<Vec3>{};
         meshes_.push_back({{std::move(data.points), std::move(data.triangles)},
-                           kColliderColors[color_index(folder.info, file)],
-                           std::move(colors)});
+                           contains(style_.glass, name) ? kGlassColor : kColliderColors[color_index(folder.info, file)],
+                           std::move(colors),
+                           contains(style_.glass, name)});
     }
 }
 

@@ -23,6 +23,7 @@ struct PictureStyle {
     std::optional<double> particle_radius;  ///< m; nothing: the frames' own, or one that can be seen for points
     bool collider_hits = false;             ///< colour colliders by hits
     std::vector<std::string> hidden;        ///< colliders that are left out, by name
+    std::vector<std::string> glass;         ///< colliders that are seen through, by name
     std::optional<Camera> camera;
     std::optional<Vec3> up;
 };

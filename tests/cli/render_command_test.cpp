@@ -75,7 +75,8 @@ TEST(RenderCommand, EveryOptionChangesThePicture) {
                                                            {"--size", "32x48"},
                                                            {"--exposure", "0.5"},
                                                            {"--up", "y"},
-                                                           {"--hide", "collider_00_block"}};
+                                                           {"--hide", "collider_00_block"},
+                                                           {"--glass", "collider_00_block"}};
     for (const auto& option : options) {
         const ProgramResult result = files.render("other.png", option);
         EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -113,6 +114,7 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
         {{"--range", "a,b"}, "expected numbers"},
         {{"--collider-color", "pink"}, "expected plain or hits"},
         {{"--hide", "nothing"}, "no such collider"},
+        {{"--glass", "nothing"}, "--glass nothing: no such collider"},
         {{"--up", "w"}, "expected x, y or z"},
         {{"--samples", "0"}, "expected 1 to 4096"},
         {{"--exposure", "0"}, "expected 0.01 to 100"},

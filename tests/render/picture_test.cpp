@@ -61,6 +61,25 @@ TEST(Picture, TheSideTowardsTheSunIsBrighter) {
     EXPECT_GT(brightness(image, kSize / 2 - 4, kSize / 2 - 4), brightness(image, kSize / 2 + 5, kSize / 2 + 4));
 }
 
+TEST(Picture, ThingsBehindGlassAreSeenThroughIt) {
+    const auto render = [](bool wall, bool glass) {
+        std::vector<PreviewMesh> meshes;
+        if (wall) {
+            meshes.push_back({{{{-3, -3, -3}, {3, -3, -3}, {3, -3, 9}, {-3, -3, 9}}, {{0, 1, 2}, {0, 2, 3}}},
+                              {0.3, 0.3, 0.3},
+                              {},
+                              glass});
+        }
+        Preview preview(std::move(meshes), {}, {});
+        preview.set_spheres({{{0, 0, 1}}, {1.0}, {{0.6, 0.05, 0.05}}});
+        return render_picture(preview, front_camera(), small_picture()).pixel(kSize / 2 - 3, kSize / 2 - 3);
+    };
+    const auto redness = [](const std::array<int, 3>& pixel) { return pixel[0] - pixel[1]; };
+    EXPECT_LT(redness(render(true, false)), 30);
+    EXPECT_GT(redness(render(true, true)), redness(render(false, false)) / 2);
+    EXPECT_NE(render(true, true), render(false, false));
+}
+
 TEST(Picture, HasTheSameBytesForAnyNumberOfThreads) {
     const Preview preview = ball_on_floor();
     const auto render = [&](int threads) {

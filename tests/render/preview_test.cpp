@@ -12,7 +12,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 PreviewMesh square(double height) {
     return {{{{-1, -1, height}, {1, -1, height}, {1, 1, height}, {-1, 1, height}}, {{0, 1, 2}, {0, 2, 3}}},
             {0.1, 0.2, 0.3},
-            {}};
+            {},
+            false};
 }
 
 PreviewSpheres one_sphere(const Vec3& center, double radius) { return {{center}, {radius}, {{1, 0, 0}}}; }
@@ -85,6 +86,19 @@ TEST(Preview, RaysThatAreNoRaysHitNothing) {
         EXPECT_FALSE(preview.trace(ray));
         EXPECT_FALSE(preview.occluded(ray));
     }
+}
+
+TEST(Preview, GlassIsFoundOnlyByThoseWhoAskForIt) {
+    PreviewMesh glass = square(0.0);
+    glass.glass = true;
+    const Preview preview({glass, square(-1.0)}, {}, {});
+    const PreviewRay down{{0.1, 0.2, 1}, {0, 0, -1}};
+    ASSERT_TRUE(preview.trace_glass(down));
+    EXPECT_NEAR(preview.trace_glass(down)->distance, 1.0, 1e-6);
+    ASSERT_TRUE(preview.trace(down));
+    EXPECT_NEAR(preview.trace(down)->distance, 2.0, 1e-6);
+    EXPECT_FALSE(preview.occluded({{0.1, 0.2, 0.5}, {0, 0, 1}}));
+    EXPECT_FALSE(preview.trace_glass({{0.1, 0.2, -0.5}, {0, 0, -1}}));
 }
 
 TEST(Preview, CanBeEmpty) {

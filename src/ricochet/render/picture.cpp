@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "ricochet/core/parallel.h"
@@ -13,6 +14,8 @@
 
 namespace ricochet {
 namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::infinity();
 
 // Numbers that a sample needs: place in the pixel, place on the sun (twice), direction into the sky.
 enum Dimension { kPixelX, kPixelY, kSunU, kSunV, kSkyU, kSkyV, kFarSunU, kFarSunV, kDimensions };
@@ -105,6 +108,33 @@ private:
 
     [[nodiscard]] Vec3 seen(const PreviewRay& ray, const PixelSamples& samples, int s) const {
         const std::optional<PreviewHit> hit = preview_.trace(ray);
+        return through_glass(ray, hit ? hit->distance : kNothing, solid_light(ray, hit, samples, s));
+    }
+
+    // The light from behind, tinted and covered by the glass surfaces in front of it. Glass covers more where it is
+    // seen at a slant, which draws its outline.
+    [[nodiscard]] Vec3 through_glass(PreviewRay ray, double distance, const Vec3& behind) const {
+        constexpr int kMostSurfaces = 8;
+        Vec3 light;
+        double open = 1.0;
+        for (int k = 0; k < kMostSurfaces; ++k) {
+            const std::optional<PreviewHit> glass = preview_.trace_glass(ray);
+            if (!glass || glass->distance >= distance) break;
+            const double slant = 1.0 - std::fabs(dot(glass->normal, ray.direction));
+            const double cover = 0.04 + 0.6 * slant * slant * slant;
+            const double shade = 0.6 + 0.4 * std::fabs(dot(glass->normal, daylight_.to_sun));
+            light += open * cover * shade * (times(glass->color, daylight_.sun) + gloss(*glass, ray));
+            open *= 1.0 - cover;
+            const PreviewHit beyond = {glass->distance, glass->point, glass->normal, -glass->face, {}, glass->kind};
+            const Vec3 next = off_surface(beyond);
+            distance -= length(next - ray.origin);
+            ray.origin = next;
+        }
+        return light + open * behind;
+    }
+
+    [[nodiscard]] Vec3 solid_light(const PreviewRay& ray, const std::optional<PreviewHit>& hit,
+                                   const PixelSamples& samples, int s) const {
         if (!hit) return daylight_.backdrop(ray.direction);
         const Vec3 color = surface_color(*hit);
         Vec3 light = times(color, sun_light(*hit, samples.get(s, kSunU), samples.get(s, kSunV)));

@@ -51,6 +51,13 @@ RTCRay embree_ray(const PreviewRay& ray, const Vec3& origin) {
     return out;
 }
 
+RTCRayHit embree_query(const PreviewRay& ray, const Vec3& origin) {
+    RTCRayHit query{};
+    query.ray = embree_ray(ray, origin);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
 Vec3 towards(const Vec3& normal, const Vec3& direction) { return dot(normal, direction) > 0.0 ? -normal : normal; }
 
 // A mesh and what its shading needs.
@@ -71,25 +78,35 @@ void make_drawable(TriangleMesh& mesh) {
     }
 }
 
+// Meshes that are traced together; geometry k of the scene is mesh k.
+struct MeshGroup {
+    embree::Scene scene;
+    std::vector<DrawnMesh> meshes;
+
+    [[nodiscard]] bool empty() const { return meshes.empty(); }
+};
+
 }  // namespace
 
 struct Preview::Impl {
     embree::Device device = embree::make_device();
-    embree::Scene mesh_scene, sphere_scene;
-    std::vector<DrawnMesh> meshes;
+    MeshGroup solid, glass;
+    embree::Scene sphere_scene;
     std::vector<PreviewPlane> planes;
     std::vector<Vec3> sphere_colors;  // in the order of the drawn spheres
-    bool has_meshes = false;
     bool has_spheres = false;
     Vec3 origin;
 
-    void add_mesh(const TriangleMesh& mesh, unsigned id) const;
-    [[nodiscard]] PreviewHit mesh_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
+    void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
+    [[nodiscard]] std::optional<PreviewHit> trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const;
+    [[nodiscard]] static PreviewHit mesh_hit(const MeshGroup& group, const RTCRayHit& hit, const PreviewRay& ray);
     [[nodiscard]] PreviewHit sphere_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
     void trace_planes(const PreviewRay& ray, std::optional<PreviewHit>& nearest) const;
 };
 
-void Preview::Impl::add_mesh(const TriangleMesh& mesh, unsigned id) const {
+void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
+    make_drawable(source.mesh);
+    const TriangleMesh& mesh = source.mesh;
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), mesh.vertices.size()));
@@ -100,11 +117,22 @@ void Preview::Impl::add_mesh(const TriangleMesh& mesh, unsigned id) const {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), corners + 3 * t);
     }
-    attach(mesh_scene.get(), geometry, id);
+    attach(group.scene.get(), geometry, static_cast<unsigned>(group.meshes.size()));
+    auto normals = corner_normals(mesh, kCreaseDegrees);
+    group.meshes.push_back({std::move(source), std::move(normals)});
 }
 
-PreviewHit Preview::Impl::mesh_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
-    const DrawnMesh& mesh = meshes[hit.hit.geomID];
+std::optional<PreviewHit> Preview::Impl::trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const {
+    if (group.empty()) return std::nullopt;
+    embree::QueryContext context;
+    embree::init_context(context, nullptr);
+    embree::intersect1(group.scene.get(), context, hit);
+    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return mesh_hit(group, hit, ray);
+}
+
+PreviewHit Preview::Impl::mesh_hit(const MeshGroup& group, const RTCRayHit& hit, const PreviewRay& ray) {
+    const DrawnMesh& mesh = group.meshes[hit.hit.geomID];
     const auto& corner = mesh.normals[hit.hit.primID];
     const double u = hit.hit.u;
     const double v = hit.hit.v;
@@ -146,16 +174,12 @@ Preview::Preview(std::vector<PreviewMesh> meshes, std::vector<PreviewPlane> plan
     : impl_(std::make_unique<Impl>()) {
     impl_->planes = std::move(planes);
     impl_->origin = origin;
-    impl_->mesh_scene = new_scene(impl_->device.get());
-    for (PreviewMesh& mesh : meshes) {
-        make_drawable(mesh.mesh);
-        impl_->add_mesh(mesh.mesh, static_cast<unsigned>(impl_->meshes.size()));
-        auto normals = corner_normals(mesh.mesh, kCreaseDegrees);
-        impl_->meshes.push_back({std::move(mesh), std::move(normals)});
-    }
-    rtcCommitScene(impl_->mesh_scene.get());
+    impl_->solid.scene = new_scene(impl_->device.get());
+    impl_->glass.scene = new_scene(impl_->device.get());
+    for (PreviewMesh& mesh : meshes) impl_->add_mesh(mesh.glass ? impl_->glass : impl_->solid, std::move(mesh));
+    rtcCommitScene(impl_->solid.scene.get());
+    rtcCommitScene(impl_->glass.scene.get());
     embree::check_device(impl_->device.get(), "building the picture's meshes");
-    impl_->has_meshes = !impl_->meshes.empty();
 }
 
 Preview::~Preview() = default;
@@ -188,20 +212,24 @@ void Preview::set_spheres(const PreviewSpheres& spheres) {
 }
 
 std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
-    std::optional<PreviewHit> nearest;
-    if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return nearest;
-    embree::QueryContext context;
-    embree::init_context(context, nullptr);
-    RTCRayHit hit{};
-    hit.ray = embree_ray(ray, impl_->origin);
+    if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return std::nullopt;
+    RTCRayHit hit = embree_query(ray, impl_->origin);
+    std::optional<PreviewHit> nearest = impl_->trace(impl_->solid, ray, hit);
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    if (impl_->has_meshes) embree::intersect1(impl_->mesh_scene.get(), context, hit);
-    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->mesh_hit(hit, ray);
-    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    if (impl_->has_spheres) embree::intersect1(impl_->sphere_scene.get(), context, hit);
+    if (impl_->has_spheres) {
+        embree::QueryContext context;
+        embree::init_context(context, nullptr);
+        embree::intersect1(impl_->sphere_scene.get(), context, hit);
+    }
     if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->sphere_hit(hit, ray);
     impl_->trace_planes(ray, nearest);
     return nearest;
+}
+
+std::optional<PreviewHit> Preview::trace_glass(const PreviewRay& ray) const {
+    if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return std::nullopt;
+    RTCRayHit hit = embree_query(ray, impl_->origin);
+    return impl_->trace(impl_->glass, ray, hit);
 }
 
 bool Preview::occluded(const PreviewRay& ray) const {
@@ -209,7 +237,7 @@ bool Preview::occluded(const PreviewRay& ray) const {
     embree::QueryContext context;
     embree::init_context(context, nullptr);
     RTCRay shadow = embree_ray(ray, impl_->origin);
-    if (impl_->has_meshes) embree::occluded1(impl_->mesh_scene.get(), context, shadow);
+    if (!impl_->solid.empty()) embree::occluded1(impl_->solid.scene.get(), context, shadow);
     if (shadow.tfar >= 0.0F && impl_->has_spheres) embree::occluded1(impl_->sphere_scene.get(), context, shadow);
     return shadow.tfar < 0.0F;
 }

@@ -17,6 +17,7 @@ struct PreviewMesh {
     TriangleMesh mesh;
     Vec3 color{0.5, 0.5, 0.5};
     std::vector<Vec3> triangle_colors;  ///< one a triangle, or empty
+    bool glass = false;                 ///< seen through: light and rays pass, only trace_glass() finds it
 };
 
 /// An infinite plane, seen from the side that its normal points to; from behind it is not there.
@@ -62,8 +63,10 @@ public:
     /// Replaces the spheres. Not while rays are being shot.
     void set_spheres(const PreviewSpheres& spheres);
 
-    /// The first thing on the ray; may be called from any thread.
+    /// The first thing on the ray that is no glass; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace(const PreviewRay& ray) const;
+    /// The first glass mesh on the ray; may be called from any thread.
+    [[nodiscard]] std::optional<PreviewHit> trace_glass(const PreviewRay& ray) const;
     /// True when a mesh or sphere stands on the ray; planes throw no shadow.
     [[nodiscard]] bool occluded(const PreviewRay& ray) const;
     /// The point about which coordinates are rounded.

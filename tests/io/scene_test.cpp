@@ -512,6 +512,39 @@ TEST(SceneOverride, ErrorsNameTheArgumentAndThePath) {
     }
 }
 
+TEST(Scene, DamagedBytesAreReadOrRefusedInGoodOrder) {
+    const SampleFolder folder;
+    RandomSequence random(9, 0, 0);
+    const auto below = [&](std::size_t n) {
+        return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    };
+    int refused = 0;
+    for (int round = 0; round < 1000; ++round) {
+        SCOPED_TRACE(round);
+        std::string scene = kSampleScene;
+        for (std::size_t i = below(4); i < 4; ++i) {
+            const std::size_t at = below(scene.size());
+            switch (below(3)) {
+                case 0:
+                    scene[at] = static_cast<char>(below(256));
+                    break;
+                case 1:
+                    scene.erase(at, 1 + below(20));
+                    break;
+                default:
+                    scene.insert(at, scene.substr(below(scene.size()), below(40)));
+            }
+        }
+        const Lines errors = errors_of(folder, scene);
+        for (const std::string& line : errors) {
+            ASSERT_EQ(line.rfind("s.json:", 0), 0U) << line;
+            ASSERT_EQ(std::count_if(line.begin(), line.end(), [](char c) { return c >= 0 && c < 0x20; }), 0) << line;
+        }
+        refused += errors.empty() ? 0 : 1;
+    }
+    EXPECT_GT(refused, 800);
+}
+
 TEST(SceneFile, RefusesWhatIsNoSceneFile) {
     const SampleFolder folder;
     const auto message = [](const std::filesystem::path& path) -> std::string {

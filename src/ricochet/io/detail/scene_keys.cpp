@@ -584,7 +584,7 @@ std::string range_words(const Range& range) {
     // A bound of 1e75 is no bound to a reader; who passes it is told by the checker.
     const bool below = range.lower > -kLargestCoordinate;
     const bool above = range.upper < kLargestCoordinate;
-    const std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
+    std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
     // 2^64 stands for the largest whole number below it.
     const std::string upper = range.upper == 0x1p64 ? "18446744073709551615" : fmt::format("{}", range.upper);
     if (below && above) return range.lower == range.upper ? upper : fmt::format("{} and <= {}", lower, upper);

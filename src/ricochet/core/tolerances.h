@@ -34,6 +34,12 @@ inline constexpr double kLongestParkingUlps = 4096.0;
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingGaps = 8.0;
 
+/// Contacts in a row, all slower than the resting speed and pressed on, after which a particle comes to rest for the
+/// step. Reason: in a pit of four or more faces a sliding particle circles into the apex in infinitely many ever
+/// shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger: circling costs more contacts
+/// a step.
+inline constexpr int kMostSlowContacts = 32;
+
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
 /// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
 /// path. Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact

@@ -107,7 +107,14 @@ private:
         const Vec3 arriving = state_.velocity;
         reflect(contact);
         const ContactSurface* const support = support_of(flight, contact, arriving);
-        return support == nullptr ? std::nullopt : stay_in_contact(flight, *support, arriving);
+        const bool is_slow = support != nullptr && length(arriving) < rules_.settings_.resting_speed;
+        slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
+        if (support == nullptr) return std::nullopt;
+        if (slow_contacts_ > kMostSlowContacts) {
+            rest(support->surface, acceleration_now(flight));
+            return std::nullopt;
+        }
+        return stay_in_contact(flight, *support, arriving);
     }
 
     const Material& material_of(SurfaceId surface) const {
@@ -276,6 +283,7 @@ private:
     std::array<SurfaceId, 3> touched_{};
     std::array<Vec3, 3> touched_normals_;
     int touched_count_ = 0;
+    int slow_contacts_ = 0;  // in a row, all slower than the resting speed
 };
 
 MoveOutcome ExactResponse::move(ForceInput& state, double duration, MoveScratch& scratch) const {

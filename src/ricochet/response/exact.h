@@ -5,8 +5,9 @@
 /// Source: continuous collision detection of points against static triangles with exact predicates, see
 /// ARCHITECTURE.md. What it guarantees: the chain of positions a particle is moved through meets no surface, exactly;
 /// the time of impact is accurate to rounding. What it does not guarantee: that a bounce cascade below the resting
-/// speed is resolved impact by impact (it becomes contact), nor that a particle whose bounce budget is spent uses the
-/// whole step (the rest is counted).
+/// speed is resolved impact by impact (it becomes contact), that slow circling in a pit is followed to its end (it
+/// becomes rest, kMostSlowContacts), nor that a particle whose bounce budget is spent uses the whole step (the rest is
+/// counted).
 #pragma once
 
 #include <cstdint>

@@ -255,6 +255,22 @@ TEST(DownCrossings, CountTouchesAndTheLastMomentButNotAStartAtZero) {
     EXPECT_EQ(down_crossings(polynomial({1, -1}, 2.0), 1.0, 2.0).count, 0);  // it came down at `from`
 }
 
+TEST(DownCrossings, EndWithTheIntervalAlsoWhereTheRootRoundsToItsEnd) {
+    const DoubleDouble just_after{1.0, 0x1p-80};
+    const DoubleDouble just_before{1.0, -0x1p-80};
+    Polynomial p = polynomial({1, -1}, 1.0);
+    p.coefficients[0] = just_after;  // root at 1 + 2^-80
+    EXPECT_EQ(down_crossings(p, 0.0, 1.0).count, 0);
+    p.coefficients[0] = just_before;
+    ASSERT_EQ(down_crossings(p, 0.0, 1.0).count, 1);
+    EXPECT_EQ(down_crossings(p, 0.0, 1.0)[0], 1.0);
+    p.duration = 2.0;
+    p.coefficients[0] = just_after;
+    EXPECT_EQ(down_crossings(p, 1.0, 2.0).count, 1);
+    p.coefficients[0] = just_before;
+    EXPECT_EQ(down_crossings(p, 1.0, 2.0).count, 0);
+}
+
 TEST(DownCrossings, AreTheSameHoweverTheIntervalIsCut) {
     for (std::uint64_t index = 0; index < 2000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);

@@ -295,7 +295,11 @@ Times down_crossings(const Polynomial& p, double from, double to) {
         if (root > from && root <= to) times.append(root);
     };
     if (p.degree <= 2) {
-        select(quadratic_roots(p).falling);
+        // A root that was rounded onto an end of the interval may lie on either side of it.
+        const double root = quadratic_roots(p).falling;
+        if (root == to && p.value(to).hi > 0.0) return times;
+        if (root == from && p.value(from).hi > 0.0) times.append(root);
+        select(root);
         return times;
     }
     const Variation variation = variation_on(p, p.duration);

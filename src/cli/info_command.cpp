@@ -41,6 +41,7 @@ Json json_of(const MeshReport& report, const std::string& file) {
     out["nonmanifold_vertices"] = topology.nonmanifold_vertices;
     out["degenerate_triangles"] = report.degenerate_triangles;
     out["duplicate_faces"] = report.duplicate_faces;
+    out["self_intersections"] = report.self_intersections;
     out["unused_vertices"] = topology.unused_vertices;
     out["consistently_oriented"] = topology.consistently_oriented;
     out["inconsistent_edges"] = topology.inconsistent_edges;
@@ -84,6 +85,7 @@ void print_topology(const MeshReport& report) {
     print_line("non-manifold vertices", topology.nonmanifold_vertices);
     print_line("degenerate triangles", report.degenerate_triangles);
     print_line("duplicate faces", report.duplicate_faces);
+    print_line("self-intersections", report.self_intersections);
     print_line("consistently oriented", yes_or_no(topology.consistently_oriented));
 }
 

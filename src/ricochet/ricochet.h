@@ -32,6 +32,7 @@
 #include "ricochet/geometry/placed_mesh.h"
 #include "ricochet/geometry/polynomial.h"
 #include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/self_intersection.h"
 #include "ricochet/geometry/sphere_sweep.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "ricochet/geometry/self_intersection.h"
+
 namespace ricochet {
 namespace {
 
@@ -85,12 +87,22 @@ void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warni
     }
 }
 
+void warn_of_self_intersections(const MeshReport& report, std::vector<std::string>& warnings) {
+    if (report.self_intersections == 0) return;
+    warnings.push_back(
+        fmt::format("{} or cross each other: every triangle stops particles, so nothing leaks, but where parts overlap "
+                    "the volume counts "
+                    "twice",
+                    counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
+}
+
 std::vector<std::string> warnings_for(const MeshReport& report) {
     std::vector<std::string> warnings;
     warn_of_gaps(report, warnings);
     warn_of_nonmanifold_places(report.topology, warnings);
     warn_of_orientation(report, warnings);
     warn_of_odd_faces(report, warnings);
+    warn_of_self_intersections(report, warnings);
     if (report.topology.unused_vertices > 0) {
         warnings.push_back(fmt::format("{} to no face: ignored, nothing leaks",
                                        counted(report.topology.unused_vertices, "vertex belongs", "vertices belong")));
@@ -116,6 +128,7 @@ MeshReport report_on(const ImportedMesh& imported) {
         report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
     }
     report.degenerate_triangles = count_degenerate(imported.mesh);
+    report.self_intersections = count_self_intersections(imported.mesh);
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;
     report.crossing_faces = imported.crossing_faces;
     report.weld = imported.weld;

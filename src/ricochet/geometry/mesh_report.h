@@ -27,9 +27,10 @@ struct MeshReport {
     std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
     std::size_t degenerate_triangles = 0;  ///< exactly without area
     std::size_t faces_with_repeated_corners = 0;
-    std::size_t crossing_faces = 0;     ///< polygons whose outline crosses itself
-    std::optional<WeldReport> weld;     ///< STL only
-    std::vector<std::string> warnings;  ///< one sentence per kind of defect: what it is, what it means for leaks
+    std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
+    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, see self_intersection.h
+    std::optional<WeldReport> weld;      ///< STL only
+    std::vector<std::string> warnings;   ///< one sentence per kind of defect: what it is, what it means for leaks
 };
 
 /// Examines a mesh. Time and memory are close to linear in its size.

@@ -71,6 +71,16 @@ TEST(Orient3dValue, IsWithin2ToTheMinus90OfTheExactDeterminant) {
     });
 }
 
+TEST(Orient3dEstimate, ErrsByLessThan2ToTheMinus100OfItsTerms) {
+    for_cases(kCases, [](const SegmentTriangle& s) {
+        const DoubleDouble estimate = orient3d_estimate(s.a, s.b, s.c, s.q);
+        const Vec3 magnitude = detail::filtered_cross(s.b - s.a, s.c - s.a).magnitude;
+        const testing::Rational bound = testing::exact(0x1p-100) * testing::exact(dot(magnitude, abs(s.q - s.a)));
+        const testing::Rational error = testing::exact(estimate) - testing::exact_orient3d(s.a, s.b, s.c, s.q);
+        ASSERT_LE(boost::multiprecision::abs(error), bound);
+    });
+}
+
 TEST(Collinearity, HoldsExactlyWhenTheAreaVectorIsZero) {
     for_cases(kCases, [](const SegmentTriangle& s) {
         const auto area = testing::exact_area_vector(s.a, s.b, s.c);

@@ -203,6 +203,10 @@ DoubleDouble orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const V
     return volume(BoundedCross(u, v), u, v, ExactDifference(d, a), 0x1p-91);
 }
 
+DoubleDouble orient3d_estimate(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return BoundedCross(ExactDifference(b, a), ExactDifference(c, a)).dot(ExactDifference(d, a)).value;
+}
+
 bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return projection_axis(a, b, c) < 0; }
 
 bool detail::segment_meets_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,

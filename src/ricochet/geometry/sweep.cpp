@@ -281,7 +281,7 @@ double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const 
 }
 
 double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    return orient3d_value(a, b, c, p).hi / length(cross(b - a, c - a));
+    return orient3d_estimate(a, b, c, p).hi / length(cross(b - a, c - a));
 }
 
 double signed_distance(const Vec3& p, const Plane& plane) { return plane_value(plane, p).hi; }

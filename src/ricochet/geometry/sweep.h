@@ -47,8 +47,9 @@ struct Crossing {
 [[nodiscard]] double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c,
                                         const Vec3& normal, double slack);
 
-/// Signed distance of p from the plane of (a, b, c), m; exact sign. Its relative error is a few ulp times the longest
-/// edge over the height of the triangle, also where p almost lies in the plane.
+/// Signed distance of p from the plane of (a, b, c), m. Its relative error is a few ulp times the longest edge over the
+/// height of the triangle, also where p almost lies in the plane (down to some 1e-30 of the sizes involved; the exact
+/// side is orient3d's to tell).
 [[nodiscard]] double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 /// The same for a plane.
 [[nodiscard]] double signed_distance(const Vec3& p, const Plane& plane);

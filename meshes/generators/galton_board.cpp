@@ -65,11 +65,13 @@ double lowest_row(const GaltonBoardShape& shape) { return (kWall + 1.0) * shape.
 double top_row(const GaltonBoardShape& shape) { return lowest_row(shape) + (shape.rows - 1) * shape.spacing; }
 double half_width(const GaltonBoardShape& shape) { return 0.5 * (shape.rows + 3) * shape.spacing; }
 
-/// Row r from the top has r + 1 pegs, so that all gaps are offered to what comes through the row above.
+/// Every row spans the board, so that nothing runs down beside the pegs; each is shifted by half a spacing against the
+/// next, and the lowest one stands over the dividers.
 void add_pegs(Board& board, const GaltonBoardShape& shape) {
     for (int row = 0; row < shape.rows; ++row) {
         const double z = top_row(shape) - row * shape.spacing;
-        for (int i = 0; i <= row; ++i) board.peg((i - 0.5 * row) * shape.spacing, z);
+        const int pegs = shape.rows + 1 + (shape.rows - row) % 2;
+        for (int i = 0; i < pegs; ++i) board.peg((i - 0.5 * (pegs - 1)) * shape.spacing, z);
     }
 }
 

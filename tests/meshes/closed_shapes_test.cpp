@@ -75,7 +75,8 @@ TerrainShape terrain_block() {
 
 std::size_t galton_shells(const GaltonBoardShape& shape) {
     const auto rows = static_cast<std::size_t>(shape.rows);
-    return rows * (rows + 1) / 2 + 1 + 2 + 1;  // pegs, frame, hopper, plate
+    const std::size_t pegs = rows * (rows + 1) + (rows + 1) / 2;  // every other row has one more
+    return pegs + 1 + 2 + 1;                                      // frame, sides of the hopper, plate
 }
 
 std::vector<ClosedShape> closed_shapes() {

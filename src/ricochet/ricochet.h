@@ -20,6 +20,7 @@
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/analytic_shape.h"
 #include "ricochet/geometry/mesh_format.h"
 #include "ricochet/geometry/mesh_reader.h"
 #include "ricochet/geometry/mesh_report.h"

@@ -56,6 +56,16 @@ struct BlockCounts {
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
     double unsimulated = 0.0;
+    std::vector<ContactRecord> records;
+
+    void add(const MoveOutcome& outcome) {
+        contacts += outcome.bounces;
+        stayed += outcome.stayed;
+        frozen += outcome.frozen ? 1 : 0;
+        budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
+        unsimulated += outcome.unsimulated_time;
+        bounces_max = std::max(bounces_max, outcome.bounces);
+    }
 };
 
 }  // namespace
@@ -68,8 +78,11 @@ struct Simulation::Impl {
     void move_all(double from, double to);
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
+    void collect_records(std::vector<BlockCounts>& blocks);
+    [[nodiscard]] bool stays_at_rest(std::size_t i, double now) const;
+    void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
     void retire(double now);
-    [[nodiscard]] bool lies_on_a_surface(const Vec3& p) const;
+    [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
     }
@@ -87,6 +100,7 @@ struct Simulation::Impl {
     Particles particles;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
+    std::vector<ContactRecord> records;
     std::uint64_t steps;
     std::uint64_t next_id = 0;
 };
@@ -97,7 +111,8 @@ Simulation::Impl::Impl(SimulationSetup setup)
       materials(std::move(setup.materials)),
       world(std::move(setup.colliders)),
       bounds(setup.bounds),
-      response(world, forces, materials, {options.integrator, options.resting_speed, options.bounce_budget}),
+      response(world, forces, materials,
+               {options.integrator, options.resting_speed, options.bounce_budget, options.seed}),
       totals(options.triangle_totals ? world.surface_count() : 0),
       steps(count_steps(options)) {
     for (const ColliderDescription& collider : world.colliders()) {
@@ -113,17 +128,18 @@ Simulation::Impl::Impl(SimulationSetup setup)
 void Simulation::Impl::add(Particle particle) {
     particle.id = next_id++;
     particle.position = flush_tiny(particle.position);
-    if (lies_on_a_surface(particle.position)) ++statistics.started_inside;
+    world.prepare_radius(particle.radius);
+    if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
     ++statistics.emitted;
 }
 
-bool Simulation::Impl::lies_on_a_surface(const Vec3& p) const {
-    if (!is_finite(p) || max_abs(p) > kLargestCoordinate) return false;
+bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
+    if (!is_finite(particle.position) || max_abs(particle.position) > kLargestCoordinate) return false;
     ContactScratch scratch;
     ContactSearch search(world, scratch);
-    (void)search.search(line_path(p, Vec3{}, 0.0));
-    return search.blocker(p, p).has_value();
+    (void)search.search(line_path(particle.position, Vec3{}, 0.0), particle.radius);
+    return search.starts_in_overlap();
 }
 
 // Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
@@ -154,32 +170,63 @@ void Simulation::Impl::move_all(double from, double to) {
         statistics.unsimulated_time += block.unsimulated;
     }
     statistics.particle_steps += count;
+    if (options.record_contacts) collect_records(blocks);
+}
+
+// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
+void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
+    records.clear();
+    for (const BlockCounts& block : blocks) records.insert(records.end(), block.records.begin(), block.records.end());
+    std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
+        return a.time != b.time ? a.time < b.time : a.particle < b.particle;
+    });
 }
 
 void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts) {
     thread_local MoveScratch scratch;
     scratch.hits.clear();
+    scratch.records.clear();
+    scratch.record_contacts = options.record_contacts;
     for (std::size_t i = begin; i < end; ++i) {
         if (particles.frozen[i] != 0) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
-        if (stop <= start) continue;
-        ForceInput state = input(i, start);
-        const MoveOutcome outcome = response.move(state, stop - start, scratch);
-        particles.position[i] = state.position;
-        particles.velocity[i] = state.velocity;
-        particles.unsimulated_time[i] += outcome.unsimulated_time;
-        particles.contacts[i] += outcome.bounces;
-        particles.resting[i] = outcome.resting ? 1 : 0;
-        particles.frozen[i] = outcome.frozen ? 1 : 0;
-        counts.contacts += outcome.bounces;
-        counts.stayed += outcome.stayed;
-        counts.frozen += outcome.frozen ? 1 : 0;
-        counts.budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
-        counts.unsimulated += outcome.unsimulated_time;
-        counts.bounces_max = std::max(counts.bounces_max, outcome.bounces);
+        if (stop <= start || stays_at_rest(i, start)) continue;
+        MovingParticle moving{input(i, start), particles.spin[i], particles.id[i], particles.draws[i]};
+        const MoveOutcome outcome = response.move(moving, stop - start, scratch);
+        store(i, moving, outcome);
+        counts.add(outcome);
     }
     if (!totals.empty()) add_hits(scratch.hits, counts);
+    if (options.record_contacts) counts.records = scratch.records;
+}
+
+// What holds a particle under steady forces holds it for good, so asking again is not needed; the answer is the same.
+bool Simulation::Impl::stays_at_rest(std::size_t i, double now) const {
+    if (particles.resting[i] == 0) return false;
+    if (options.sleeping && forces.is_steady()) return true;
+    const MovingParticle moving{input(i, now), {}, particles.id[i], particles.draws[i]};
+    Support support;
+    for (const SurfaceId surface : particles.support[i]) {
+        if (support.count > 0 && surface == support.surfaces[support.count - 1U]) break;
+        support.surfaces[support.count++] = surface;
+    }
+    return response.still_holds(moving, support);
+}
+
+void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
+    particles.position[i] = moving.state.position;
+    particles.velocity[i] = moving.state.velocity;
+    particles.spin[i] = moving.spin;
+    particles.draws[i] = moving.draws;
+    particles.unsimulated_time[i] += outcome.unsimulated_time;
+    particles.contacts[i] += outcome.bounces;
+    particles.resting[i] = outcome.resting ? 1 : 0;
+    particles.frozen[i] = outcome.frozen ? 1 : 0;
+    particles.absorbed[i] = outcome.absorbed ? 1 : 0;
+    if (!outcome.resting) return;
+    particles.support[i].fill(outcome.support.surfaces[outcome.support.count - 1U]);
+    std::copy_n(outcome.support.surfaces.begin(), outcome.support.count, particles.support[i].begin());
 }
 
 void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts) {
@@ -199,13 +246,16 @@ void Simulation::Impl::retire(double now) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
         const bool outside = bounds && !bounds->contains(particles.position[i]);
-        statistics.expired += expired ? 1 : 0;
-        statistics.out_of_bounds += !expired && outside ? 1 : 0;
-        keep[i] = expired || outside ? 0 : 1;
+        const bool absorbed = particles.absorbed[i] != 0;
+        statistics.absorbed += absorbed ? 1 : 0;
+        statistics.expired += !absorbed && expired ? 1 : 0;
+        statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
+        keep[i] = absorbed || expired || outside ? 0 : 1;
         any = any || keep[i] == 0;
     }
     if (any) particles.compact(keep);
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
+    statistics.asleep = options.sleeping && forces.is_steady() ? statistics.resting : 0;
 }
 
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
@@ -235,6 +285,9 @@ std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const { ret
 std::size_t Simulation::triangle_count() const { return impl_->world.triangles().size(); }
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
 
+const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->records; }
+SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->world.name_of(surface); }
+
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     if (impl_->totals.empty()) return result;
@@ -249,11 +302,15 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
 }
 
 double Simulation::kinetic_energy() const {
+    const Particles& particles = impl_->particles;
     const std::vector<std::uint32_t> order = impl_->particles.order_by_id();
     return ordered_sum(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
-            sum += 0.5 * impl_->particles.mass[order[k]] * length_squared(impl_->particles.velocity[order[k]]);
+            const std::uint32_t i = order[k];
+            const double r = particles.radius[i];
+            const double turning = 0.4 * r * r * length_squared(particles.spin[i]);  // solid sphere, 2/5 m r^2
+            sum += 0.5 * particles.mass[i] * (length_squared(particles.velocity[i]) + turning);
         }
         return sum;
     });

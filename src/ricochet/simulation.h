@@ -14,6 +14,7 @@
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/response/exact.h"
 #include "ricochet/response/material.h"
 
 namespace ricochet {
@@ -26,6 +27,8 @@ struct SimulationOptions {
     std::uint64_t seed = 0;
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;
+    bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
+    bool record_contacts = false;        ///< keep every impact of the last step, see contact_records()
     bool triangle_totals = true;         ///< keep hits and impulse per triangle (56 bytes each)
     std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
 };
@@ -47,12 +50,14 @@ struct SimulationStatistics {
     std::uint64_t particle_steps = 0;  ///< sum over steps of the particles moved
     std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
     std::uint64_t expired = 0;         ///< retired at the end of their lifetime
+    std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces
     std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
     std::uint64_t contacts = 0;        ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
     double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
     std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
+    std::uint64_t asleep = 0;            ///< of the resting ones those that cost nothing
     std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
     std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
@@ -94,6 +99,11 @@ public:
     [[nodiscard]] std::size_t triangle_count() const;
     /// Triangles without area, which take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const;
+
+    /// Every impact of the last step in the order of (time, particle id, order of impacts); empty without
+    /// options.record_contacts. Surfaces are named by surface_name().
+    [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
+    [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
     [[nodiscard]] double kinetic_energy() const;                   ///< J
     [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential

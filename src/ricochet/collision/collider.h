@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "ricochet/core/transform.h"
 #include "ricochet/geometry/triangle_mesh.h"
@@ -23,12 +24,34 @@ struct MeshShape {
     std::shared_ptr<const TriangleMesh> mesh;
     Placement placement;
     std::string file;  ///< where it came from, for messages and reports; may be empty
+    /// Material of every triangle, as indices into the simulation's materials; empty: the collider's material
+    /// everywhere.
+    std::vector<std::uint32_t> triangle_materials;
+};
+
+/// A ball about the local origin: a sphere, or an ellipsoid under a scale that differs by axis. Solid from both sides.
+struct BallShape {
+    double radius = 1.0;  ///< m, > 0
+    Placement placement;
+};
+
+/// A cylinder about the local z axis with flat caps, centred on the origin. Solid from both sides.
+struct CylinderShape {
+    double radius = 1.0;  ///< m, > 0
+    double height = 1.0;  ///< m, > 0
+    Placement placement;
+};
+
+/// A box about the local origin; collides as its twelve triangles.
+struct CuboidShape {
+    Vec3 size{1, 1, 1};  ///< full edge lengths, m, > 0
+    Placement placement;
 };
 
 /// One collider of a scene.
 struct ColliderDescription {
     std::string name;
-    std::variant<PlaneShape, MeshShape> shape;
+    std::variant<PlaneShape, MeshShape, BallShape, CylinderShape, CuboidShape> shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
 };
 

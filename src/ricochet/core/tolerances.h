@@ -34,6 +34,11 @@ inline constexpr double kLongestParkingUlps = 4096.0;
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingGaps = 8.0;
 
+/// Angle, rad, by which a particle turns around a rim or a curved surface in one straight stretch of sliding or
+/// rolling. Smaller: more stretches (each costs a query). Larger: it leaves the surface by more (angle^2 / 2 of the
+/// bend's radius) before it falls back.
+inline constexpr double kStretchAngle = 0.01;
+
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
 /// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
 /// path. Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact
@@ -57,6 +62,23 @@ inline constexpr double kBoxSlack = 0x1p-20;
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
 inline constexpr double kSimultaneousUlps = 4.0;
 
+/// Distance by which a sphere may overlap a surface before its leg is refused, relative to radius plus coordinates.
+/// Reason: distances and parked centres are rounded to a few 1e-16 of the coordinates, and a parked sphere must pass.
+/// Smaller (below some 1e-15): parked spheres fail their own certificate. Larger: spheres may sink in by that much. It
+/// never lets a centre through: that is decided by the exact certificate of the centre's leg.
+inline constexpr double kSphereTolerance = 1e-12;
+
+/// Lateral distance, relative to the largest coordinate involved, up to which a sphere that touches an edge or a vertex
+/// counts as touching the face beside it. Reason: over the seam of a flat plate the closest point is on either side by
+/// rounding, and the sphere should bounce as off one plate. Smaller than some 2^-50: seams of flat plates deflect by
+/// rounding errors. Larger: on a convex edge the normal is wrong by up to this length over the radius.
+inline constexpr double kSeamSlack = 0x1p-48;
+
+/// A sphere that already overlaps a surface counts as approaching only when the distance shrinks faster than this
+/// fraction of its speed. Reason: a velocity along the surface has a normal component of rounding errors, which must
+/// not be stopped again and again. Larger: a sphere that overlaps at birth can sink in by that fraction of its path.
+inline constexpr double kSlowestApproach = 0x1p-48;
+
 /// Depth to which a path is halved while its chords are being certified. 2^-52 of the path is below the rounding of its
 /// points; a chord that still meets a triangle there is taken as an impact at that place.
 inline constexpr int kCertificateDepth = 52;
@@ -79,6 +101,11 @@ inline constexpr double kImpulseUnit = 0x1p-100;
 /// million triangles gives the same bits.
 [[nodiscard]] inline double parking_gap(const Vec3& contact) {
     return std::max(kParkingGapUlps * ulp(max_abs(contact)), kSmallestParkingGap);
+}
+
+/// The overlap that a certified leg of a sphere may show, m: radius and the largest coordinate involved in m.
+[[nodiscard]] inline double sphere_tolerance(double radius, double largest_coordinate) {
+    return kSphereTolerance * (radius + largest_coordinate);
 }
 
 }  // namespace ricochet

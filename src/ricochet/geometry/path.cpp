@@ -42,4 +42,15 @@ Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration)
     return path;
 }
 
+Path hermite_path(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration) {
+    const Vec3 mean_velocity = (x1 - x0) / duration;
+    Path path;
+    path.c = {x0, v0, (3.0 * mean_velocity - 2.0 * v0 - v1) / duration,
+              ((v0 + v1 - 2.0 * mean_velocity) / duration) / duration};
+    path.degree = path.c[3] == Vec3{} ? (path.c[2] == Vec3{} ? 1 : 2) : 3;
+    path.duration = duration;
+    path.end = flush_tiny(x1);
+    return path;
+}
+
 }  // namespace ricochet

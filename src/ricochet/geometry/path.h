@@ -28,5 +28,8 @@ struct Path {
 [[nodiscard]] Path line_path(const Vec3& x, const Vec3& v, double duration);
 /// Parabola from x with velocity v and constant acceleration a.
 [[nodiscard]] Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration);
+/// The cubic with positions x0, x1 and velocities v0, v1 at its ends (Hermite interpolation); `end` is x1 itself. Of
+/// lower degree where its leading coefficients vanish exactly. The duration must be positive.
+[[nodiscard]] Path hermite_path(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration);
 
 }  // namespace ricochet

@@ -97,7 +97,16 @@ private:
         const ObjectSpec& spec = *find_key(scene_spec(), nullptr, "materials")->content;
         for (const JsonMember& member : *members) {
             const ObjectView view(member.value, spec, path_of_key("materials", member.key));
-            scene_.setup.materials.push_back({member.key, view.number("restitution"), view.number("friction")});
+            Material material;
+            material.name = member.key;
+            material.restitution = view.number("restitution");
+            material.restitution_threshold = view.number("restitution_threshold");
+            material.friction = view.number("friction");
+            material.rolling_friction = view.number("rolling_friction");
+            material.diffuse = view.number("diffuse");
+            if (view.has("wall_temperature")) material.wall_temperature = view.number("wall_temperature");
+            material.absorption = view.number("absorption");
+            scene_.setup.materials.push_back(std::move(material));
         }
         material_used_.resize(members->size(), false);
     }
@@ -149,13 +158,20 @@ private:
             ColliderDescription collider;
             collider.name = name_of(view, index, taken, "collider");
             collider.material = material_of(view);
-            if (view.type() == "plane") collider.shape = PlaneShape{view.vector("point"), view.vector("normal")};
-            if (view.type() == "mesh") {
-                const std::string file = view.has("file") ? resolved(view, "file").string() : "";
-                collider.shape = MeshShape{load_mesh(view), placement_of(view), file};
-            }
+            collider.shape = shape_of_collider(view);
             scene_.setup.colliders.push_back(std::move(collider));
         });
+    }
+
+    decltype(ColliderDescription::shape) shape_of_collider(const ObjectView& view) {
+        if (view.type() == "plane") return PlaneShape{view.vector("point"), view.vector("normal")};
+        if (view.type() == "sphere") return BallShape{view.number("radius"), placement_of(view)};
+        if (view.type() == "cylinder") {
+            return CylinderShape{view.number("radius"), view.number("height"), placement_of(view)};
+        }
+        if (view.type() == "box") return CuboidShape{view.vector("size"), placement_of(view)};
+        const std::string file = view.has("file") ? resolved(view, "file").string() : "";
+        return MeshShape{load_mesh(view), placement_of(view), file, {}};
     }
 
     [[nodiscard]] std::filesystem::path resolved(const ObjectView& view, std::string_view key) const {
@@ -197,6 +213,7 @@ private:
             emitter.speed = view.pair("speed");
             emitter.velocity = view.vector("velocity");
             emitter.mass = view.pair("mass");
+            emitter.radius = view.pair("particle_radius");
             if (view.has("lifetime")) emitter.lifetime = view.pair("lifetime");
             births += check_schedule(view, emitter);
             if (births > kMostParticles) {
@@ -295,6 +312,7 @@ private:
                 particle.velocity = view.vector("velocity");
                 particle.mass = view.number("mass");
                 particle.radius = view.number("radius");
+                particle.spin = view.vector("spin");
                 scene_.setup.particles.push_back(particle);
             });
         }
@@ -350,6 +368,7 @@ private:
         const ObjectView view = root_.object("output");
         scene_.output.format = view.text("format");
         scene_.output.every = view.whole_number("every");
+        scene_.setup.options.record_contacts = view.boolean("contacts");
     }
 
     void build_camera() {

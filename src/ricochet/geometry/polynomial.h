@@ -1,0 +1,78 @@
+/// \file
+/// Real roots of polynomials in time, at most of degree 6: the distance of a cubic path from a point, squared, has that
+/// degree.
+///
+/// Coefficients are double-doubles, so that a difference of squares (distance^2 - radius^2) keeps its meaning where it
+/// almost vanishes. Roots are isolated by sign variations of the Bernstein coefficients (no variation: no root; one:
+/// one root); with more variations the interval is cut at the roots of the derivative, found the same way, so that each
+/// piece is monotone and the signs at its ends decide. Method: R. T. Farouki, "The Bernstein polynomial basis: A
+/// centennial retrospective", CAGD 29, 2012 (variations); C. Yuksel, "High-Performance Polynomial Root Finding for
+/// Graphics", HPG 2022 (cutting at the derivative's roots). Each root is polished inside its bracket by Newton's
+/// method, with halving wherever Newton does not halve the bracket. Degrees 1 and 2 have closed forms.
+///
+/// What can be missed: a pair of roots between which the polynomial stays below
+///     B = 2^-90 * sum |c_k| duration^k
+/// in magnitude. Reason: the extremum between the pair is found to the last place of time, so the value there errs by
+/// the second order, at most 2^-104 * 30 * sum; if the derivative's own pair was missed, the value varies by less than
+/// the derivative's bound times the duration, and so on down to degree 2: a factor of 6 * 5 * 4 * 3 in all.
+///
+/// The work is bounded: at most 5 + 4 + 3 + 2 brackets of kMostRootSteps evaluations, four calls deep, no heap.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "ricochet/core/double_double.h"
+
+namespace ricochet {
+
+/// p(s) = sum of coefficients[k] s^k on [0, duration]; s and duration in seconds.
+struct Polynomial {
+    static constexpr int kLargestDegree = 6;
+
+    std::array<DoubleDouble, kLargestDegree + 1> coefficients{};  ///< ascending; zero above the degree
+    int degree = 0;                                               ///< 0 to 6; the leading coefficient may be zero
+    double duration = 0.0;                                        ///< s, >= 0
+
+    /// Value with an error below 2^-99 * sum |c_k| s^k.
+    [[nodiscard]] DoubleDouble value(double s) const;
+    /// dp/ds in plain doubles.
+    [[nodiscard]] double slope(double s) const;
+    [[nodiscard]] Polynomial derivative() const;
+    /// sum |c_k| duration^k, in terms of which errors are stated.
+    [[nodiscard]] double magnitude() const;
+};
+
+/// Times in ascending order.
+struct Times {
+    std::array<double, Polynomial::kLargestDegree + 1> time{};
+    int count = 0;
+
+    void append(double s) { time[static_cast<std::size_t>(count++)] = s; }
+    [[nodiscard]] const double* begin() const { return time.data(); }
+    [[nodiscard]] const double* end() const { return time.data() + count; }
+    double operator[](int i) const { return time[static_cast<std::size_t>(i)]; }
+};
+
+/// Every time inside (0, duration) at which p changes sign: within two ulp of an exact root of the given coefficients,
+/// or, where p is as flat as at a multiple root, at a place where |p| is below 2^-97 magnitude(). Between them p keeps
+/// its sign up to the bound B above. Where p touches zero without passing through it there is no time; none for the
+/// zero polynomial.
+[[nodiscard]] Times sign_changes(const Polynomial& p);
+
+/// Every time in (from, to] at which p comes down from positive values to zero: roots with p > 0 before, also where it
+/// only touches (a touch counts when the rounded coefficients say so) and also at `to` itself. A start at p <= 0 is no
+/// such time. 0 <= from <= to <= duration; the times do not depend on where the interval is cut.
+[[nodiscard]] Times down_crossings(const Polynomial& p, double from, double to);
+
+/// The first time in [from, to] at which p <= 0 while p is decreasing or has just decreased to zero:
+/// - p(from) > 0: the first of down_crossings;
+/// - p(from) <= 0: `from` if p decreases from there on; else p is followed upwards, and the time is that of the first
+///   maximum that is still <= 0, or, once p has become positive, the first of the down_crossings after that.
+/// Nothing when there is none; a constant is never decreasing.
+[[nodiscard]] std::optional<double> first_descent(const Polynomial& p, double from, double to);
+
+/// True when p is certainly positive on all of [0, to], by its Bernstein coefficients there. False decides nothing.
+[[nodiscard]] bool is_certainly_positive(const Polynomial& p, double to);
+
+}  // namespace ricochet

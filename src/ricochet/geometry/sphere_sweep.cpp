@@ -1,0 +1,128 @@
+#include "ricochet/geometry/sphere_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/triangle_contact_search.h"
+
+namespace ricochet {
+namespace {
+
+/// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
+int side_ahead(const std::array<DoubleDouble, 4>& height) {
+    for (const DoubleDouble& coefficient : height) {
+        if (coefficient.hi != 0.0) return sign(coefficient);
+    }
+    return 0;
+}
+
+}  // namespace
+
+SphereSweep::SphereSweep(const Path& path, double radius)
+    : path_(path),
+      radius_(radius),
+      squared_displacement_(ricochet::squared_displacement<double>(path)),
+      precise_squared_displacement_(ricochet::squared_displacement<DoubleDouble>(path)) {
+    const double h = path.duration;
+    hull_ = {path.c[0], path.end, path.c[0] + (h / path.degree) * path.c[1],
+             path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2])};
+    hull_count_ = path.degree + 1;
+    Vec3 lower = path.c[0];
+    Vec3 upper = path.c[0];
+    for (int i = 1; i < hull_count_; ++i) {
+        lower = min(lower, hull(i));
+        upper = max(upper, hull(i));
+    }
+    scale_ = std::max(max_abs(lower), max_abs(upper)) + radius;
+    slack_ = kCandidateSlack * scale_;
+    const double margin = radius + slack_;
+    lower_ = lower - Vec3{margin, margin, margin};
+    upper_ = upper + Vec3{margin, margin, margin};
+    reach_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
+}
+
+bool SphereSweep::misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const auto is_apart = [](double x, double y, double z, double low, double high) {
+        return std::min({x, y, z}) > high || std::max({x, y, z}) < low;
+    };
+    return is_apart(a.x, b.x, c.x, lower_.x, upper_.x) || is_apart(a.y, b.y, c.y, lower_.y, upper_.y) ||
+           is_apart(a.z, b.z, c.z, lower_.z, upper_.z);
+}
+
+// The error of each height is bounded as in detail::filtered_sign.
+bool SphereSweep::misses_plane(const detail::FilteredCross& normal, const Vec3& a) const {
+    const double longest = length(normal.value) + detail::kDeterminantFilter * length(normal.magnitude);
+    const double margin = (1.0 + 0x1p-40) * (radius_ + slack_) * longest;
+    bool above = true;
+    bool below = true;
+    for (int i = 0; i < hull_count_; ++i) {
+        const Vec3 w = hull(i) - a;
+        const double height = dot(normal.value, w);
+        const double bound = margin + detail::kDeterminantFilter * dot(normal.magnitude, ricochet::abs(w));
+        above = above && height > bound;
+        below = below && height < -bound;
+    }
+    return above || below;
+}
+
+bool SphereSweep::clears(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    return misses_box(a, b, c) || misses_plane(detail::filtered_cross(b - a, c - a), a);
+}
+
+std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    if (misses_box(a, b, c)) return std::nullopt;
+    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
+    if (misses_plane(normal, a)) return std::nullopt;
+    return TriangleContactSearch(*this, a, b, c, normal).first();
+}
+
+std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) const {
+    const Vec3& n = plane.normal;
+    const auto height = component_along(path_, difference<DoubleDouble>(path_.c[0], plane.point), n);
+    const int side = side_ahead(height);
+    if (side == 0) return std::nullopt;
+    const Polynomial clearance = face_clearance(path_, height, radius_, side);
+    double time = 0.0;
+    if (clearance.coefficients[0].hi <= 0.0) {
+        const auto offset_at = [&](const Vec3& p) { return dot(n, p - plane.point) * n; };
+        const OverlapEnd end = follow_overlap(path_, radius_ + kSeamSlack * (scale_ + max_abs(plane.point)),
+                                              sign_changes(clearance.derivative()), offset_at);
+        if (end.kind == OverlapEnd::kNever) return std::nullopt;
+        time = end.time;
+        if (end.kind == OverlapEnd::kFree) {
+            const Times crossings = down_crossings(clearance, end.time, path_.duration);
+            if (crossings.count == 0) return std::nullopt;
+            time = crossings[0];
+        }
+    } else {
+        const Times crossings = down_crossings(clearance, 0.0, path_.duration);
+        if (crossings.count == 0) return std::nullopt;
+        time = crossings[0];
+    }
+    const Vec3 p = path_.position(time);
+    return SphereContact{time, side > 0 ? n : -n, p - dot(n, p - plane.point) * n, TriangleFeature::kFace};
+}
+
+bool sphere_leg_is_clear(const Vec3& p, const Vec3& q, double radius, double tolerance, const Vec3& a, const Vec3& b,
+                         const Vec3& c) {
+    const double least = std::max(0.0, radius - tolerance);
+    const Vec3 lower = min(p, q) - Vec3{radius, radius, radius};
+    const Vec3 upper = max(p, q) + Vec3{radius, radius, radius};
+    const Vec3 low = min(a, min(b, c));
+    const Vec3 high = max(a, max(b, c));
+    if (low.x > upper.x || high.x < lower.x || low.y > upper.y || high.y < lower.y || low.z > upper.z ||
+        high.z < lower.z) {
+        return true;
+    }
+    const ClosestPointOnTriangle at_q = closest_point_on_triangle(q, a, b, c);
+    if (at_q.distance_squared < least * least) return false;
+    if (dot(at_q.offset, q - p) <= 0.0) return true;
+    const ClosestPointOnTriangle at_p = closest_point_on_triangle(p, a, b, c);
+    if (at_p.distance_squared < least * least) return false;
+    if (dot(at_p.offset, q - p) >= 0.0) return true;
+    return squared_distance_of_segment_from_triangle(p, q, a, b, c) >= least * least;
+}
+
+}  // namespace ricochet

@@ -253,10 +253,12 @@ TEST(StlReader, TakesABinaryFileThatStartsWithSolidForBinary) {
 }
 
 TEST(StlReader, JoinsEqualCornersOnly) {
-    const std::string one_ulp = test::ascii_facet("0 0 0", "1 0 0", "0 1 0") +
-                                test::ascii_facet("1.0000000000000002 0 0", "1 1 0", "0 1 0") +
-                                test::ascii_facet("-0 0 -0", "0 1 0", "1 0 0");
-    const ImportedMesh mesh = read_mesh("a.stl", "solid a\n" + one_ulp + "endsolid a\n");
+    std::string text = "solid a\n";
+    text += test::ascii_facet("0 0 0", "1 0 0", "0 1 0");
+    text += test::ascii_facet("1.0000000000000002 0 0", "1 1 0", "0 1 0");  // one ulp beside
+    text += test::ascii_facet("-0 0 -0", "0 1 0", "1 0 0");
+    text += "endsolid a\n";
+    const ImportedMesh mesh = read_mesh("a.stl", text);
     EXPECT_EQ(mesh.weld->corners, 9U);
     EXPECT_EQ(mesh.weld->vertices, 5U);
     EXPECT_EQ(mesh.mesh.triangles[2], (Triangle{0, 2, 1}));
@@ -348,26 +350,26 @@ void expect_sound(const ImportedMesh& mesh, std::size_t file_size) {
 }
 
 std::string mutated(std::string bytes, std::mt19937_64& random) {
-    static const std::string kSnippets[] = {"-1",
-                                            "nan",
-                                            "1e999",
-                                            "4294967296",
-                                            "\n",
-                                            "\r",
-                                            "\\\n",
-                                            "#",
-                                            " ",
-                                            "f 1 2 3\n",
-                                            "3 0 1 2\n",
-                                            "\0\0\0\0",
-                                            "\xff\xff\xff\xff",
-                                            "0",
-                                            "/",
-                                            "element vertex 9\n",
-                                            "solid",
-                                            "vertex",
-                                            "list",
-                                            "property int x\n"};
+    static const std::string snippets[] = {"-1",
+                                           "nan",
+                                           "1e999",
+                                           "4294967296",
+                                           "\n",
+                                           "\r",
+                                           "\\\n",
+                                           "#",
+                                           " ",
+                                           "f 1 2 3\n",
+                                           "3 0 1 2\n",
+                                           std::string(4, '\0'),
+                                           "\xff\xff\xff\xff",
+                                           "0",
+                                           "/",
+                                           "element vertex 9\n",
+                                           "solid",
+                                           "vertex",
+                                           "list",
+                                           "property int x\n"};
     for (std::uint64_t edits = 1 + random() % 4; edits > 0; --edits) {
         const std::size_t at = random() % (bytes.size() + 1);
         const std::size_t count = std::min<std::size_t>(random() % 12, bytes.size() - at);
@@ -376,7 +378,7 @@ std::string mutated(std::string bytes, std::mt19937_64& random) {
                 bytes.erase(at, count);
                 break;
             case 1:
-                bytes.insert(at, kSnippets[random() % std::size(kSnippets)]);
+                bytes.insert(at, snippets[random() % std::size(snippets)]);
                 break;
             case 2:
                 bytes.insert(at, bytes.substr(at, count));

@@ -1,5 +1,6 @@
 #include "ricochet/geometry/mesh_reader.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -288,8 +289,7 @@ TEST(OffReader, PassesOverValuesThatThePrefixesAnnounce) {
                                                             {"OFF", " 10 20 30"}};
     for (const auto& [keyword, values] : variants) {
         SCOPED_TRACE(keyword);
-        const std::string text =
-            keyword + "\n3 1 0\n0 0 0" + values + "\n1 0 0" + values + "\n0 1 0" + values + "\n3 0 1 2\n";
+        const std::string text = fmt::format("{0}\n3 1 0\n0 0 0{1}\n1 0 0{1}\n0 1 0{1}\n3 0 1 2\n", keyword, values);
         EXPECT_EQ(read_mesh("a.off", text).mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     }
 }

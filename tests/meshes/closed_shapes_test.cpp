@@ -29,6 +29,7 @@ struct ClosedShape {
     long handles;
 };
 
+// The name is GoogleTest's. NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const ClosedShape& shape, std::ostream* out) { *out << shape.name; }
 
 template <typename Shape>

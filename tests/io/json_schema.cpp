@@ -67,7 +67,7 @@ private:
     static bool is_list(const Json& value) { return value.is_array(); }
     static bool is_object(const Json& value) { return value.is_object(); }
 
-    static std::map<std::string, Check> simple_checks() {
+    static std::map<std::string, Check> checks_of_any_value() {
         const Check nothing = [](const Validator&, const Json&, const Json&, const Json&, const std::string&, Errors&) {
         };
         return {
@@ -85,6 +85,11 @@ private:
                  is_any,
                  [](const Json& rule, const Json& v) { return std::find(rule.begin(), rule.end(), v) != rule.end(); },
                  "enum")},
+        };
+    }
+
+    static std::map<std::string, Check> checks_of_numbers_and_texts() {
+        return {
             {"minimum", only_if(
                             is_number, [](const Json& rule, const Json& v) { return v >= rule; }, "minimum")},
             {"maximum", only_if(
@@ -102,6 +107,11 @@ private:
                  is_text,
                  [](const Json& rule, const Json& v) { return matches(v.get<std::string>(), rule.get<std::string>()); },
                  "pattern")},
+        };
+    }
+
+    static std::map<std::string, Check> checks_of_lists_and_objects() {
+        return {
             {"minItems",
              only_if(
                  is_list, [](const Json& rule, const Json& v) { return v.size() >= rule.get<std::size_t>(); },
@@ -190,7 +200,9 @@ private:
 
     static const std::map<std::string, Check>& checks() {
         static const std::map<std::string, Check> all = [] {
-            std::map<std::string, Check> table = simple_checks();
+            std::map<std::string, Check> table = checks_of_any_value();
+            table.merge(checks_of_numbers_and_texts());
+            table.merge(checks_of_lists_and_objects());
             add_nested_checks(table);
             return table;
         }();

@@ -7,8 +7,9 @@ packages_build=(
     libembree-dev libopenmesh-dev libtbb-dev   # ray queries, half-edge topology, threads
     libfmt-dev libcli11-dev nlohmann-json3-dev # text, command line, scene files
     libstb-dev                                 # PNG
+    libboost-dev                               # whole numbers of any length, for the verifier
 )
-packages_test=(libgtest-dev libbenchmark-dev libboost-dev pkgconf)
+packages_test=(libgtest-dev libbenchmark-dev pkgconf)
 packages_lint=(clang-format clang-tidy)
 packages_clang=(clang)
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.

@@ -11,7 +11,9 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/shape_mesh.h"
 #include "ricochet/response/exact.h"
+#include "ricochet/run_check.h"
 
 namespace ricochet {
 namespace {
@@ -39,6 +41,29 @@ SimulationOptions checked(const SimulationOptions& options) {
     return options;
 }
 
+/// Throws where a collider or one of its triangles names a material that is not there.
+std::vector<Material> checked_materials(std::vector<Material> materials,
+                                        const std::vector<ColliderDescription>& colliders) {
+    for (const ColliderDescription& collider : colliders) {
+        if (collider.material >= materials.size())
+            throw InputError("collider \"" + collider.name + "\" has no material");
+        const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
+        if (mesh == nullptr || mesh->triangle_materials.empty()) continue;
+        const auto& list = mesh->triangle_materials;
+        if (*std::max_element(list.begin(), list.end()) >= materials.size())
+            throw InputError("collider \"" + collider.name + "\" has triangles without a material");
+    }
+    return materials;
+}
+
+bool makes_spheres(const SimulationSetup& setup) {
+    return std::any_of(setup.particles.begin(), setup.particles.end(),
+                       [](const Particle& particle) { return particle.radius > 0.0; }) ||
+           std::any_of(setup.emitters.begin(), setup.emitters.end(), [](const EmitterDescription& emitter) {
+               return emitter.radius.mean > 0.0 || emitter.radius.spread > 0.0;
+           });
+}
+
 /// Totals of one surface.
 struct SurfaceTotals {
     std::atomic<std::uint64_t> hits{0};
@@ -56,6 +81,17 @@ struct BlockCounts {
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
     double unsimulated = 0.0;
+    std::vector<ContactRecord> records;
+    std::vector<Violation> violations;
+
+    void add(const MoveOutcome& outcome) {
+        contacts += outcome.bounces;
+        stayed += outcome.stayed;
+        frozen += outcome.frozen ? 1 : 0;
+        budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
+        unsimulated += outcome.unsimulated_time;
+        bounces_max = std::max(bounces_max, outcome.bounces);
+    }
 };
 
 }  // namespace
@@ -63,13 +99,22 @@ struct BlockCounts {
 struct Simulation::Impl {
     explicit Impl(SimulationSetup setup);
 
+    [[nodiscard]] bool has_energy(std::size_t i) const;
     void emit(double from, double to);
     void add(Particle particle);
     void move_all(double from, double to);
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
+    void collect_records(std::vector<BlockCounts>& blocks);
+    // What holds a particle under steady forces holds it for good, so asking again is not needed.
+    [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.resting[i] != 0 && may_sleep; }
+    [[nodiscard]] MovingParticle moving(std::size_t i, double start) const;
+    void add_weight(std::size_t i, double until, double sign);
+    void add_weights_of_sleepers(double sign);
+    void collect_violations(const std::vector<BlockCounts>& blocks);
+    void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
     void retire(double now);
-    [[nodiscard]] bool lies_on_a_surface(const Vec3& p) const;
+    [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
     }
@@ -87,43 +132,50 @@ struct Simulation::Impl {
     Particles particles;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
+    std::vector<ContactRecord> records;
+    std::unique_ptr<RunCheck> check;  ///< with options.verify
+    std::vector<Violation> violations;
     std::uint64_t steps;
     std::uint64_t next_id = 0;
+    bool may_sleep;
+    bool has_spheres = false;
 };
 
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(checked(setup.options)),
       forces(std::move(setup.forces)),
-      materials(std::move(setup.materials)),
+      materials(checked_materials(std::move(setup.materials), setup.colliders)),
       world(std::move(setup.colliders)),
       bounds(setup.bounds),
-      response(world, forces, materials, {options.integrator, options.resting_speed, options.bounce_budget}),
+      response(world, forces, materials,
+               {options.integrator, options.resting_speed, options.bounce_budget, options.seed}),
       totals(options.triangle_totals ? world.surface_count() : 0),
-      steps(count_steps(options)) {
-    for (const ColliderDescription& collider : world.colliders()) {
-        if (collider.material >= materials.size())
-            throw InputError("collider \"" + collider.name + "\" has no material");
-    }
+      steps(count_steps(options)),
+      may_sleep(options.sleeping && forces.is_steady()) {
+    world.set_culling(options.culling);
+    has_spheres = makes_spheres(setup);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
     }
     for (const Particle& particle : setup.particles) add(particle);
+    if (options.verify) check = std::make_unique<RunCheck>(world);
 }
 
 void Simulation::Impl::add(Particle particle) {
     particle.id = next_id++;
     particle.position = flush_tiny(particle.position);
-    if (lies_on_a_surface(particle.position)) ++statistics.started_inside;
+    world.prepare_radius(particle.radius);
+    if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
     ++statistics.emitted;
 }
 
-bool Simulation::Impl::lies_on_a_surface(const Vec3& p) const {
-    if (!is_finite(p) || max_abs(p) > kLargestCoordinate) return false;
+bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
+    if (!is_finite(particle.position) || max_abs(particle.position) > kLargestCoordinate) return false;
     ContactScratch scratch;
     ContactSearch search(world, scratch);
-    (void)search.search(line_path(p, Vec3{}, 0.0));
-    return search.blocker(p, p).has_value();
+    (void)search.search(line_path(particle.position, Vec3{}, 0.0), particle.radius);
+    return search.starts_in_overlap();
 }
 
 // Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
@@ -154,32 +206,74 @@ void Simulation::Impl::move_all(double from, double to) {
         statistics.unsimulated_time += block.unsimulated;
     }
     statistics.particle_steps += count;
+    if (options.record_contacts) collect_records(blocks);
+    if (check) collect_violations(blocks);
+}
+
+void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
+    for (const BlockCounts& block : blocks) {
+        statistics.violations += block.violations.size();
+        const std::size_t kept = std::min(block.violations.size(), kMostViolations - violations.size());
+        violations.insert(violations.end(), block.violations.begin(),
+                          block.violations.begin() + static_cast<std::ptrdiff_t>(kept));
+    }
+}
+
+// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
+void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
+    records.clear();
+    for (const BlockCounts& block : blocks) records.insert(records.end(), block.records.begin(), block.records.end());
+    std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
+        return a.time != b.time ? a.time < b.time : a.particle < b.particle;
+    });
 }
 
 void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts) {
     thread_local MoveScratch scratch;
     scratch.hits.clear();
+    scratch.records.clear();
+    scratch.record_contacts = options.record_contacts;
+    scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
         if (particles.frozen[i] != 0) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
-        if (stop <= start) continue;
-        ForceInput state = input(i, start);
-        const MoveOutcome outcome = response.move(state, stop - start, scratch);
-        particles.position[i] = state.position;
-        particles.velocity[i] = state.velocity;
-        particles.unsimulated_time[i] += outcome.unsimulated_time;
-        particles.contacts[i] += outcome.bounces;
-        particles.resting[i] = outcome.resting ? 1 : 0;
-        particles.frozen[i] = outcome.frozen ? 1 : 0;
-        counts.contacts += outcome.bounces;
-        counts.stayed += outcome.stayed;
-        counts.frozen += outcome.frozen ? 1 : 0;
-        counts.budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
-        counts.unsimulated += outcome.unsimulated_time;
-        counts.bounces_max = std::max(counts.bounces_max, outcome.bounces);
+        if (stop <= start || is_asleep(i)) continue;
+        MovingParticle particle = moving(i, start);
+        scratch.legs.clear();
+        const MoveOutcome outcome = response.move(particle, stop - start, scratch);
+        if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
+        store(i, particle, outcome);
+        particles.booked_until[i] = stop;
+        counts.add(outcome);
     }
     if (!totals.empty()) add_hits(scratch.hits, counts);
+    if (options.record_contacts) counts.records = scratch.records;
+}
+
+MovingParticle Simulation::Impl::moving(std::size_t i, double start) const {
+    MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
+    Support& support = particle.support;
+    for (const SurfaceId surface : particles.support[i]) {
+        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
+    }
+    support.cascade_left = particles.cascade_left[i];
+    return particle;
+}
+
+void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
+    particles.position[i] = moving.state.position;
+    particles.velocity[i] = moving.state.velocity;
+    particles.spin[i] = moving.spin;
+    particles.draws[i] = moving.draws;
+    particles.unsimulated_time[i] += outcome.unsimulated_time;
+    particles.contacts[i] += outcome.bounces;
+    particles.resting[i] = outcome.resting ? 1 : 0;
+    particles.frozen[i] = outcome.frozen ? 1 : 0;
+    particles.absorbed[i] = outcome.absorbed ? 1 : 0;
+    particles.support[i].fill(kNoSupport);
+    std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
+    particles.cascade_left[i] = moving.support.cascade_left;
 }
 
 void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts) {
@@ -193,19 +287,39 @@ void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts
     }
 }
 
+// The impulse of a sleeping particle's weight since it was last moved.
+void Simulation::Impl::add_weight(std::size_t i, double until, double sign) {
+    const double elapsed = until - particles.booked_until[i];
+    if (totals.empty() || !is_asleep(i) || !(elapsed > 0.0)) return;
+    const Vec3 impulse = (sign * particles.mass[i] * elapsed) * forces.acceleration(input(i, until));
+    BlockCounts counts;
+    add_hits({{particles.support[i][0], impulse, false}}, counts);
+    statistics.lost_impulses += counts.lost_impulses;
+}
+
+void Simulation::Impl::add_weights_of_sleepers(double sign) {
+    const double now = time_at(statistics.steps);
+    for (std::size_t i = 0; i < particles.size(); ++i) add_weight(i, now, sign);
+}
+
 void Simulation::Impl::retire(double now) {
     std::vector<std::uint8_t> keep(particles.size(), 1);
     bool any = false;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
         const bool outside = bounds && !bounds->contains(particles.position[i]);
-        statistics.expired += expired ? 1 : 0;
-        statistics.out_of_bounds += !expired && outside ? 1 : 0;
-        keep[i] = expired || outside ? 0 : 1;
+        const bool absorbed = particles.absorbed[i] != 0;
+        statistics.absorbed += absorbed ? 1 : 0;
+        statistics.expired += !absorbed && expired ? 1 : 0;
+        statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
+        keep[i] = absorbed || expired || outside ? 0 : 1;
+        if (keep[i] == 0) add_weight(i, std::min(now, particles.birth_time[i] + particles.lifetime[i]), 1.0);
         any = any || keep[i] == 0;
     }
     if (any) particles.compact(keep);
+    if (any && check) check->compact(keep);
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
+    statistics.asleep = may_sleep ? statistics.resting : 0;
 }
 
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
@@ -218,6 +332,7 @@ void Simulation::step() {
     const double from = impl_->time_at(impl_->statistics.steps);
     const double to = impl_->time_at(impl_->statistics.steps + 1);
     impl_->emit(from, to);
+    if (impl_->check) impl_->check->watch_newborn(impl_->particles);
     impl_->move_all(from, to);
     impl_->retire(to);
     ++impl_->statistics.steps;
@@ -231,13 +346,28 @@ const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
-std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const { return impl_->world.mesh_of(i); }
+std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
+    const ColliderShape& shape = impl_->world.colliders()[i].shape;
+    if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
+    if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+        return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
+    }
+    return impl_->world.mesh_of(i);
+}
 std::size_t Simulation::triangle_count() const { return impl_->world.triangles().size(); }
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
+
+const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->records; }
+CollisionWorld::Place Simulation::contact_place(const ContactRecord& record) const {
+    return impl_->world.place_on(record.surface, record.position);
+}
+SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->world.name_of(surface); }
 
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
     if (impl_->totals.empty()) return result;
+    // Sleepers' weight is lent to the totals: it comes out exactly as it went in.
+    impl_->add_weights_of_sleepers(1.0);
     const std::size_t first = impl_->world.first_surface_of(i);
     for (std::size_t k = 0; k < impl_->world.surface_count_of(i); ++k) {
         const SurfaceTotals& total = impl_->totals[first + k];
@@ -245,15 +375,29 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
         result.impulse.push_back(
             {total.x.value(kImpulseUnit), total.y.value(kImpulseUnit), total.z.value(kImpulseUnit)});
     }
+    impl_->add_weights_of_sleepers(-1.0);
     return result;
 }
 
+bool Simulation::has_spheres() const { return impl_->has_spheres; }
+
+// A state that is not finite and will be frozen by the next step counts as frozen already.
+bool Simulation::Impl::has_energy(std::size_t i) const {
+    return particles.frozen[i] == 0 && is_finite(particles.position[i]) && is_finite(particles.velocity[i]);
+}
+const std::vector<Violation>& Simulation::violations() const { return impl_->violations; }
+
 double Simulation::kinetic_energy() const {
+    const Particles& particles = impl_->particles;
     const std::vector<std::uint32_t> order = impl_->particles.order_by_id();
     return ordered_sum(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
-            sum += 0.5 * impl_->particles.mass[order[k]] * length_squared(impl_->particles.velocity[order[k]]);
+            const std::uint32_t i = order[k];
+            if (!impl_->has_energy(i)) continue;
+            const double r = particles.radius[i];
+            const double turning = 0.4 * r * r * length_squared(particles.spin[i]);  // solid sphere, 2/5 m r^2
+            sum += 0.5 * particles.mass[i] * (length_squared(particles.velocity[i]) + turning);
         }
         return sum;
     });
@@ -266,6 +410,7 @@ std::optional<double> Simulation::potential_energy() const {
     const double sum = ordered_sum(order.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
+            if (!impl_->has_energy(order[k])) continue;
             const auto energy = impl_->forces.potential_energy(impl_->input(order[k], now));
             if (!energy) defined = false;
             partial += energy.value_or(0.0);

@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "ricochet/collision/collider.h"
+#include "ricochet/collision/collision_world.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/response/exact.h"
 #include "ricochet/response/material.h"
+#include "ricochet/verify/violation.h"
 
 namespace ricochet {
 
@@ -26,6 +29,11 @@ struct SimulationOptions {
     std::uint64_t seed = 0;
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;
+    bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
+    bool culling = true;   ///< false: every triangle is tested for every path; the result is the same without
+    bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
+    /// Check every leg, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
+    bool verify = false;
     bool triangle_totals = true;         ///< keep hits and impulse per triangle (56 bytes each)
     std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
 };
@@ -47,16 +55,19 @@ struct SimulationStatistics {
     std::uint64_t particle_steps = 0;  ///< sum over steps of the particles moved
     std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
     std::uint64_t expired = 0;         ///< retired at the end of their lifetime
+    std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces
     std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
     std::uint64_t contacts = 0;        ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
     double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
     std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
+    std::uint64_t asleep = 0;            ///< of the resting ones those that cost nothing
     std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
     std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
-    std::uint64_t frozen = 0;            ///< particles stopped because their state was not finite or absurd
+    std::uint64_t violations = 0;        ///< what options.verify found wrong
+    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 
 /// Per-triangle totals of one mesh collider, since the start.
@@ -86,7 +97,8 @@ public:
     [[nodiscard]] const Particles& particles() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
-    /// World-space mesh of collider i (placement baked in); nothing for planes.
+    /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
+    /// triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
     /// Totals of collider i, one entry a triangle (one in all for a plane); empty without options.triangle_totals.
     [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
@@ -95,6 +107,24 @@ public:
     /// Triangles without area, which take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const;
 
+    /// Every reflection of the last step in the order of (time, particle id, order of events); empty without
+    /// options.record_contacts. An impact on one surface is one record; one in a corner has a record for every
+    /// reflection, all of the same time. Surfaces are named by surface_name().
+    [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
+    /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
+    [[nodiscard]] CollisionWorld::Place contact_place(const ContactRecord& record) const;
+    [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
+
+    /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run
+    /// long.
+    [[nodiscard]] bool has_spheres() const;
+
+    /// What options.verify found wrong, in the order of steps and particles; the first kMostViolations of them. All are
+    /// counted in statistics().violations.
+    [[nodiscard]] const std::vector<Violation>& violations() const;
+    static constexpr std::size_t kMostViolations = 1000;
+
+    /// Energies leave frozen particles out: what is known of them is where they were stopped, not how they would move.
     [[nodiscard]] double kinetic_energy() const;                   ///< J
     [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential
     /// StateHash over id, position and velocity in id order.

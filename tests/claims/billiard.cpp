@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kBlock = 16;
 
 std::vector<ColliderDescription> as_collider(const NamedMesh& mesh, const Placement& placement) {
-    return {{mesh.name, MeshShape{std::make_shared<const TriangleMesh>(mesh.mesh), placement, ""}, 0}};
+    return {{mesh.name, MeshShape{std::make_shared<const TriangleMesh>(mesh.mesh), placement, "", {}}, 0}};
 }
 
 /// Distance of a point from a segment.
@@ -56,7 +56,7 @@ struct Aimed {
         const double past = random.uniform() < 0.25 ? 1.0 : 2.0 * random.uniform();
         const Path path = line_path(position, target - position, past);
         ContactSearch search(world, scratch);
-        const auto contact = search.search(path);
+        const auto contact = search.search(path, 0.0);
         if (!contact) {
             position = travel(search, path, path.duration, path.end).reached;
             return;
@@ -126,7 +126,7 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     if (gravity != 0.0) list.push_back(make_gravity(gravity * mean_free_path_ * normalized(Vec3{0.1, 0.2, -1.0})));
     const ForceField forces(std::move(list));
     const std::vector<Material> materials{{"elastic", 1.0, 0.0}};
-    const ExactResponse response(world_, forces, materials, {kind, 1e-3, 1000});
+    const ExactResponse response(world_, forces, materials, {kind, 1e-3, 1000, 0});
     std::vector<BilliardTally> parts((start.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(start.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
@@ -134,15 +134,15 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
         for (std::size_t i = begin; i < end; ++i) {
             RandomSequence random(seed, 2, i);
             const double speed = (0.5 + random.uniform()) * impacts * mean_free_path_;
-            ForceInput state{start[i], speed * random.unit_vector(), 1.0, 0.0, 0.0};
+            MovingParticle particle{{start[i], speed * random.unit_vector(), 1.0, 0.0, 0.0}, {}, i, 0};
             bool inside = true;
             for (int step = 0; step < steps; ++step) {
                 scratch.hits.clear();
-                const MoveOutcome outcome = response.move(state, 1.0, scratch);
+                const MoveOutcome outcome = response.move(particle, 1.0, scratch);
                 tally.contacts += outcome.bounces;
                 tally.stayed += outcome.stayed;
                 tally.budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
-                if (step % 8 == 7 || step + 1 == steps) inside = inside && may_be_at(state.position);
+                if (step % 8 == 7 || step + 1 == steps) inside = inside && may_be_at(particle.state.position);
             }
             tally.not_inside += inside ? 0 : 1;
         }

@@ -42,7 +42,7 @@ cat >"$folder/scene.json" <<'SCENE'
   "materials": {"plain": {"restitution": 1}},
   "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "plain"}],
   "particles": [{"position": [0, 0, 1], "velocity": [0, 0, -1]}],
-  "output": {"every": 1}
+  "output": {"every": 1, "contacts": true}
 }
 SCENE
 

@@ -7,6 +7,7 @@
 
 #include "cli/run_program.h"
 #include "geometry/temporary_folder.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace {
@@ -61,6 +62,23 @@ TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     EXPECT_NE(result.output.find(summary["state_hash"].get<std::string>()), std::string::npos) << result.output;
 }
 
+TEST(RunCommand, WritesTheContactLogWhereItIsAskedForAndClearsItAway) {
+    const RunFiles files;
+    EXPECT_EQ(files.run({"--set", "output.contacts=true"}).exit_code, 0);
+    for (const char* name :
+         {"contacts_000000.vtp", "contacts_000020.vtp", "contacts_000040.vtp", "contacts_000050.vtp", "contacts.pvd"}) {
+        EXPECT_TRUE(files.exists(std::string("out/") + name)) << name;
+    }
+    std::size_t rows = 0;
+    for (const char* name : {"contacts_000020.vtp", "contacts_000040.vtp", "contacts_000050.vtp"}) {
+        rows += read_vtp(files.folder.path(std::string("out/") + name)).points.size();
+    }
+    EXPECT_EQ(rows, files.summary()["contacts"].get<std::size_t>());  // on one plane every impact is one row
+    EXPECT_EQ(files.run().exit_code, 0);
+    EXPECT_FALSE(files.exists("out/contacts_000020.vtp"));
+    EXPECT_FALSE(files.exists("out/contacts.pvd"));
+}
+
 TEST(RunCommand, TheStateDoesNotDependOnThreads) {
     const RunFiles files;
     std::vector<std::string> hashes;
@@ -71,6 +89,19 @@ TEST(RunCommand, TheStateDoesNotDependOnThreads) {
     }
     EXPECT_EQ(hashes[0], hashes[1]);
     EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+TEST(RunCommand, AVerifiedRunCountsItsLeaksAndGivesTheSameState) {
+    const RunFiles files;
+    EXPECT_EQ(files.run().exit_code, 0);
+    const nlohmann::json unverified = files.summary();
+    EXPECT_TRUE(unverified["leaks"].is_null());
+    const ProgramResult result = files.run({"--verify"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
+    EXPECT_NE(result.output.find("0 violations"), std::string::npos) << result.output;
+    EXPECT_EQ(files.summary()["leaks"], 0);
+    EXPECT_EQ(files.summary()["state_hash"], unverified["state_hash"]);
 }
 
 TEST(RunCommand, OverridesChangeTheScene) {
@@ -131,7 +162,6 @@ TEST(RunCommand, RefusesThreadCountsThatMakeNoSense) {
 TEST(RunCommand, RefusesWhatIsNotBuiltYetByName) {
     const RunFiles files;
     expect_refused(files.run({"--resume"}), 2, "--resume is not built yet");
-    expect_refused(files.run({"--verify"}), 2, "--verify is not built yet");
     EXPECT_FALSE(files.exists("out"));
 }
 

@@ -81,7 +81,6 @@ TEST(CollisionWorld, NamesEverySurfaceOfMixedPlanesAndMeshes) {
         for (std::uint32_t k = 0; k < counts[collider]; ++k, ++surface) {
             EXPECT_EQ(world.name_of(surface).collider, collider);
             EXPECT_EQ(world.name_of(surface).triangle, k);
-            EXPECT_EQ(world.is_plane(surface), counts[collider] == 1);
             if (counts[collider] > 1) {
                 EXPECT_EQ(world.surface_of_triangle(triangle++), surface);
             }
@@ -99,7 +98,7 @@ TEST(CollisionWorld, AnswersAboutASurfaceAlikeForAPlaneAndATriangleInIt) {
     const Vec3 below{0.5, 0.25, 0.5};
     const Vec3 on{0.5, 0.25, 1.0};
     for (const SurfaceId surface : {SurfaceId{0}, SurfaceId{1}}) {
-        EXPECT_EQ(world.unit_normal_of(surface), (Vec3{0, 0, 1}));
+        EXPECT_EQ(world.unit_normal_of(surface, {}), (Vec3{0, 0, 1}));
         EXPECT_EQ(world.signed_distance_from(surface, above), 0.5);
         EXPECT_EQ(world.side_of_surface(surface, above), 1);
         EXPECT_EQ(world.side_of_surface(surface, below), -1);

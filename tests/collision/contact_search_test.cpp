@@ -114,7 +114,7 @@ TEST(ContactSearch, FindsTheSameFirstContactAsBruteForce) {
             SCOPED_TRACE(::testing::Message() << "seed " << seed << ", path " << i);
             const Path path = random_path(world, i % 8, random);
             ContactSearch search(world, scratch);
-            const auto contact = search.search(path);
+            const auto contact = search.search(path, 0.0);
             expect_same(contact, brute_force(world, path));
             if (HasFatalFailure()) return;
             contacts += contact ? 1 : 0;
@@ -133,9 +133,9 @@ TEST(ContactSearch, FindsTheSameContactsHoweverTheMeshIsCut) {
         const Vec3 start{random.uniform(), random.uniform(), 1.0 + random.uniform()};
         const Vec3 v = 10.0 * random.unit_vector();
         const Path path = i % 2 == 0 ? line_path(start, v, 1.0) : parabola_path(start, v, {0, 0, -9.81}, 2.0);
-        const auto reference = ContactSearch(plane, scratch).search(path);
+        const auto reference = ContactSearch(plane, scratch).search(path, 0.0);
         for (const CollisionWorld* world : {&coarse, &fine}) {
-            const auto contact = ContactSearch(*world, scratch).search(path);
+            const auto contact = ContactSearch(*world, scratch).search(path, 0.0);
             ASSERT_EQ(contact.has_value(), reference.has_value()) << i;
             if (!contact) continue;
             EXPECT_EQ(contact->time, reference->time) << i;
@@ -148,7 +148,7 @@ TEST(ContactSearch, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
     const auto world = world_of(plane_collider({0, 0, 0}, {1, 0, 0}), plane_collider({0, 0, 0}, {0, -1, 0}),
                                 plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
-    const auto contact = ContactSearch(world, scratch).search(line_path({1, 1, 1}, {-1, -1, -1}, 2.0));
+    const auto contact = ContactSearch(world, scratch).search(line_path({1, 1, 1}, {-1, -1, -1}, 2.0), 0.0);
     ASSERT_TRUE(contact);
     EXPECT_EQ(contact->time, 1.0);
     ASSERT_EQ(contact->count, 3);
@@ -160,7 +160,7 @@ TEST(ContactSearch, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
 TEST(ContactSearch, MeetsARimHeadOnWithANormalAgainstTheMotion) {
     const auto world = world_of(mesh_collider(testing::floor_mesh(1.0, 1)));
     ContactScratch scratch;
-    const auto contact = ContactSearch(world, scratch).search(line_path({-3, 0.25, 0}, {2, 0, 0}, 2.0));
+    const auto contact = ContactSearch(world, scratch).search(line_path({-3, 0.25, 0}, {2, 0, 0}, 2.0), 0.0);
     ASSERT_TRUE(contact);
     EXPECT_EQ(contact->time, 1.0);
     EXPECT_EQ(contact->first().normal, (Vec3{-1, 0, 0}));
@@ -174,7 +174,7 @@ TEST(ContactSearch, DecidesAboutSegmentsNearThePathExactly) {
     for (int i = 0; i < test::scaled(400); ++i) {
         ContactSearch search(world, scratch);
         const Path path = line_path(random.in_unit_ball(), 2.0 * random.unit_vector(), 1.0);
-        const auto contact = search.search(path);
+        const auto contact = search.search(path, 0.0);
         const double until = contact ? contact->time : 1.0;
         const Vec3 p = path.position(0.5 * until * random.uniform());
         const Vec3 q = path.position(until * (random.uniform() < 0.5 ? 1.0 : random.uniform()));
@@ -193,10 +193,10 @@ TEST(ContactSearch, EndsForPathsThatCurveEnormously) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({}, 1e-3, 3)));
     ContactScratch scratch;
     const auto contact =
-        ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0));
+        ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0), 0.0);
     EXPECT_EQ(contact.has_value(),
               brute_force(world, parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0)).has_value());
-    EXPECT_FALSE(ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0)));
+    EXPECT_FALSE(ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0), 0.0));
 }
 
 TEST(ContactSearch, ListsTheSurfacesAPointStandsOn) {
@@ -205,7 +205,7 @@ TEST(ContactSearch, ListsTheSurfacesAPointStandsOn) {
     ContactScratch scratch;
     ContactSearch search(world, scratch);
     const Vec3 center{0, 0, 0};
-    (void)search.search(line_path(center, {0, 0, -1}, 1.0));
+    (void)search.search(line_path(center, {0, 0, -1}, 1.0), 0.0);
     EXPECT_EQ(search.surfaces_at(center).size(), 1U + 6U);  // six triangles meet in the middle
     EXPECT_TRUE(search.is_free_after(center, {0, 0, 1}));
     EXPECT_FALSE(search.is_free_after(center, {0, 1, 0}));  // stays in their plane

@@ -59,7 +59,7 @@ TEST_P(ParkingAt, StandsOneGapBeforeTheSurfaceReachedInFreeLegs) {
         const Path path =
             i % 2 == 0 ? line_path(start, v, 1.0) : parabola_path(start, v, 8.0 * random.unit_vector(), 2.0);
         ContactSearch search(world_, scratch);
-        const auto contact = search.search(path);
+        const auto contact = search.search(path, 0.0);
         ASSERT_TRUE(contact);
         const Parking parking = park(search, path, *contact);
         ASSERT_FALSE(parking.stayed);
@@ -82,7 +82,7 @@ TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         const Vec3 start = center_ + 0.9 * random.in_unit_ball();
         const Path path = line_path(start, 4.0 * random.unit_vector(), 1.0);
         ContactSearch search(world_, scratch);
-        const auto contact = search.search(path);
+        const auto contact = search.search(path, 0.0);
         ASSERT_TRUE(contact);
         const Parking parking = park(search, path, *contact);
         ASSERT_FALSE(parking.stayed);
@@ -91,7 +91,7 @@ TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         // From straight away to grazing.
         const double lift = std::pow(10.0, -12.0 * random.uniform());
         away += (lift - dot(away, met.normal)) * met.normal;
-        const auto next = search.search(line_path(parking.position, 3.0 * away, 1.0));
+        const auto next = search.search(line_path(parking.position, 3.0 * away, 1.0), 0.0);
         if (!next) continue;
         for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, met.surface);
     }
@@ -103,7 +103,7 @@ TEST(Parking, InACornerStandsOffAllItsWalls) {
     ContactScratch scratch;
     ContactSearch search(world, scratch);
     const Path path = line_path({1, 1, 1}, {-1, -1, -1}, 2.0);
-    const auto contact = search.search(path);
+    const auto contact = search.search(path, 0.0);
     ASSERT_TRUE(contact);
     const Parking parking = park(search, path, *contact);
     EXPECT_FALSE(parking.stayed);
@@ -126,7 +126,7 @@ TEST(Parking, InASharpWedgeKeepsBetweenTheWalls) {
         const Vec3 aim{-1.0, 0.3 * (random.uniform() - 0.5), random.uniform() - 0.5};
         const Path path = line_path(start, aim, 2.0);
         ContactSearch search(world, scratch);
-        const auto contact = search.search(path);
+        const auto contact = search.search(path, 0.0);
         ASSERT_TRUE(contact) << i;
         const Parking parking = park(search, path, *contact);
         EXPECT_EQ(side_of(world.planes()[0].plane, parking.position), 1) << i;
@@ -144,7 +144,7 @@ TEST(Travel, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     ContactScratch scratch;
     ContactSearch search(world, scratch);
     const Path over = parabola_path({-1, 0, 0.25}, {1, 0, 2}, {0, 0, -2}, 2.0);
-    ASSERT_FALSE(search.search(over));
+    ASSERT_FALSE(search.search(over, 0.0));
     EXPECT_TRUE(meets_any(world, over.c[0], over.end));
     const Travel travelled = travel(search, over, over.duration, over.end);
     EXPECT_FALSE(travelled.blocker);
@@ -157,7 +157,7 @@ TEST(Travel, DoesNotTrustAChordThatTheSearchHasNotLookedAt) {
     ContactScratch scratch;
     ContactSearch search(world, scratch);
     const Path over = parabola_path({-1, 0, 0.5}, {1, 0, 2}, {0, 0, -2}, 2.0);
-    ASSERT_FALSE(search.search(over));
+    ASSERT_FALSE(search.search(over, 0.0));
     EXPECT_TRUE(meets_any(world, over.c[0], over.end));
     EXPECT_FALSE(search.covers_chord(over, 0.0, over.duration));
     const Travel travelled = travel(search, over, over.duration, over.end);
@@ -170,7 +170,7 @@ TEST(Travel, StopsWhereTheWayIsBlocked) {
     ContactScratch scratch;
     ContactSearch search(world, scratch);
     const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
-    ASSERT_TRUE(search.search(down));
+    ASSERT_TRUE(search.search(down, 0.0));
     const Travel travelled = travel(search, down, down.duration, down.end);
     ASSERT_TRUE(travelled.blocker);
     EXPECT_EQ(*travelled.blocker, 0U);
@@ -185,7 +185,7 @@ TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
     ContactScratch scratch;
     for (const Vec3& place : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {
         ContactSearch search(world, scratch);
-        (void)search.search(line_path(place, {0, 0, 0}, 1.0));
+        (void)search.search(line_path(place, {0, 0, 0}, 1.0), 0.0);
         const auto off = step_off(search, place);
         ASSERT_TRUE(off);
         EXPECT_FALSE(world.bounds().contains(*off));
@@ -194,7 +194,7 @@ TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
     }
     ContactSearch search(world, scratch);
     const Vec3 beside{0.5, 0.5, 1.5};
-    (void)search.search(line_path(beside, {0, 0, 0}, 1.0));
+    (void)search.search(line_path(beside, {0, 0, 0}, 1.0), 0.0);
     EXPECT_FALSE(step_off(search, beside));
 }
 

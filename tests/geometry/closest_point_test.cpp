@@ -46,6 +46,38 @@ TEST(ClosestPointOnTriangle, IsAtTheTrueDistanceAlsoForSlenderAndDegenerateTrian
     std::printf("worst error 2^%.1f of the extent\n", std::log2(worst));
 }
 
+// The point counts as led back to when it is as near as rounding of the corners' coordinates allows.
+TEST(BarycentricCoordinates, LeadBackToThePointAlsoForSlenderTriangles) {
+    std::uint64_t faces = 0;
+    for (std::uint64_t index = 0; index < kCases; ++index) {
+        const SegmentTriangle s = testing::segment_triangle_case(kSeed, index);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
+        const ClosestPointOnTriangle found = closest_point_on_triangle(s.p, s.a, s.b, s.c);
+        const Vec3 w = barycentric_coordinates(found, s.a, s.b, s.c);
+        EXPECT_GE(std::min({w.x, w.y, w.z}), 0.0);
+        EXPECT_NEAR(w.x + w.y + w.z, 1.0, 0x1p-51);
+        const Vec3 back = w.x * s.a + w.y * s.b + w.z * s.c;
+        const double coordinates = std::max({max_abs(s.p), max_abs(s.a), max_abs(s.b), max_abs(s.c)});
+        EXPECT_LE(length(back - found.point), 0x1p-48 * (extent_of(s) + coordinates));
+        faces += found.feature == TriangleFeature::kFace ? 1 : 0;
+    }
+    EXPECT_GT(faces, kCases / 20);
+}
+
+TEST(BarycentricCoordinates, AreExactAtCornersAndOnEdges) {
+    const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
+    const auto at = [&](const Vec3& p) {
+        return barycentric_coordinates(closest_point_on_triangle(p, a, b, c), a, b, c);
+    };
+    EXPECT_EQ(at({-1, -1, 2}), Vec3(1, 0, 0));
+    EXPECT_EQ(at({6, -1, 2}), Vec3(0, 1, 0));
+    EXPECT_EQ(at({-1, 7, 2}), Vec3(0, 0, 1));
+    EXPECT_EQ(at({1, -1, 2}), Vec3(0.75, 0.25, 0));
+    EXPECT_EQ(at({4, 2, 2}), Vec3(0, 0.75, 0.25));
+    EXPECT_EQ(at({-1, 1, 2}), Vec3(0.75, 0, 0.25));
+    EXPECT_EQ(at({1, 2, 2}), Vec3(0.25, 0.25, 0.5));
+}
+
 TEST(ClosestPointOnTriangle, TellsTheFeature) {
     const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
     const auto feature_at = [&](const Vec3& p) { return closest_point_on_triangle(p, a, b, c).feature; };

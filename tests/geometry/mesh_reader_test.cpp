@@ -168,19 +168,34 @@ TEST(ObjReader, KeepsPolygonsAndCutsThem) {
     EXPECT_DOUBLE_EQ(surface_area(mesh.mesh), 5.0 + 1.5);
 }
 
-TEST(ObjReader, NamesTheGroupOfAFaceByMaterialElseGroupElseObject) {
+TEST(ObjReader, KeepsTheMaterialTheGroupAndTheObjectOfEveryFace) {
     const ImportedMesh mesh =
         read_mesh("a.obj", kVertices +
                                "f 1 2 3\no box\nf 1 2 3\ng lid  top\nf 1 2 3\nusemtl steel\nf 1 2 3\ng base\nf 1 2 3\n"
-                               "usemtl\nf 1 2 3\ng\nf 1 2 3\nusemtl steel\nf 1 2 3\n");
+                               "usemtl\nf 1 2 3\ng\nf 1 2 3\nusemtl steel\ng base\nf 1 2 3\n");
     EXPECT_EQ(mesh.polygons.group_names, (std::vector<std::string>{"", "box", "lid  top", "steel", "base"}));
-    EXPECT_EQ(mesh.polygons.face_groups, (std::vector<std::uint32_t>{0, 1, 2, 3, 3, 4, 1, 3}));
+    EXPECT_EQ(mesh.polygons.face_groups, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 1, 4}));
+    EXPECT_EQ(mesh.polygons.groups,
+              (std::vector<FaceGroup>{{}, {0, 0, 1}, {0, 2, 1}, {3, 2, 1}, {3, 4, 1}, {0, 4, 1}}));
 }
 
 TEST(ObjReader, LeavesTheGroupsEmptyWhereThereAreNoNames) {
     const ImportedMesh mesh = read_mesh("a.obj", test::kObjTetrahedron);
     EXPECT_TRUE(mesh.polygons.group_names.empty());
+    EXPECT_TRUE(mesh.polygons.groups.empty());
     EXPECT_TRUE(mesh.polygons.face_groups.empty());
+    EXPECT_TRUE(read_mesh("a.obj", kVertices + "g\nusemtl\nf 1 2 3\n").polygons.face_groups.empty());
+}
+
+// A long name in many combinations must not be stored in each: that would be quadratic in the file's size.
+TEST(ObjReader, StoresANameOnceHoweverManyGroupsShareIt) {
+    const std::string name(1000, 'm');
+    std::string text = kVertices + "usemtl " + name + "\n";
+    for (int i = 0; i < 1000; ++i) text += "g part" + std::to_string(i) + "\nf 1 2 3\n";
+    const ImportedMesh mesh = read_mesh("a.obj", text);
+    EXPECT_EQ(mesh.polygons.groups.size(), 1000U);
+    EXPECT_EQ(std::count(mesh.polygons.group_names.begin(), mesh.polygons.group_names.end(), name), 1);
+    EXPECT_EQ(mesh.polygons.group_names.size(), 1002U);
 }
 
 TEST(PlyReader, ReadsElementsAndPropertiesInAnyOrder) {

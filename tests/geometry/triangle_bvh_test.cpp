@@ -132,13 +132,13 @@ double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
     return length(x - (p + s * d));
 }
 
-TEST(TriangleBvh, VisitsWhatComesWithinTheAllowanceAndTheSlack) {
+TEST(TriangleBvh, VisitsWhatComesWithinTheReachAndTheSlack) {
     const TriangleMesh mesh = soup(500, 3);
-    for (const double allowance : {0.0, 1e-3, 0.1}) {
-        SCOPED_TRACE(allowance);
-        const TriangleBvh bvh(mesh.vertices, mesh.triangles, allowance);
-        EXPECT_EQ(bvh.curvature_allowance(), allowance);
-        const double reach = allowance + bvh.slack();
+    for (const double reach_of_boxes : {0.0, 1e-3, 0.1}) {
+        SCOPED_TRACE(reach_of_boxes);
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, reach_of_boxes);
+        EXPECT_EQ(bvh.reach(), reach_of_boxes);
+        const double reach = reach_of_boxes + bvh.slack();
         RandomSequence random(4, 0, 0);
         int near = 0;
         for (int i = 0; i < test::scaled(300); ++i) {

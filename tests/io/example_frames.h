@@ -6,6 +6,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/io/contact_log.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/simulation.h"
 
@@ -29,6 +30,27 @@ inline Particles example_particles(std::uint64_t count) {
         particles.unsimulated_time.back() = 0.001 * static_cast<double>(i);
     }
     return particles;
+}
+
+/// Rows of the contact log with rising times.
+inline ContactColumns example_contacts(std::size_t rows) {
+    ContactColumns columns;
+    columns.resize(rows);
+    RandomSequence random(12, 0, 0);
+    for (std::size_t i = 0; i < rows; ++i) {
+        columns.point[i] = random.unit_vector();
+        columns.time[i] = 0.01 * static_cast<double>(i);
+        columns.particle[i] = (std::int64_t{1} << 40) - static_cast<std::int64_t>(i);
+        columns.collider[i] = static_cast<std::uint32_t>(i % 3);
+        columns.triangle[i] = static_cast<std::int64_t>(i) - 1;
+        columns.barycentric[i] = {0.25, 0.5, 0.25};
+        columns.normal[i] = random.unit_vector();
+        columns.velocity_before[i] = random.unit_vector();
+        columns.velocity_after[i] = random.unit_vector();
+        columns.impulse[i] = columns.velocity_before[i] - columns.velocity_after[i];
+        columns.radius[i] = 0.01 * random.uniform();
+    }
+    return columns;
 }
 
 /// A tetrahedron.

@@ -3,6 +3,7 @@
 
 #include "io/example_frames.h"
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/output_directory.h"
@@ -20,11 +21,16 @@ int main(int argc, char** argv) {
     write_vtp(folder.path() / mesh, mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0));
     write_vtp(folder.path() / plane, plane_collider_frame({}, region, {{12}, {{0, 0, -3}}}, 0.0));
     write_file(folder.path() / kColliderSeriesFile, pvd_text({{0.0, 0, mesh}, {0.0, 1, plane}}));
+    FrameWriter contacts(folder.path(), kContactSeries);
+    for (const std::uint64_t step : {0U, 2U, 7U}) {
+        contacts.submit(step, contact_frame(test::example_contacts(step), static_cast<double>(step) / 30.0));
+    }
+    contacts.finish();
     FrameWriter writer(folder.path());
     // The number of particles changes, and the first and the last frame have none.
     for (const std::uint64_t step : {0U, 2U, 4U, 6U, 7U}) {
         const std::uint64_t count = step == 0 || step == 7 ? 0 : 10 * step;
-        writer.submit(step, particle_frame(test::example_particles(count), static_cast<double>(step) / 30.0));
+        writer.submit(step, particle_frame(test::example_particles(count), static_cast<double>(step) / 30.0, true));
     }
     writer.finish();
     return 0;

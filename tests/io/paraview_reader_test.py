@@ -22,7 +22,21 @@ POINT_ARRAYS = {
     "age": ("double", 1),
     "contacts": ("unsigned int", 1),
     "resting": ("unsigned char", 1),
+    "frozen": ("unsigned char", 1),
     "unsimulated_time": ("double", 1),
+}
+SPHERE_ARRAYS = {"spin": ("double", 3)}  # in every frame or in none
+CONTACT_ARRAYS = {
+    "time": ("double", 1),
+    "particle": ("long long", 1),
+    "collider": ("unsigned int", 1),
+    "triangle": ("long long", 1),
+    "barycentric": ("double", 3),
+    "normal": ("double", 3),
+    "velocity_before": ("double", 3),
+    "velocity_after": ("double", 3),
+    "impulse": ("double", 3),
+    "radius": ("double", 1),
 }
 CELL_ARRAYS = {"hits": ("long long", 1), "impulse": ("double", 3)}
 LONG_NAMES = {"long": "long long"}  # the same 64 bits
@@ -60,18 +74,31 @@ def check_arrays(data, expected, count, path):
         check(array.GetNumberOfTuples() == count, f"{path}: {name} has {array.GetNumberOfTuples()} tuples")
 
 
-def check_frame(folder, time, name):
+def read_points(folder, time, name, arrays):
     path = os.path.join(folder, name)
     data = read(path)
     points = data.GetNumberOfPoints()
     check(data.GetFieldData().GetArray("TimeValue").GetValue(0) == time, f"{path}: TimeValue")
     check(data.GetNumberOfVerts() == (1 if points else 0), f"{path}: vertex cells")
-    check_arrays(data.GetPointData(), POINT_ARRAYS, points, path)
+    check_arrays(data.GetPointData(), arrays, points, path)
     if points:
         check(data.GetPoints().GetData().GetDataTypeAsString() == "double", f"{path}: points are not double")
         check(data.GetCell(0).GetNumberOfPoints() == points, f"{path}: the cell does not hold every point")
+    return data, points, path
+
+
+def check_frame(folder, time, name, arrays):
+    data, points, path = read_points(folder, time, name, arrays)
+    if points:
         ids = data.GetPointData().GetArray("id")
         check(all(ids.GetValue(i) < ids.GetValue(i + 1) for i in range(points - 1)), f"{path}: ids are not in order")
+    return points
+
+
+def check_contacts(folder, time, name):
+    data, points, path = read_points(folder, time, name, CONTACT_ARRAYS)
+    times = data.GetPointData().GetArray("time")
+    check(all(times.GetValue(i) <= times.GetValue(i + 1) for i in range(points - 1)), f"{path}: times are not in order")
     return points
 
 
@@ -83,19 +110,29 @@ def check_collider(folder, name):
     return data.GetNumberOfPolys()
 
 
+def listed_files(folder, name, killed):
+    files = series(os.path.join(folder, name + ".pvd"))
+    check(files, f"the series {name} is empty")
+    times = [time for time, _ in files]
+    check(all(a < b for a, b in zip(times, times[1:])), f"times do not rise: {times}")
+    listed = [file for _, file in files]
+    on_disk = sorted(file for file in os.listdir(folder) if file.startswith(name + "_") and file.endswith(".vtp"))
+    check(listed == on_disk[: len(listed)], f"listed {listed}, found {on_disk}")
+    check(len(on_disk) - len(listed) <= (1 if killed else 0), f"{len(on_disk)} files, {len(listed)} listed")
+    return files
+
+
 def main(folder, killed):
     vtkOutputWindow.SetGlobalWarningDisplay(0)
-    frames = series(os.path.join(folder, "particles.pvd"))
-    check(frames, "the series is empty")
-    times = [time for time, _ in frames]
-    check(all(a < b for a, b in zip(times, times[1:])), f"times do not rise: {times}")
-    listed = [name for _, name in frames]
-    on_disk = sorted(name for name in os.listdir(folder) if name.startswith("particles_") and name.endswith(".vtp"))
-    check(listed == on_disk[: len(listed)], f"listed {listed}, found {on_disk}")
-    check(len(on_disk) - len(listed) <= (1 if killed else 0), f"{len(on_disk)} frames, {len(listed)} listed")
-    counts = [check_frame(folder, time, name) for time, name in frames]
+    frames = listed_files(folder, "particles", killed)
+    first = read(os.path.join(folder, frames[0][1])).GetPointData()
+    arrays = {**POINT_ARRAYS, **(SPHERE_ARRAYS if first.GetArray("spin") else {})}
+    counts = [check_frame(folder, time, name, arrays) for time, name in frames]
+    if os.path.exists(os.path.join(folder, "contacts.pvd")):
+        files = listed_files(folder, "contacts", killed)
+        print(f"{sum(check_contacts(folder, *file[:2]) for file in files)} contacts in {len(files)} files")
     triangles = [check_collider(folder, name) for _, name in series(os.path.join(folder, "colliders.pvd"))]
-    print(f"{len(frames)} frames with {counts} particles, colliders of {triangles} triangles, last time {times[-1]!r}")
+    print(f"{len(frames)} frames with {counts} particles, colliders of {triangles} triangles, last time {frames[-1][0]!r}")
 
 
 main(sys.argv[1], "--killed" in sys.argv[2:])

@@ -16,6 +16,14 @@ TEST(RunFiles, FrameNamesCarryTheStepWithSixDigitsOrMore) {
     }
 }
 
+TEST(RunFiles, ContactFilesAreNamedLikeFramesAndNotTakenForThem) {
+    EXPECT_EQ(contact_file_name(42), "contacts_000042.vtp");
+    EXPECT_EQ(step_of_contact_file("contacts_1234567.vtp"), 1234567U);
+    EXPECT_FALSE(step_of_contact_file("contacts_42.vtp"));
+    EXPECT_FALSE(step_of_contact_file(frame_file_name(42)));
+    EXPECT_FALSE(step_of_frame_file(contact_file_name(42)));
+}
+
 TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
     EXPECT_EQ(collider_file_name(3, "bunny"), "collider_03_bunny.vtp");
     EXPECT_EQ(collider_file_name(0, "../a b"), "collider_00____a_b.vtp");
@@ -31,12 +39,15 @@ TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
 }
 
 TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
-    for (const char* own : {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp",
-                            "collider_00_a.vtp", "particles_000001.vtp.123-4.partial", "summary.json.9-0.partial"}) {
+    for (const char* own :
+         {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp", "collider_00_a.vtp",
+          "contacts.pvd", "contacts_000001.vtp", "particles_000001.vtp.123-4.partial",
+          "contacts_000001.vtp.123-4.partial", "summary.json.9-0.partial"}) {
         EXPECT_TRUE(is_run_file(own)) << own;
     }
-    for (const char* other : {"notes.txt", "a.partial", "summary.json.partial", "summary.json.x-0.partial",
-                              "summary.json~", ".ricochet-run", "picture.png", "summary.json.9.partial", ""}) {
+    for (const char* other :
+         {"notes.txt", "a.partial", "summary.json.partial", "summary.json.x-0.partial", "summary.json~", "contacts.txt",
+          "contacts_1.vtp", "my_contacts_000001.vtp", ".ricochet-run", "picture.png", "summary.json.9.partial", ""}) {
         EXPECT_FALSE(is_run_file(other)) << other;
     }
 }

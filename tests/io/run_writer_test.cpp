@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -27,9 +28,11 @@ SimulationSetup falling_particles(bool totals = true) {
     setup.options.duration = 1.0;
     setup.options.triangle_totals = totals;
     setup.forces.push_back(make_gravity({0, 0, -10}));
-    setup.materials = {{"plain", 0.5, 0.0}};
+    setup.materials.emplace_back();
+    setup.materials[0].restitution = 0.5;
     setup.colliders.push_back({"floor", PlaneShape{}, 0});
-    setup.colliders.push_back({"block", MeshShape{std::make_shared<TriangleMesh>(test::example_mesh()), {}, ""}, 0});
+    setup.colliders.push_back(
+        {"block", MeshShape{std::make_shared<TriangleMesh>(test::example_mesh()), {}, "", {}}, 0});
     for (int i = 0; i < 50; ++i) {
         Particle particle;
         particle.position = {0.02 * i + 0.003, 0.1, 1.5 + 0.01 * i};
@@ -101,6 +104,67 @@ TEST(RunWriter, CollidersHaveNoTotalsWhenTheSimulationKeepsNone) {
     while (!simulation.finished()) simulation.step();
     (void)writer.finish(simulation);
     for (const auto& file : open_run_folder(folder.path("")).colliders) EXPECT_TRUE(read_vtp(file).cell_arrays.empty());
+}
+
+// A force that breaks down for one particle, one born with a velocity that is none, and one that is absurdly fast.
+TEST(RunWriter, AFrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
+    const TemporaryFolder folder;
+    SimulationSetup setup = falling_particles();
+    setup.particles.resize(4);
+    for (Particle& particle : setup.particles) particle.velocity = {0, 0, 2};
+    setup.particles[1].velocity = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    setup.particles[3].velocity = {0, 1e200, 0};
+    const double broken_from = setup.particles[2].position.x;
+    setup.forces.clear();
+    setup.forces.push_back(make_force([broken_from](const ForceInput& input) {
+        const bool broken = input.position.x == broken_from && input.time > 0.25;
+        return Vec3(0, 0, broken ? std::numeric_limits<double>::quiet_NaN() : 0.0);
+    }));
+    Simulation simulation(std::move(setup));
+    EXPECT_EQ(simulation.statistics().frozen, 0U);
+    RunWriter writer(folder.path(""), {}, simulation, {});
+    while (!simulation.finished()) {
+        simulation.step();
+        writer.write_frame(simulation);
+    }
+    const RunSummary summary = writer.finish(simulation);
+    writer.write_summary(summary);
+    EXPECT_EQ(summary.statistics.frozen, 3U);
+    EXPECT_EQ(summary.kinetic_energy, 2.0);  // of the one particle that still flies
+    const auto json = nlohmann::json::parse(folder.read(kSummaryFile));
+    EXPECT_EQ(json["frozen"], 3);
+    EXPECT_EQ(json["kinetic_energy"], 2.0);
+    const auto frozen_in = [&](std::uint64_t step) {
+        const VtkPolyData frame = read_vtp(folder.path(frame_file_name(step)));
+        return std::get<std::vector<std::uint8_t>>(find_array(frame.point_arrays, "frozen")->values);
+    };
+    EXPECT_EQ(frozen_in(2), (std::vector<std::uint8_t>{0, 1, 0, 1}));
+    EXPECT_EQ(frozen_in(10), (std::vector<std::uint8_t>{0, 1, 1, 1}));
+}
+
+TEST(RunWriter, EveryFrameOfASceneWithSpheresHasTheirSpinAlsoBeforeTheFirstIsBorn) {
+    for (const double radius : {0.0, 0.05}) {
+        const TemporaryFolder folder;
+        SimulationSetup setup = falling_particles();
+        setup.particles.clear();
+        EmitterDescription emitter;
+        emitter.shape = PointShape{{0, 0, 2}};
+        emitter.rate = {20.0, 0.0};
+        emitter.start = 0.5;
+        emitter.radius = {radius, 0.0};
+        setup.emitters.push_back(emitter);
+        Simulation simulation(std::move(setup));
+        EXPECT_EQ(simulation.has_spheres(), radius > 0.0);
+        RunWriter writer(folder.path(""), {}, simulation, {});
+        for (writer.write_frame(simulation); !simulation.finished(); writer.write_frame(simulation)) simulation.step();
+        (void)writer.finish(simulation);
+        for (const FrameFile& file : open_run_folder(folder.path("")).frames) {
+            const VtkPolyData frame = read_vtp(file.path);
+            EXPECT_EQ(find_array(frame.point_arrays, "spin") != nullptr, radius > 0.0) << file.step;
+            EXPECT_NE(find_array(frame.point_arrays, "unsimulated_time"), nullptr);
+            EXPECT_NE(find_array(frame.point_arrays, "resting"), nullptr);
+        }
+    }
 }
 
 TEST(ParticleRegion, HoldsParticlesEmittersAndBounds) {

@@ -8,7 +8,8 @@
 
 namespace ricochet::test {
 
-inline constexpr const char* kSampleMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+inline constexpr const char* kSampleMesh =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nusemtl stone\nf 3 1 4\n";
 
 inline constexpr const char* kSampleScene = R"({
   "ricochet": 1,
@@ -20,7 +21,8 @@ inline constexpr const char* kSampleScene = R"({
   "colliders": [
     {"name": "floor", "type": "plane", "point": [0, 0, -1], "normal": [0, 0, 2], "material": "old ice"},
     {"name": "rock", "type": "mesh", "file": "rock.obj", "position": [1, 2, 3],
-     "rotation": {"axis": [0, 0, 1], "degrees": 90}, "scale": [1, 1.5, -1], "material": "rubber"}],
+     "rotation": {"axis": [0, 0, 1], "degrees": 90}, "scale": [1, 1.5, -1], "material": "rubber",
+     "group_materials": {"stone": "old ice"}}],
   "emitters": [
     {"name": "tap", "type": "point", "center": [0, 0, 3], "burst": 5, "rate": [20, 2], "start": 0.5, "stop": 1.5,
      "limit": 30, "direction": [0, 0, -1], "cone": 20, "speed": [3, 0.5], "velocity": [1, 0, 0], "mass": [2, 0.5],
@@ -33,7 +35,7 @@ inline constexpr const char* kSampleScene = R"({
      "scale": 2, "rate": 10}],
   "particles": [{"position": [0, 0, 1], "velocity": [1, 0, 0], "mass": 0.5, "radius": 0}, {"position": [0, 0, 2]}],
   "bounds": {"lower": [-10, -10, -10], "upper": [10, 10, 10]},
-  "output": {"format": "vtp", "every": 2},
+  "output": {"format": "vtp", "every": 2, "contacts": true},
   "camera": {"position": [0, -10, 3], "target": [0, 0, 0], "up": [0, 0, 1], "field_of_view": 40}
 }
 )";

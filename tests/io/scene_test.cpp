@@ -280,9 +280,11 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:65: emitters[0].radius: not a key of type \"box\", it belongs to \"disk\", \"sphere\""},
     {R"("colliders": [{"type": "plane"}])",
      "s.json:1:31: colliders[0].normal: missing, expected [x, y, z], not all zero"},
-    {R"("colliders": [{"name": "a"}])", "s.json:1:31: colliders[0].type: missing, expected one of \"plane\", \"mesh\""},
+    {R"("colliders": [{"name": "a"}])",
+     "s.json:1:31: colliders[0].type: missing, expected one of \"plane\", \"mesh\", \"sphere\", \"cylinder\", \"box\""},
     {R"("colliders": [{"type": "plain", "normal": [0, 0, 1]}])",
-     "s.json:1:40: colliders[0].type: found \"plain\", expected one of \"plane\", \"mesh\"; did you mean \"plane\"?"},
+     "s.json:1:40: colliders[0].type: found \"plain\", expected one of \"plane\", \"mesh\", \"sphere\", \"cylinder\", "
+     "\"box\"; did you mean \"plane\"?"},
     {R"("emitters": [{"type": "mesh", "burst": 1}])",
      "s.json:1:30: emitters[0]: found none of the keys \"file\", \"collider\", expected exactly one of them"},
     {R"("emitters": [{"type": "mesh", "file": "rock.obj", "collider": "a", "burst": 1}])",
@@ -311,20 +313,11 @@ const std::vector<Spoiled> kSpoiled = {
     {R"("colliders": [{"type": "mesh", "file": "a\u0000b"}])",
      "s.json:1:56: colliders[0].file: \"a?b\" contains a control character, expected plain text"},
     // part of the format, not built
-    {R"("simulation": {"integrator": "midpoint"})",
-     "s.json:1:46: simulation.integrator: \"midpoint\" is part of the scene format but not built in this version, "
-     "expected one of \"symplectic_euler\", \"ballistic\""},
     {R"("simulation": {"response": "penalty"})",
      "s.json:1:44: simulation.response: \"penalty\" is part of the scene format but not built in this version, "
      "expected \"exact\""},
     {R"("colliders": [{"type": "mesh", "file": "rock.obj", "motion": []}])",
      "s.json:1:78: colliders[0].motion: \"motion\" is part of the scene format but not built in this version"},
-    {R"("emitters": [{"type": "point", "burst": 1, "particle_radius": [0.01, 0]}])",
-     "s.json:1:79: emitters[0].particle_radius: found 0.01 m; a value other than 0 is part of the scene format but "
-     "not built in this version, use 0 or leave it out"},
-    {R"("particles": [{"position": [0, 0, 0], "radius": 0.5}])",
-     "s.json:1:65: particles[0].radius: found 0.5 m; a value other than 0 is part of the scene format but not built "
-     "in this version, use 0 or leave it out"},
     {R"("particles": {"file": "a.vtp"})",
      "s.json:1:39: particles.file: a .vtp file of particles is part of the scene format but not built in this "
      "version, expected a .csv file"},
@@ -335,6 +328,117 @@ TEST(Scene, SaysWhatIsWrongWhereAndWhatWasExpected) {
     for (const Spoiled& spoiled : kSpoiled) {
         EXPECT_EQ(errors_of(folder, scene_of(spoiled.members)), (Lines{spoiled.error})) << spoiled.members;
     }
+}
+
+// Three faces without a material, two of "rubber part", one of a group with two names.
+constexpr const char* kGroupedMesh =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\ng left side\nf 2 3 4\nusemtl rubber part\nf 3 1 4\ng lid\n"
+    "f 1 2 3\n";
+
+// The grouped mesh as a collider with the given members.
+std::string grouped_scene(const std::string& members) {
+    return scene_of(R"("materials": {"rubber": {}, "steel": {}, "ice": {}},
+        "colliders": [{"type": "mesh", "file": "grouped.obj", "material": "steel", )" +
+                    members + "}]");
+}
+
+Lines material_names(const SceneDescription& scene) {
+    Lines names;
+    for (const std::uint32_t i : std::get<MeshShape>(scene.setup.colliders.at(0).shape).triangle_materials) {
+        names.push_back(scene.setup.materials.at(i).name);
+    }
+    return names;
+}
+
+TEST(SceneGroupMaterials, GiveEveryTriangleTheMaterialOfItsGroup) {
+    const SampleFolder folder;
+    (void)folder.write("grouped.obj", kGroupedMesh);
+    const auto names = [&](const std::string& members, const Lines& overrides = {}) {
+        return material_names(parse_scene(grouped_scene(members), folder.path("s.json"), overrides));
+    };
+    EXPECT_EQ(names(R"("group_materials": {"rubber part": "rubber"})"),
+              (Lines{"steel", "steel", "steel", "rubber", "rubber"}));
+    // usemtl comes before g, a whole line before its words
+    EXPECT_EQ(names(R"("group_materials": {"rubber part": "rubber", "lid": "ice", "side": "ice"})"),
+              (Lines{"steel", "steel", "ice", "rubber", "rubber"}));
+    EXPECT_EQ(names(R"("group_materials": {"lid": "ice", "left side": "rubber", "left": "ice"})"),
+              (Lines{"steel", "steel", "rubber", "rubber", "ice"}));
+    EXPECT_EQ(names(R"("group_materials": {"left": "ice", "side": "rubber"})"),
+              (Lines{"steel", "steel", "ice", "ice", "steel"}));
+    EXPECT_EQ(names(R"("name": "a")"), Lines{});
+    EXPECT_EQ(names(R"("name": "a")", {"colliders[0].group_materials.lid=ice"}),
+              (Lines{"steel", "steel", "steel", "steel", "ice"}));
+}
+
+// Two balls fall on the two halves of a plate: one half gives everything back, the other nothing.
+TEST(SceneGroupMaterials, DecideHowParticlesBounceOffThatPart) {
+    const SampleFolder folder;
+    (void)folder.write("plate.obj",
+                       "v -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nv 1 -1 0\nv 1 1 0\n"
+                       "usemtl spring\nf 1 2 3 4\nusemtl mud\nf 2 5 6 3\n");
+    Simulation simulation(parse_scene(scene_of(R"("simulation": {"time_step": 1, "duration": 1},
+        "materials": {"elastic": {}, "dead": {"restitution": 0}},
+        "colliders": [{"type": "mesh", "file": "plate.obj", "material": "elastic", "group_materials": {"mud": "dead"}}],
+        "particles": [{"position": [-0.5, 0.2, 1], "velocity": [0, 0, -2]},
+                      {"position": [0.5, 0.2, 1], "velocity": [0, 0, -2]}])"),
+                                      folder.path("s.json"))
+                              .setup);
+    simulation.step();
+    EXPECT_EQ(simulation.particles().velocity[0], Vec3(0, 0, 2));
+    EXPECT_NEAR(simulation.particles().position[0].z, 1.0, 1e-14);
+    EXPECT_EQ(simulation.particles().velocity[1], Vec3());
+    EXPECT_NEAR(simulation.particles().position[1].z, 0.0, 1e-14);
+}
+
+TEST(SceneGroupMaterials, CountAsUseOfAMaterialAndAnEntryWithoutEffectIsAWarning) {
+    const SampleFolder folder;
+    (void)folder.write("grouped.obj", kGroupedMesh);
+    const SceneDescription scene = parse_scene(
+        grouped_scene(R"("group_materials": {"rubber part": "rubber", "lid": "ice"})"), folder.path("s.json"));
+    ASSERT_EQ(scene.warnings.size(), 2U);  // the other one: nothing will move
+    EXPECT_TRUE(scene.warnings[1].ends_with(
+        "s.json:2:129: colliders[0].group_materials.lid: no triangle takes this material: all faces of the group also "
+        "have a name that comes before (usemtl before g before o)"))
+        << scene.warnings[1];
+}
+
+TEST(SceneGroupMaterials, RefuseNamesThatAreNotThereWithTheNearest) {
+    const SampleFolder folder;
+    (void)folder.write("grouped.obj", kGroupedMesh);
+    const auto error = [&](const std::string& members) {
+        const Lines errors = errors_of(folder, grouped_scene(members));
+        return errors.size() == 1 ? errors[0].substr(errors[0].find("colliders")) : std::to_string(errors.size());
+    };
+    EXPECT_EQ(error(R"("group_materials": {"ruber_part": "rubber"})"),
+              "colliders[0].group_materials.ruber_part: the mesh has no group \"ruber_part\"; did you mean \"rubber "
+              "part\"?");
+    EXPECT_EQ(error(R"("group_materials": {"xyzzy": "rubber"})"),
+              "colliders[0].group_materials.xyzzy: the mesh has no group \"xyzzy\", it has: \"left side\", \"left\", "
+              "\"side\", \"rubber part\", \"lid\"");
+    EXPECT_EQ(error(R"("group_materials": {"lid": "ruber"})"),
+              "colliders[0].group_materials.lid: there is no material \"ruber\"; did you mean \"rubber\"?");
+    EXPECT_EQ(error(R"("group_materials": {"lid": 3})"),
+              "colliders[0].group_materials.lid: found 3, expected a text that is not empty");
+    EXPECT_EQ(error(R"("group_materials": "lid")"),
+              "colliders[0].group_materials: found \"lid\", expected an object {\"name\": \"text\"}");
+}
+
+TEST(SceneGroupMaterials, RefuseMeshesThatHaveNoGroups) {
+    const SampleFolder folder;
+    (void)folder.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    (void)folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const auto error = [&](const std::string& file) {
+        return errors_of(folder, scene_of(R"("materials": {"a": {}}, "colliders": [{"type": "mesh", "material": "a",
+            "file": ")" + file + R"(", "group_materials": {"lid": "a"}}])"));
+    };
+    EXPECT_EQ(
+        error("plain.obj"),
+        (Lines{"s.json:2:53: colliders[0].group_materials: the mesh has no groups (no usemtl, g or o statement with "
+               "a name), leave this key out"}));
+    EXPECT_EQ(error("plain.off"),
+              (Lines{"s.json:2:53: colliders[0].group_materials: the mesh is a file of the format OFF, which has no "
+                     "groups; expected an OBJ file"}));
+    EXPECT_EQ(error("none.obj").size(), 1U);
 }
 
 TEST(Scene, TheVersionMustBeThereAndKnown) {
@@ -413,7 +517,7 @@ std::vector<std::pair<std::size_t, std::string>> keys_of_the_sample() {
     for (std::size_t colon = scene.find("\":"); colon != std::string::npos; colon = scene.find("\":", colon + 1)) {
         const std::size_t begin = scene.rfind('"', colon - 1) + 1;
         const std::string key = scene.substr(begin, colon - begin);
-        if (key != "rubber" && key != "old ice") keys.emplace_back(begin, key);
+        if (key != "rubber" && key != "old ice" && key != "stone") keys.emplace_back(begin, key);
     }
     return keys;
 }

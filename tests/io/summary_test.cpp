@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace ricochet {
 namespace {
@@ -33,6 +34,8 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
                             "state_hash_algorithm",
                             "peak_memory_bytes",
                             "expired",
+                            "absorbed",
+                            "asleep",
                             "out_of_bounds",
                             "frozen",
                             "stayed",
@@ -45,6 +48,17 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
     }
     EXPECT_TRUE(json["leaks"].is_null());
     EXPECT_TRUE(json["potential_energy"].is_null());
+}
+
+TEST(Summary, LeaksAreANumberOnceTheRunHasBeenVerified) {
+    RunSummary summary;
+    summary.leaks = 0;
+    EXPECT_EQ(parsed(summary)["leaks"], 0);
+    SimulationSetup setup;
+    EXPECT_FALSE(summarize(Simulation(std::move(setup))).leaks);
+    SimulationSetup verified;
+    verified.options.verify = true;
+    EXPECT_EQ(summarize(Simulation(std::move(verified))).leaks, 0U);
 }
 
 TEST(Summary, NumbersReadBackToTheSameBits) {

@@ -55,7 +55,7 @@ TEST(Vtk, AFrameWithoutParticlesIsAValidFile) {
     const VtkPolyData read = written_and_read(particle_frame(Particles{}, 4.0));
     EXPECT_EQ(read.time, 4.0);
     EXPECT_TRUE(read.points.empty());
-    EXPECT_EQ(read.point_arrays.size(), 8U);
+    EXPECT_EQ(read.point_arrays.size(), 9U);
 }
 
 TEST(Vtk, MeshesKeepTheirTrianglesAndTotals) {

@@ -53,8 +53,15 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/geometry/path.cpp", "ricochet/geometry/embree.h"},   // and only two files open it
         {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},              // outside the door
         {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},       // by its other name
-        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                   // in a public header
-        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},             // in a public header, of the right layer
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/predicates.h"},    // the sweep's own arithmetic
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/triangle_bvh.h"},  // and its tree
+        {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},     // and its numbers
+        {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},         // upward
+        {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
+        {"src/ricochet/verify/verifier.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
+        {"src/ricochet/geometry/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
+        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},        // in a public header
+        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},  // in a public header, of the right layer
         {"src/ricochet/geometry/triangle_bvh.h", "ricochet/geometry/embree.h"},  // public includes private
         {"src/ricochet/io/scene.h", "ricochet/io/detail/json_node.h"},           // the same, by its folder
         {"src/ricochet/core/error.h", "fmt/core.h"},                             // in a public header
@@ -85,6 +92,9 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
         {"src/ricochet/geometry/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
         {"src/ricochet/core/parallel.cpp", "tbb/parallel_for.h"},
         {"src/ricochet/core/error.cpp", "fmt/core.h"},
+        {"src/ricochet/verify/verifier.h", "ricochet/geometry/triangle_mesh.h"},
+        {"src/ricochet/verify/detail/signs.cpp", "boost/multiprecision/cpp_int.hpp"},
+        {"src/ricochet/simulation.cpp", "ricochet/verify/verifier.h"},
         {"src/cli/main.cpp", "CLI/CLI.hpp"},
         {"src/cli/main.cpp", "cli/run.h"},
         {"tests/core/vec3_test.cpp", "support/counts.h"},

@@ -11,25 +11,29 @@
 namespace ricochet {
 namespace {
 
+Vec3 bounced(const Vec3& velocity, const Vec3& n, double restitution, double friction) {
+    return bounce({velocity, {}}, 0.0, n, restitution, friction).velocity;
+}
+
 TEST(Bounce, TurnsTheNormalPartAndScalesItByTheRestitution) {
-    EXPECT_EQ(bounce({3, 0, -4}, {0, 0, 1}, 1.0, 0.0), (Vec3{3, 0, 4}));
-    EXPECT_EQ(bounce({3, 0, -4}, {0, 0, 1}, 0.5, 0.0), (Vec3{3, 0, 2}));
-    EXPECT_EQ(bounce({3, 0, -4}, {0, 0, 1}, 0.0, 0.0), (Vec3{3, 0, 0}));
+    EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 1.0, 0.0), (Vec3{3, 0, 4}));
+    EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 0.5, 0.0), (Vec3{3, 0, 2}));
+    EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 0.0, 0.0), (Vec3{3, 0, 0}));
 }
 
 TEST(Bounce, LeavesAVelocityAloneThatDoesNotApproach) {
-    EXPECT_EQ(bounce({1, 2, 3}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 3}));
-    EXPECT_EQ(bounce({1, 2, 0}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 0}));
-    const Vec3 not_a_number = bounce({1, 2, std::nan("")}, {0, 0, 1}, 0.5, 0.5);
+    EXPECT_EQ(bounced({1, 2, 3}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 3}));
+    EXPECT_EQ(bounced({1, 2, 0}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 0}));
+    const Vec3 not_a_number = bounced({1, 2, std::nan("")}, {0, 0, 1}, 0.5, 0.5);
     EXPECT_EQ(not_a_number.x, 1.0);
 }
 
 // Coulomb: the tangential speed falls by friction (1 + e) v_n, but not below zero.
 TEST(Bounce, FrictionTakesAtMostItsShareOfTheNormalImpulse) {
-    const Vec3 slips = bounce({5, 0, -2}, {0, 0, 1}, 0.5, 0.2);
+    const Vec3 slips = bounced({5, 0, -2}, {0, 0, 1}, 0.5, 0.2);
     EXPECT_DOUBLE_EQ(slips.x, 5.0 - 0.2 * 1.5 * 2.0);
     EXPECT_DOUBLE_EQ(slips.z, 1.0);
-    const Vec3 sticks = bounce({0.1, 0.1, -2}, {0, 0, 1}, 0.5, 0.2);
+    const Vec3 sticks = bounced({0.1, 0.1, -2}, {0, 0, 1}, 0.5, 0.2);
     EXPECT_EQ(sticks, (Vec3{0, 0, 1}));
 }
 
@@ -38,7 +42,7 @@ TEST(Bounce, FrictionKeepsTheHeading) {
     for (int i = 0; i < test::scaled(2000); ++i) {
         const Vec3 n = random.unit_vector();
         const Vec3 v = 3.0 * random.unit_vector();
-        const Vec3 after = bounce(v, n, random.uniform(), random.uniform());
+        const Vec3 after = bounced(v, n, random.uniform(), random.uniform());
         const Vec3 before_along = v - dot(v, n) * n;
         const Vec3 after_along = after - dot(after, n) * n;
         EXPECT_LE(length(cross(before_along, after_along)), 1e-14);
@@ -53,7 +57,7 @@ TEST(Bounce, WithoutLossKeepsTheSpeedOverManyBounces) {
     const double speed = length(v);
     for (int i = 0; i < test::scaled(1000000); ++i) {
         const Vec3 n = random.unit_vector();
-        v = bounce(v, dot(v, n) < 0.0 ? n : -n, 1.0, 0.0);
+        v = bounced(v, dot(v, n) < 0.0 ? n : -n, 1.0, 0.0);
     }
     EXPECT_NEAR(length(v) / speed, 1.0, 1e-12);
 }

@@ -1,68 +1,13 @@
 /// \file
-/// Inside or outside of a closed mesh, exactly, and independently of the library's predicates: the reference for every
-/// "nothing leaked" test.
-///
-/// Method: crossings of an axis-parallel ray with the triangles of its column are counted. The ray's two fixed
-/// coordinates are taken as moved by infinitesimal amounts (symbolic perturbation: H. Edelsbrunner, E. P. Muecke,
-/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so it meets no edge and no vertex, and the parity
-/// is right for every point that is not on the surface itself.
+/// The parity oracle, which the library's own verifier uses too.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include "ricochet/core/box3.h"
-#include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/verify/parity.h"
 
 namespace ricochet::testing {
 
-enum class Side { inside, outside, on_surface };
-
-/// Edges (pairs of different positions) that belong to an odd number of triangle sides; 0 for a mesh that encloses.
-[[nodiscard]] std::size_t count_open_edges(const TriangleMesh& mesh);
-
-/// Answers for one closed mesh. A point inside an even number of nested shells is outside.
-class ParityOracle {
-public:
-    /// Throws std::invalid_argument when the mesh has open edges: parity would mean nothing.
-    explicit ParityOracle(const TriangleMesh& mesh);
-
-    /// Exact. May be called from several threads at once. A point that is not finite is outside.
-    [[nodiscard]] Side side(const Vec3& point) const;
-    [[nodiscard]] bool inside(const Vec3& point) const { return side(point) == Side::inside; }
-
-private:
-    /// A triangle whose coordinates are permuted so that the ray runs along +z.
-    struct Face {
-        std::array<Vec3, 3> corners;
-        Box3 box;
-        int area_sign = 0;  // of the projection along z; 0 when that has no area
-    };
-    enum class Crossing { none, above, touches };
-    struct CellRange {
-        std::size_t first = 0;
-        std::size_t last = 0;
-    };
-
-    void add_faces(const TriangleMesh& mesh);
-    void choose_resolution();
-    void fill_columns();
-    [[nodiscard]] Vec3 permuted(const Vec3& point) const;
-    [[nodiscard]] CellRange cells(double lower, double upper, double origin, double per_length) const;
-    [[nodiscard]] std::size_t count_entries() const;
-    [[nodiscard]] static Crossing crossing(const Face& face, const Vec3& point);
-
-    int ray_axis_ = 2;
-    Box3 box_;
-    std::vector<Face> faces_;
-    std::size_t resolution_ = 1;
-    double per_x_ = 0.0;  // columns per length
-    double per_y_ = 0.0;
-    std::vector<std::uint32_t> column_begin_;
-    std::vector<std::uint32_t> column_faces_;  // by descending upper end along the ray
-};
+using ricochet::count_open_edges;
+using ricochet::ParityOracle;
+using ricochet::Side;
 
 }  // namespace ricochet::testing

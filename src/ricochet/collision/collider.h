@@ -2,10 +2,12 @@
 /// Colliders as a scene describes them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "ricochet/core/transform.h"
 #include "ricochet/geometry/triangle_mesh.h"
@@ -23,12 +25,60 @@ struct MeshShape {
     std::shared_ptr<const TriangleMesh> mesh;
     Placement placement;
     std::string file;  ///< where it came from, for messages and reports; may be empty
+    /// Material of every triangle, as indices into the simulation's materials; empty: the collider's material
+    /// everywhere.
+    std::vector<std::uint32_t> triangle_materials = {};
 };
+
+/// A ball about the local origin: a sphere, or an ellipsoid under a scale that differs by axis. Solid from both sides.
+struct BallShape {
+    double radius = 1.0;  ///< m, > 0
+    Placement placement;
+};
+
+/// A cylinder about the local z axis with flat caps, centred on the origin. Solid from both sides.
+struct CylinderShape {
+    double radius = 1.0;  ///< m, > 0
+    double height = 1.0;  ///< m, > 0
+    Placement placement;
+};
+
+/// A box about the local origin; collides as its twelve triangles.
+struct CuboidShape {
+    Vec3 size{1, 1, 1};  ///< full edge lengths, m, > 0
+    Placement placement;
+};
+
+/// The map of the unit ball onto a ball collider.
+[[nodiscard]] inline AffineMap world_from_unit(const BallShape& ball) {
+    Placement placement = ball.placement;
+    placement.scale *= ball.radius;
+    return world_from_local(placement);
+}
+
+/// The map of the cylinder x^2 + y^2 <= 1, |z| <= 1 onto a cylinder collider.
+[[nodiscard]] inline AffineMap world_from_unit(const CylinderShape& cylinder) {
+    Placement placement = cylinder.placement;
+    placement.scale.x *= cylinder.radius;
+    placement.scale.y *= cylinder.radius;
+    placement.scale.z *= 0.5 * cylinder.height;
+    return world_from_local(placement);
+}
+
+/// Any shape that particles can collide with.
+using ColliderShape = std::variant<PlaneShape, MeshShape, BallShape, CylinderShape, CuboidShape>;
+
+/// The word by which scenes and files call a shape: plane, mesh, sphere, cylinder or box.
+[[nodiscard]] inline const char* type_name(const ColliderShape& shape) {
+    constexpr std::array<const char*, std::variant_size_v<ColliderShape>> kNames{"plane", "mesh", "sphere", "cylinder",
+                                                                                 "box"};
+    return kNames[shape.index()];
+}
 
 /// One collider of a scene.
 struct ColliderDescription {
     std::string name;
-    std::variant<PlaneShape, MeshShape> shape;
+    ColliderShape shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
 };
 

@@ -1,12 +1,14 @@
 #include "ricochet/collision/collision_world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/shape_mesh.h"
 
 namespace ricochet {
 namespace {
@@ -17,8 +19,7 @@ constexpr std::size_t kBlock = 1 << 14;
     throw InputError("collider \"" + collider.name + "\": " + what);
 }
 
-AffineMap checked_map(const ColliderDescription& collider, const Placement& placement) {
-    const AffineMap map = world_from_local(placement);
+AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map) {
     const double determinant = map.determinant();
     if (!is_finite(map.row_x) || !is_finite(map.row_y) || !is_finite(map.row_z) || !is_finite(map.translation)) {
         refuse(collider, "its placement is not finite, expected finite position, rotation and scale");
@@ -29,22 +30,67 @@ AffineMap checked_map(const ColliderDescription& collider, const Placement& plac
 
 }  // namespace
 
-CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders)
-    : colliders_(std::move(colliders)), bvh_({}, {}, 0.0) {
-    for (ColliderDescription& collider : colliders_) {
-        if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
-            add_plane(collider, *plane);
-        } else {
-            auto& mesh = std::get<MeshShape>(collider.shape);
-            add_mesh(collider, mesh);
-            mesh.mesh.reset();  // the baked copy is the collider from here on
-        }
-    }
+CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders) : colliders_(std::move(colliders)) {
+    for (ColliderDescription& collider : colliders_) add(collider);
     flag_degenerate_triangles();
     for (const Triangle& t : triangles_) {
-        for (const std::uint32_t v : t) bounds_.include(vertices_[v]);
+        for (const std::uint32_t v : t) triangle_bounds_.include(vertices_[v]);
     }
-    bvh_ = TriangleBvh(vertices_, triangles_, curvature_allowance());
+    bounds_ = triangle_bounds_;
+    for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
+    bulge_ = eighth_of_mean_box();
+    prepare_radius(0.0);
+}
+
+void CollisionWorld::add(ColliderDescription& collider) {
+    if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
+        add_plane(collider, *plane);
+    } else if (const auto* ball = std::get_if<BallShape>(&collider.shape)) {
+        add_shape(AnalyticShape::ball(checked_map(collider, world_from_unit(*ball))));
+    } else if (const auto* cylinder = std::get_if<CylinderShape>(&collider.shape)) {
+        add_shape(AnalyticShape::cylinder(checked_map(collider, world_from_unit(*cylinder))));
+    } else if (const auto* cuboid = std::get_if<CuboidShape>(&collider.shape)) {
+        add_mesh(collider,
+                 {std::make_shared<const TriangleMesh>(cuboid_mesh(cuboid->size)), cuboid->placement, {}, {}});
+    } else {
+        auto& mesh = std::get<MeshShape>(collider.shape);
+        add_mesh(collider, mesh);
+        mesh.mesh.reset();  // the baked copies are the collider from here on
+        mesh.triangle_materials = {};
+    }
+}
+
+void CollisionWorld::add_shape(const AnalyticShape& shape) {
+    const auto surface = static_cast<SurfaceId>(surface_count_);
+    ranges_.push_back({surface, static_cast<std::uint32_t>(triangles_.size()), 0,
+                       static_cast<std::uint32_t>(shapes_.size()), Kind::shape});
+    shapes_.push_back({shape, surface});
+    ++surface_count_;
+}
+
+// A class's reach leaves room for its largest radius and for the bulge; radii up to half the bulge share the points'
+// class.
+double CollisionWorld::largest_radius_of_class(double radius) const {
+    if (radius <= 0.5 * bulge_) return 0.5 * bulge_;
+    const int exponent = std::ilogb(radius);
+    const double power = std::ldexp(1.0, exponent);
+    return power == radius ? power : 2.0 * power;
+}
+
+void CollisionWorld::prepare_radius(double radius) {
+    const double largest = largest_radius_of_class(radius);
+    const auto at = std::lower_bound(classes_.begin(), classes_.end(), largest,
+                                     [](const RadiusClass& c, double r) { return c.largest_radius < r; });
+    if (at != classes_.end() && at->largest_radius == largest) return;
+    const double reach = largest <= 0.5 * bulge_ ? bulge_ : largest + bulge_;
+    classes_.insert(at, RadiusClass{largest, TriangleBvh(vertices_, triangles_, reach)});
+}
+
+const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
+    for (const RadiusClass& c : classes_) {
+        if (radius <= c.largest_radius) return c.bvh;
+    }
+    throw RunError("a particle is larger than any radius class that was prepared");
 }
 
 void CollisionWorld::add_plane(const ColliderDescription& collider, const PlaneShape& shape) {
@@ -56,8 +102,8 @@ void CollisionWorld::add_plane(const ColliderDescription& collider, const PlaneS
     }
     const auto surface = static_cast<SurfaceId>(surface_count_);
     // The running triangle count keeps the ranges sorted by first triangle.
-    ranges_.push_back(
-        {surface, static_cast<std::uint32_t>(triangles_.size()), 0, static_cast<std::uint32_t>(planes_.size()), true});
+    ranges_.push_back({surface, static_cast<std::uint32_t>(triangles_.size()), 0,
+                       static_cast<std::uint32_t>(planes_.size()), Kind::plane});
     planes_.push_back({{flush_tiny(shape.point), flush_tiny(shape.normal / size)}, surface});
     ++surface_count_;
 }
@@ -71,10 +117,10 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
         std::numeric_limits<SurfaceId>::max() / 2) {
         refuse(collider, "the scene's meshes have more than 2^31 triangles or vertices together");
     }
-    const AffineMap map = checked_map(collider, shape.placement);
+    const AffineMap map = checked_map(collider, world_from_local(shape.placement));
     const auto base = static_cast<std::uint32_t>(vertices_.size());
     ranges_.push_back(
-        {static_cast<SurfaceId>(surface_count_), static_cast<std::uint32_t>(triangles_.size()), base, 0, false});
+        {static_cast<SurfaceId>(surface_count_), static_cast<std::uint32_t>(triangles_.size()), base, 0, Kind::mesh});
     vertices_.reserve(vertices_.size() + mesh.vertices.size());
     for (const Vec3& v : mesh.vertices) {
         const Vec3 placed = flush_tiny(map.point(v));
@@ -90,6 +136,26 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
                                   : Triangle{base + t[0], base + t[1], base + t[2]});
     }
     surface_count_ += mesh.triangles.size();
+    add_triangle_materials(collider, shape);
+}
+
+void CollisionWorld::add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape) {
+    const std::size_t count = shape.mesh->triangles.size();
+    if (shape.triangle_materials.empty() && triangle_materials_.empty()) return;
+    if (!shape.triangle_materials.empty() && shape.triangle_materials.size() != count) {
+        refuse(collider, "its material list does not have one entry a triangle");
+    }
+    // Meshes before the first that names materials by triangle use their collider's.
+    while (triangle_materials_.size() < triangles_.size() - count) {
+        const auto triangle = static_cast<std::uint32_t>(triangle_materials_.size());
+        triangle_materials_.push_back(colliders_[collider_of(surface_of_triangle(triangle))].material);
+    }
+    if (shape.triangle_materials.empty()) {
+        triangle_materials_.resize(triangles_.size(), collider.material);
+    } else {
+        triangle_materials_.insert(triangle_materials_.end(), shape.triangle_materials.begin(),
+                                   shape.triangle_materials.end());
+    }
 }
 
 void CollisionWorld::flag_degenerate_triangles() {
@@ -105,7 +171,7 @@ void CollisionWorld::flag_degenerate_triangles() {
 }
 
 // An eighth of the mean triangle's box: boxes grow little, and few paths need more than one chord.
-double CollisionWorld::curvature_allowance() const {
+double CollisionWorld::eighth_of_mean_box() const {
     if (triangles_.empty()) return 0.0;
     const double sum = ordered_sum(triangles_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
@@ -138,40 +204,82 @@ SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
     return after->first_surface + (triangle - after->first_triangle);
 }
 
-bool CollisionWorld::is_plane(SurfaceId surface) const { return ranges_[collider_of(surface)].is_plane; }
+std::uint32_t CollisionWorld::material_of(SurfaceId surface) const {
+    const std::uint32_t collider = collider_of(surface);
+    const Range& range = ranges_[collider];
+    if (range.kind != Kind::mesh || triangle_materials_.empty()) return colliders_[collider].material;
+    return triangle_materials_[range.first_triangle + (surface - range.first_surface)];
+}
 
-Vec3 CollisionWorld::unit_normal_of(SurfaceId surface) const {
+CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.is_plane) return planes_[range.plane].plane.normal;
+    if (range.kind == Kind::plane) {
+        const Plane& plane = planes_[range.index].plane;
+        const double distance = signed_distance(p, plane);
+        return {distance < 0.0 ? -plane.normal : plane.normal, std::fabs(distance), true};
+    }
+    if (range.kind == Kind::shape) {
+        const ShapePoint closest = shapes_[range.index].shape.closest_point(p);
+        return {closest.distance < 0.0 ? -closest.normal : closest.normal, std::fabs(closest.distance), false};
+    }
+    const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
+    if (closest.feature == TriangleFeature::kFace) {
+        const double distance = signed_distance(p, a, b, c);
+        const Vec3 normal = unit_normal(a, b, c);
+        return {distance < 0.0 ? -normal : normal, std::fabs(distance), true};
+    }
+    const double distance = length(closest.offset);
+    return {distance > 0.0 ? closest.offset / distance : unit_normal(a, b, c), distance, false};
+}
+
+CollisionWorld::Place CollisionWorld::place_on(SurfaceId surface, const Vec3& p) const {
+    const Range& range = ranges_[collider_of(surface)];
+    if (range.kind != Kind::mesh) {
+        const Nearest to = nearest(surface, p);
+        return {p - to.distance * to.normal, {}};
+    }
+    const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
+    return {closest.point, barycentric_coordinates(closest, a, b, c)};
+}
+
+Vec3 CollisionWorld::unit_normal_of(SurfaceId surface, const Vec3& p) const {
+    const Range& range = ranges_[collider_of(surface)];
+    if (range.kind == Kind::plane) return planes_[range.index].plane.normal;
+    if (range.kind == Kind::shape) return shapes_[range.index].shape.closest_point(p).normal;
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return unit_normal(a, b, c);
 }
 
 double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.is_plane) return signed_distance(p, planes_[range.plane].plane);
+    if (range.kind == Kind::plane) return signed_distance(p, planes_[range.index].plane);
+    if (range.kind == Kind::shape) return shapes_[range.index].shape.closest_point(p).distance;
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return signed_distance(p, a, b, c);
 }
 
 int CollisionWorld::side_of_surface(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.is_plane) return side_of(planes_[range.plane].plane, p);
+    if (range.kind == Kind::plane) return side_of(planes_[range.index].plane, p);
+    if (range.kind == Kind::shape) return shapes_[range.index].shape.side(p);
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return orient3d(a, b, c, p);
 }
 
 double CollisionWorld::time_over(SurfaceId surface, const Path& path, double slack) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.is_plane) return path.duration;
+    if (range.kind != Kind::mesh) return path.duration;
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return time_over_triangle(path, a, b, c, unit_normal(a, b, c), slack);
 }
 
 bool CollisionWorld::segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.is_plane) {
-        const Plane& plane = planes_[range.plane].plane;
+    if (range.kind == Kind::shape) return !shapes_[range.index].shape.leg_is_free(p, q);
+    if (range.kind == Kind::plane) {
+        const Plane& plane = planes_[range.index].plane;
         return side_of(plane, p) * side_of(plane, q) <= 0;
     }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
@@ -185,7 +293,7 @@ std::size_t CollisionWorld::surface_count_of(std::size_t collider) const {
 
 std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const {
     const Range& range = ranges_[collider];
-    if (range.is_plane) return std::nullopt;
+    if (range.kind != Kind::mesh) return std::nullopt;
     TriangleMesh mesh;
     const std::size_t count = surface_count_of(collider);
     mesh.triangles.reserve(count);

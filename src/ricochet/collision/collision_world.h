@@ -9,6 +9,8 @@
 
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/box3.h"
+#include "ricochet/geometry/analytic_shape.h"
+#include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"
 
@@ -44,8 +46,22 @@ public:
     };
     [[nodiscard]] std::span<const PlaneSurface> planes() const { return planes_; }
 
-    /// Broad phase over the triangles of all meshes. It speaks of triangles by their place in triangles().
-    [[nodiscard]] const TriangleBvh& bvh() const { return bvh_; }
+    /// The balls and cylinders, with their surface numbers.
+    struct ShapeSurface {
+        AnalyticShape shape;
+        SurfaceId surface;
+    };
+    [[nodiscard]] std::span<const ShapeSurface> shapes() const { return shapes_; }
+
+    /// Broad phase over the triangles of all meshes for particles of that radius. It speaks of triangles by their place
+    /// in triangles(). Particles are served by radius classes (powers of two), so that small ones do not pay for large
+    /// ones; a class must have been prepared.
+    [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
+    /// Builds the class of a radius when it is not there yet. Not while others are asking.
+    void prepare_radius(double radius);
+    /// False: every triangle is a candidate of every path. The same results, slowly: the reference of tests.
+    void set_culling(bool culls) { culls_ = culls; }
+    [[nodiscard]] bool culls() const { return culls_; }
     [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
     [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }
     /// True for triangles of no area, which take no part in collisions: their neighbours' edges cover them.
@@ -54,7 +70,8 @@ public:
     }
     [[nodiscard]] SurfaceId surface_of_triangle(std::uint32_t triangle) const;
 
-    [[nodiscard]] bool is_plane(SurfaceId surface) const;
+    /// Material of a surface: that of its triangle, or of its collider.
+    [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
 
     /// The corners of a surface that is a triangle.
     struct Corners {
@@ -67,10 +84,29 @@ public:
         return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
     }
 
-    /// Unit normal of a surface (the plane's own, or the triangle's by the counter-clockwise rule).
-    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface) const;
-    /// Signed distance from a surface's plane, m.
+    /// The point of a surface nearest to p.
+    struct Nearest {
+        Vec3 normal;            ///< unit, from the surface to p (the surface's own normal where p lies on it)
+        double distance = 0.0;  ///< m, >= 0
+        bool flat = true;       ///< a plane or the inside of a triangle; false: a rim, a corner or a curved surface
+    };
+    [[nodiscard]] Nearest nearest(SurfaceId surface, const Vec3& p) const;
+
+    /// A place on a surface.
+    struct Place {
+        Vec3 point;        ///< m
+        Vec3 barycentric;  ///< for the triangle's corners in the order of mesh_of(); zero for planes and shapes
+    };
+    /// The place of a surface nearest to p.
+    [[nodiscard]] Place place_on(SurfaceId surface, const Vec3& p) const;
+
+    /// Unit normal of a surface at p: the plane's own, the triangle's by the counter-clockwise rule, a shape's outward
+    /// one.
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const Vec3& p) const;
+    /// Signed distance from a plane, a triangle's plane or a shape, m; accurate also next to it.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
+    /// True for planes and triangles.
+    [[nodiscard]] bool is_flat(SurfaceId surface) const { return ranges_[collider_of(surface)].kind != Kind::shape; }
     /// Exact side of a surface's plane: +1 where its normal points to, -1 behind, 0 in the plane.
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
     /// Time that a path along a surface stays over it, see time_over_triangle(); the whole duration for a plane.
@@ -86,25 +122,33 @@ public:
     [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;
     /// First surface of a collider.
     [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return ranges_[collider].first_surface; }
-    /// Box of all mesh colliders.
+    /// Box of all colliders but the planes.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
+    /// Box of all triangles.
+    [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
     /// Triangles that take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
 
 private:
+    enum class Kind : std::uint8_t { plane, mesh, shape };
+
     /// What a collider owns of the shared arrays.
     struct Range {
         SurfaceId first_surface = 0;
         std::uint32_t first_triangle = 0;
         std::uint32_t first_vertex = 0;
-        std::uint32_t plane = 0;
-        bool is_plane = false;
+        std::uint32_t index = 0;  ///< into planes_ or shapes_
+        Kind kind = Kind::mesh;
     };
 
+    void add(ColliderDescription& collider);
+    void add_shape(const AnalyticShape& shape);
     void add_plane(const ColliderDescription& collider, const PlaneShape& shape);
     void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
+    void add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape);
     void flag_degenerate_triangles();
-    [[nodiscard]] double curvature_allowance() const;
+    [[nodiscard]] double eighth_of_mean_box() const;
+    [[nodiscard]] double largest_radius_of_class(double radius) const;
     [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;
 
     std::vector<ColliderDescription> colliders_;
@@ -116,7 +160,16 @@ private:
     std::size_t degenerate_count_ = 0;
     std::size_t surface_count_ = 0;
     Box3 bounds_;
-    TriangleBvh bvh_;
+    Box3 triangle_bounds_;
+    std::vector<ShapeSurface> shapes_;
+    std::vector<std::uint32_t> triangle_materials_;  ///< empty when no mesh names materials by triangle
+    double bulge_ = 0.0;  ///< m by which paths may bulge off the chords that the broad phase is asked about
+    struct RadiusClass {
+        double largest_radius;
+        TriangleBvh bvh;
+    };
+    std::vector<RadiusClass> classes_;  ///< ascending in radius; the first serves points
+    bool culls_ = true;
 };
 
 }  // namespace ricochet

@@ -21,59 +21,114 @@ double largest_coordinate(const Path& path) {
     return max_abs(magnitude);
 }
 
-}  // namespace
-
-Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& v) {
-    if (side != 0) return side > 0 ? world.unit_normal_of(surface) : -world.unit_normal_of(surface);
-    const double speed = length(v);
-    return speed > 0.0 ? v / -speed : world.unit_normal_of(surface);
+/// Edges and vertices met together with a face that has the same normal are seams of a flat surface.
+void drop_seams(std::vector<ContactScratch::Found>& found) {
+    const auto faces_end = std::partition(found.begin(), found.end(), [](const auto& f) { return f.flat; });
+    const auto is_seam = [&](const ContactScratch::Found& f) {
+        return std::any_of(found.begin(), faces_end, [&](const ContactScratch::Found& face) {
+            return length_squared(face.normal - f.normal) < 2.0 * kSeamTurn;
+        });
+    };
+    found.erase(std::remove_if(faces_end, found.end(), is_seam), found.end());
 }
 
-std::optional<Contact> ContactSearch::search(const Path& path) {
+}  // namespace
+
+Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p, const Vec3& v) {
+    const Vec3 normal = world.unit_normal_of(surface, p);
+    if (side != 0) return side > 0 ? normal : -normal;
+    const double speed = length(v);
+    return speed > 0.0 ? v / -speed : normal;
+}
+
+std::optional<Contact> ContactSearch::search(const Path& path, double radius) {
     scratch_.triangles.clear();
     scratch_.planes.clear();
+    scratch_.shapes.clear();
+    scratch_.overlapped.clear();
     scratch_.found.clear();
-    const double reach = largest_coordinate(path);
-    slack_ = kCandidateSlack * reach + kLongestParkingUlps * kSmallestParkingGap;
+    const double largest = largest_coordinate(path);
+    radius_ = radius;
+    tolerance_ = radius > 0.0 ? sphere_tolerance(radius, largest) : 0.0;
+    slack_ = kCandidateSlack * (largest + radius) + kLongestParkingUlps * kSmallestParkingGap;
     first_time_ = std::numeric_limits<double>::infinity();
-    all_triangles_ = false;
+    start_ = path.c[0];
+    sphere_.reset();
+    if (radius > 0.0) sphere_.emplace(path, radius);
+    bvh_ = &world_.bvh_for(radius);
+    bulge_ = bvh_->reach() - radius;
     search_planes(path);
-    if (kPathRounding * reach <= world_.bvh().slack()) {
-        search_triangles(path, 0.0, path.duration, kPieceDepth);
-    } else if (may_reach_triangles(path, 0.0, path.duration)) {
-        search_all_triangles(path);
-    }
+    search_shapes(path);
+    all_triangles_ = false;
+    if (!world_.triangles().empty()) search_meshes(path, largest);
     if (scratch_.found.empty()) return std::nullopt;
     return first_of_found(path);
+}
+
+/// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
+void ContactSearch::search_meshes(const Path& path, double largest) {
+    const bool boxes_hold = world_.culls() && kPathRounding * largest <= bvh_->slack();
+    if (boxes_hold) {
+        search_triangles(path, 0.0, path.duration, kPieceDepth);
+    } else if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) {
+        search_all_triangles(path);
+    }
+}
+
+void ContactSearch::note(const ContactScratch::Found& found) {
+    scratch_.found.push_back(found);
+    first_time_ = std::min(first_time_, found.time);
+}
+
+void ContactSearch::note_overlap(SurfaceId surface, double distance) {
+    if (radius_ > 0.0 && distance < radius_ - tolerance_) scratch_.overlapped.push_back(surface);
 }
 
 void ContactSearch::search_planes(const Path& path) {
     const auto planes = world_.planes();
     for (std::uint32_t k = 0; k < planes.size(); ++k) {
-        if (clears_plane(path, planes[k].plane, slack_)) continue;
+        const auto& [plane, surface] = planes[k];
+        if (clears_plane(path, plane, radius_ + slack_)) continue;
         scratch_.planes.push_back(k);
-        const auto crossing = first_crossing(path, planes[k].plane);
-        if (!crossing) continue;
-        scratch_.found.push_back({crossing->time, planes[k].surface, crossing->side});
-        first_time_ = std::min(first_time_, crossing->time);
+        if (radius_ == 0.0) {
+            if (const auto crossing = first_crossing(path, plane))
+                note({crossing->time, surface, crossing->side, true, {}});
+        } else {
+            note_overlap(surface, std::fabs(signed_distance(start_, plane)));
+            const auto contact = sphere_->first_contact(plane);
+            if (contact) note({contact->time, surface, 0, true, contact->normal});
+        }
+    }
+}
+
+void ContactSearch::search_shapes(const Path& path) {
+    const auto shapes = world_.shapes();
+    for (std::uint32_t k = 0; k < shapes.size(); ++k) {
+        const auto& [shape, surface] = shapes[k];
+        if (shape.clears(path, radius_ + slack_)) continue;
+        scratch_.shapes.push_back(k);
+        if (radius_ > 0.0) note_overlap(surface, std::fabs(shape.closest_point(start_).distance));
+        const auto contact = shape.first_contact(path, radius_);
+        if (contact) note({contact->time, surface, shape.side(start_), false, contact->normal});
     }
 }
 
 // A point of a chord lies within the chord's sagitta of the path, and that point of the path within its piece's sagitta
-// of the piece's chord; together they must stay within the allowance of the boxes.
+// of the piece's chord; together they must stay within what the boxes leave for it.
 bool ContactSearch::covers_chord(const Path& path, double from, double to) const {
-    return all_triangles_ || path.degree < 2 || world_.triangles().empty() ||
-           2.0 * path.sagitta(from, to) <= world_.bvh().curvature_allowance() || !may_reach_triangles(path, from, to);
+    return all_triangles_ || path.degree < 2 || world_.triangles().empty() || 2.0 * path.sagitta(from, to) <= bulge_ ||
+           !may_reach_triangles(path, from, to);
 }
 
-// The allowance keeps chords that begin on such a piece and end on the next one away from the triangles too.
+// The bulge keeps chords that begin on such a piece and end on the next one away from the triangles too.
 bool ContactSearch::may_reach_triangles(const Path& path, double from, double to) const {
     Box3 box;
     box.include(path.position(from));
     box.include(path.position(to));
-    const double margin = path.sagitta(from, to) + slack_ + world_.bvh().curvature_allowance();
+    const double margin = path.sagitta(from, to) + slack_ + bulge_ + radius_;
     const Vec3 by{margin, margin, margin};
-    const Vec3 gap = max(box.lower - by - world_.bounds().upper, world_.bounds().lower - (box.upper + by));
+    const Box3& triangles = world_.triangle_bounds();
+    const Vec3 gap = max(box.lower - by - triangles.upper, triangles.lower - (box.upper + by));
     return std::max({gap.x, gap.y, gap.z}) <= 0.0;
 }
 
@@ -99,7 +154,7 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
         return;
     }
     const double span = to - from;
-    world_.bvh().visit(path.position(from), path.position(to), [&](std::uint32_t triangle) {
+    bvh_->visit(path.position(from), path.position(to), [&](std::uint32_t triangle) {
         const double first = look_at_triangle(path, triangle);
         return first < to ? std::max(0.0, (first - from) / span) : 1.0;
     });
@@ -108,12 +163,17 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
     if (world_.is_left_out(triangle)) return first_time_;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (clears_plane_of(path, a, b, c, slack_)) return first_time_;
+    if (sphere_ ? sphere_->clears(a, b, c) : clears_plane_of(path, a, b, c, slack_)) return first_time_;
     scratch_.triangles.push_back(triangle);
-    const auto crossing = first_crossing(path, a, b, c);
-    if (!crossing) return first_time_;
-    scratch_.found.push_back({crossing->time, world_.surface_of_triangle(triangle), crossing->side});
-    first_time_ = std::min(first_time_, crossing->time);
+    if (radius_ == 0.0) {
+        const auto crossing = first_crossing(path, a, b, c);
+        if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
+        return first_time_;
+    }
+    const SurfaceId surface = world_.surface_of_triangle(triangle);
+    note_overlap(surface, std::sqrt(closest_point_on_triangle(start_, a, b, c).distance_squared));
+    const auto contact = sphere_->first_contact(a, b, c);
+    if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
     return first_time_;
 }
 
@@ -122,17 +182,54 @@ Contact ContactSearch::first_of_found(const Path& path) const {
     contact.time = first_time_;
     const double latest = first_time_ + kSimultaneousUlps * ulp(first_time_);
     auto& found = scratch_.found;
-    std::erase_if(found, [&](const ContactScratch::Found& f) { return f.time > latest; });
-    // A surface met rim-on answers only when nothing is met from a side.
-    const bool any_side = std::any_of(found.begin(), found.end(), [](const auto& f) { return f.side != 0; });
-    if (any_side) std::erase_if(found, [](const auto& f) { return f.side == 0; });
+    std::erase_if(found, [&](const auto& f) { return f.time > latest; });
+    // A surface that a point meets rim-on answers only when nothing is met from a side.
+    const auto has_side = [&](const auto& f) { return f.side != 0 || radius_ > 0.0; };
+    if (std::any_of(found.begin(), found.end(), has_side)) {
+        std::erase_if(found, [&](const auto& f) { return !has_side(f); });
+    }
+    if (radius_ > 0.0) drop_seams(found);
     std::sort(found.begin(), found.end(), [](const auto& f, const auto& g) { return f.surface < g.surface; });
+    const Vec3 place = path.position(first_time_);
+    const Vec3 velocity = path.velocity(first_time_);
     for (std::size_t k = 0; k < found.size() && contact.count < Contact::kMostSurfaces; ++k) {
         if (k > 0 && found[k].surface == found[k - 1].surface) continue;
-        contact.surfaces[static_cast<std::size_t>(contact.count++)] = {
-            found[k].surface, facing_normal(world_, found[k].surface, found[k].side, path.velocity(first_time_))};
+        const auto& f = found[k];
+        const bool ready = radius_ > 0.0 || !f.flat;
+        const Vec3 normal = ready ? f.normal : facing_normal(world_, f.surface, f.side, place, velocity);
+        contact.surfaces[static_cast<std::size_t>(contact.count++)] = {f.surface, normal, f.flat};
     }
     return contact;
+}
+
+bool ContactSearch::is_overlapped(SurfaceId surface) const {
+    const auto& list = scratch_.overlapped;
+    return std::find(list.begin(), list.end(), surface) != list.end();
+}
+
+bool ContactSearch::starts_in_overlap() const {
+    return radius_ > 0.0 ? !scratch_.overlapped.empty() : blocker(start_, start_).has_value();
+}
+
+bool ContactSearch::plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const {
+    if (side_of(plane.plane, p) * side_of(plane.plane, q) <= 0) return true;
+    if (radius_ == 0.0 || is_overlapped(plane.surface)) return false;
+    const double nearest =
+        std::min(std::fabs(signed_distance(p, plane.plane)), std::fabs(signed_distance(q, plane.plane)));
+    return nearest < radius_ - tolerance_;
+}
+
+bool ContactSearch::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
+    if (!shape.shape.leg_is_free(p, q)) return true;
+    if (radius_ == 0.0 || is_overlapped(shape.surface)) return false;
+    return shape.shape.distance_of_leg(p, q) < radius_ - tolerance_;
+}
+
+bool ContactSearch::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
+    const auto [a, b, c] = world_.corners_of_triangle(triangle);
+    if (segment_meets_triangle(p, q, a, b, c)) return true;
+    if (radius_ == 0.0 || sphere_leg_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
+    return !is_overlapped(world_.surface_of_triangle(triangle));
 }
 
 std::optional<SurfaceId> ContactSearch::blocker(const Vec3& p, const Vec3& q) const {
@@ -141,12 +238,13 @@ std::optional<SurfaceId> ContactSearch::blocker(const Vec3& p, const Vec3& q) co
         if (!smallest || surface < *smallest) smallest = surface;
     };
     for (const std::uint32_t k : scratch_.planes) {
-        const auto& [plane, surface] = world_.planes()[k];
-        if (side_of(plane, p) * side_of(plane, q) <= 0) consider(surface);
+        if (plane_blocks(world_.planes()[k], p, q)) consider(world_.planes()[k].surface);
+    }
+    for (const std::uint32_t k : scratch_.shapes) {
+        if (shape_blocks(world_.shapes()[k], p, q)) consider(world_.shapes()[k].surface);
     }
     for (const std::uint32_t triangle : scratch_.triangles) {
-        const auto [a, b, c] = world_.corners_of_triangle(triangle);
-        if (segment_meets_triangle(p, q, a, b, c)) consider(world_.surface_of_triangle(triangle));
+        if (triangle_blocks(triangle, p, q)) consider(world_.surface_of_triangle(triangle));
     }
     return smallest;
 }
@@ -154,6 +252,7 @@ std::optional<SurfaceId> ContactSearch::blocker(const Vec3& p, const Vec3& q) co
 std::vector<SurfaceId> ContactSearch::gathered() const {
     std::vector<SurfaceId> surfaces;
     for (const std::uint32_t k : scratch_.planes) surfaces.push_back(world_.planes()[k].surface);
+    for (const std::uint32_t k : scratch_.shapes) surfaces.push_back(world_.shapes()[k].surface);
     for (const std::uint32_t triangle : scratch_.triangles) surfaces.push_back(world_.surface_of_triangle(triangle));
     std::sort(surfaces.begin(), surfaces.end());
     surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
@@ -175,14 +274,12 @@ bool ContactSearch::is_free_after(const Vec3& p, const Vec3& q) const {
 }
 
 bool ContactSearch::is_free(const Vec3& p, const Vec3& q) const {
-    const auto planes = world_.planes();
-    for (const std::uint32_t k : scratch_.planes) {
-        if (side_of(planes[k].plane, p) * side_of(planes[k].plane, q) <= 0) return false;
-    }
-    return std::none_of(scratch_.triangles.begin(), scratch_.triangles.end(), [&](std::uint32_t triangle) {
-        const auto [a, b, c] = world_.corners_of_triangle(triangle);
-        return segment_meets_triangle(p, q, a, b, c);
-    });
+    const auto none = [](const auto& list, const auto& blocks) {
+        return std::none_of(list.begin(), list.end(), blocks);
+    };
+    return none(scratch_.planes, [&](std::uint32_t k) { return plane_blocks(world_.planes()[k], p, q); }) &&
+           none(scratch_.shapes, [&](std::uint32_t k) { return shape_blocks(world_.shapes()[k], p, q); }) &&
+           none(scratch_.triangles, [&](std::uint32_t t) { return triangle_blocks(t, p, q); });
 }
 
 }  // namespace ricochet

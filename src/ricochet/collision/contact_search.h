@@ -1,5 +1,5 @@
 /// \file
-/// First contact of a path with the world, and the exact certificate of the legs that are really travelled.
+/// First contact of a path with the world, and the certificate of the legs that are really travelled.
 #pragma once
 
 #include <array>
@@ -10,13 +10,15 @@
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sphere_sweep.h"
 
 namespace ricochet {
 
 /// A surface that takes part in an impact.
 struct ContactSurface {
     SurfaceId surface = 0;
-    Vec3 normal;  ///< unit, facing the side that the path comes from
+    Vec3 normal;       ///< unit, facing the side that the path comes from; for spheres from the surface to the centre
+    bool flat = true;  ///< a plane or the inside of a triangle; false: a rim, a corner or a curved surface
 };
 
 /// The first contact of a path: all surfaces met at the same time (kSimultaneousUlps), the smallest number first.
@@ -33,20 +35,26 @@ struct Contact {
     [[nodiscard]] const ContactSurface& first() const { return surfaces[0]; }
 };
 
-/// Unit normal of a surface that a particle comes to from `side` (+1, -1) with velocity v. A particle that runs exactly
+/// Unit normal of a surface that a point at p comes to from `side` (+1, -1) with velocity v. A point that runs exactly
 /// in the surface's plane (side 0) has met its rim head-on: the normal is then against the motion.
-[[nodiscard]] Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& v);
+[[nodiscard]] Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p,
+                                 const Vec3& v);
 
 /// Scratch memory of one thread, kept between queries so that the loop over particles allocates nothing.
 struct ContactScratch {
     struct Found {
         double time;
         SurfaceId surface;
-        int side;
+        int side;  ///< of a point's path; unused for spheres
+        bool flat;
+        Vec3 normal;  ///< for spheres; that of points is worked out for the first contact only
     };
-    std::vector<std::uint32_t> triangles;  ///< candidates whose plane the path does not clear
+    std::vector<std::uint32_t> triangles;  ///< candidates that the path does not clear
     std::vector<std::uint32_t> planes;     ///< the same, indices into CollisionWorld::planes()
+    std::vector<std::uint32_t> shapes;     ///< the same, indices into CollisionWorld::shapes()
+    std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Found> found;
+    std::vector<Vec3> chain;  ///< ends of the certified legs of the last travel, its start first
 };
 
 /// Answers for one path at a time: search() gathers the surfaces near the path and finds the first contact; the other
@@ -55,11 +63,14 @@ class ContactSearch {
 public:
     ContactSearch(const CollisionWorld& world, ContactScratch& scratch) : world_(world), scratch_(scratch) {}
 
-    /// First contact under the order (time, collider, triangle). `path` must be finite.
-    [[nodiscard]] std::optional<Contact> search(const Path& path);
+    /// First contact of a point (radius 0) or a sphere whose centre follows `path`, under the order (time, collider,
+    /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius).
+    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius);
 
-    /// The smallest numbered surface that the closed segment [p, q] meets, decided exactly. p and q lie on the searched
-    /// path, or within the parking distance of it.
+    /// The smallest numbered surface that stands in the way of the closed leg [p, q] of the centre: one that the
+    /// segment itself meets (decided exactly for planes and triangles), or one that comes nearer to it than the radius
+    /// less sphere_tolerance(). Surfaces overlapped from the start only block the segment itself. p and q lie on the
+    /// searched path, or within the parking distance of it.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
     /// The same for a segment that starts on surfaces: true when it leaves all of them and meets no other.
@@ -71,22 +82,43 @@ public:
     /// chords of a curved path may pass through places that the search has not looked at.
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
 
+    /// True when the sphere overlaps a surface by more than the tolerance (a point: lies on one) at the path's start.
+    [[nodiscard]] bool starts_in_overlap() const;
+
+    /// The certified places of the last travel() or park(), in order; kept here so that nothing is allocated on the
+    /// way.
+    [[nodiscard]] std::vector<Vec3>& chain() const { return scratch_.chain; }
     [[nodiscard]] const CollisionWorld& world() const { return world_; }
+    [[nodiscard]] double radius() const { return radius_; }
 
 private:
     void search_planes(const Path& path);
+    void search_meshes(const Path& path, double largest);
+    void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);
     [[nodiscard]] bool may_reach_triangles(const Path& path, double from, double to) const;
     [[nodiscard]] std::vector<SurfaceId> gathered() const;
     double look_at_triangle(const Path& path, std::uint32_t triangle);
+    void note(const ContactScratch::Found& found);
+    void note_overlap(SurfaceId surface, double distance);
+    [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
+    [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const;
     [[nodiscard]] Contact first_of_found(const Path& path) const;
 
     const CollisionWorld& world_;
     ContactScratch& scratch_;
+    const TriangleBvh* bvh_ = nullptr;
+    std::optional<SphereSweep> sphere_;  ///< nothing for points
+    double radius_ = 0.0;
+    double tolerance_ = 0.0;  ///< sphere_tolerance() of this path; 0 for points
     double slack_ = 0.0;
+    double bulge_ = 0.0;          ///< what the boxes leave for the path's curvature, m
+    bool all_triangles_ = false;  ///< every triangle is a candidate
     double first_time_ = 0.0;
-    bool all_triangles_ = false;  // every triangle is a candidate
+    Vec3 start_;
 };
 
 }  // namespace ricochet

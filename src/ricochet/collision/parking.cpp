@@ -14,12 +14,18 @@ struct Walker {
     const Path& path;
     Travel state;
 
+    Walker(const ContactSearch& search_in, const Path& path_in)
+        : search(search_in), path(path_in), state{path_in.c[0], 0.0, std::nullopt} {
+        search.chain().assign(1, path.c[0]);
+    }
+
     bool walk_to(double time, const Vec3& target, int depth) {
         const double middle = 0.5 * (state.time + time);
         const bool is_shortest = depth == 0 || middle <= state.time || middle >= time;
         if ((is_shortest || search.covers_chord(path, state.time, time)) && search.is_free(state.reached, target)) {
             state.reached = target;
             state.time = time;
+            search.chain().push_back(target);
             return true;
         }
         if (is_shortest) {
@@ -59,50 +65,65 @@ Vec3 escape_direction(const Normals& normals) {
     return kParkingGapUlps * length(direction) <= kLongestParkingUlps ? direction : sum;
 }
 
-/// The contact point, moved onto the plane of the surface that was met.
-Vec3 point_on_surface(const CollisionWorld& world, const Path& path, const Contact& contact) {
-    Vec3 point = path.position(contact.time);
+/// The place on the path at the contact, moved along the normal until it is exactly `radius` from the surface met first
+/// (for a sphere that overlaps it: left as it is).
+Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Contact& contact) {
+    const Vec3 place = path.position(contact.time);
     const SurfaceId surface = contact.first().surface;
-    return flush_tiny(point - world.signed_distance_from(surface, point) * world.unit_normal_of(surface));
+    if (search.radius() == 0.0) {
+        const CollisionWorld& world = search.world();
+        return flush_tiny(place - world.signed_distance_from(surface, place) * world.unit_normal_of(surface, place));
+    }
+    const double distance = search.world().nearest(surface, place).distance;
+    if (distance < search.radius() * (1.0 - kContactMismatch)) return place;
+    return flush_tiny(place + (search.radius() - distance) * contact.first().normal);
+}
+
+/// Normal of a blocking surface at p, facing p; zero when p lies in its plane.
+ContactSurface facing_surface(const ContactSearch& search, SurfaceId surface, const Vec3& p) {
+    const CollisionWorld& world = search.world();
+    if (search.radius() > 0.0) {
+        const auto nearest = world.nearest(surface, p);
+        return {surface, nearest.normal, nearest.flat};
+    }
+    const int side = world.side_of_surface(surface, p);
+    return {surface, static_cast<double>(side) * world.unit_normal_of(surface, p), true};
 }
 
 }  // namespace
 
 Travel travel(const ContactSearch& search, const Path& path, double until, const Vec3& target) {
-    Walker walker{search, path, {path.c[0], 0.0, std::nullopt}};
+    Walker walker(search, path);
     const int depth = path.degree > 1 ? kCertificateDepth : 0;
     (void)walker.walk_to(until, target, depth);
     return walker.state;
 }
 
 Parking park(const ContactSearch& search, const Path& path, const Contact& contact) {
-    const CollisionWorld& world = search.world();
-    const Vec3 point = point_on_surface(world, path, contact);
+    const Vec3 place = place_of_contact(search, path, contact);
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
-    double gap = parking_gap(point);
+    double gap = parking_gap(place);
     const double longest = kLongestParkingUlps / kParkingGapUlps * gap;
     for (int attempt = 0; attempt < kParkingAttempts;) {
         const Vec3 way = gap * escape_direction(normals);
         if (!(length(way) <= longest)) break;
-        const Vec3 place = flush_tiny(point + way);
-        const Travel travelled = travel(search, path, contact.time, place);
-        if (!travelled.blocker) return {place, false};
-        const int side = world.side_of_surface(*travelled.blocker, travelled.reached);
-        const bool new_normal =
-            side != 0 && normals.add(facing_normal(world, *travelled.blocker, side, path.velocity(contact.time)));
-        if (new_normal) continue;
+        const Vec3 parked = flush_tiny(place + way);
+        const Travel travelled = travel(search, path, contact.time, parked);
+        if (!travelled.blocker) return {parked, false};
+        const Vec3 normal = facing_surface(search, *travelled.blocker, travelled.reached).normal;
+        if (normal != Vec3{} && normals.add(normal)) continue;
         gap *= kParkingWidening;
         ++attempt;
     }
-    Walker walker{search, path, {path.c[0], 0.0, std::nullopt}};
-    (void)walker.walk_to(contact.time, point, kCertificateDepth);
+    Walker walker(search, path);
+    (void)walker.walk_to(contact.time, place, kCertificateDepth);
     return {walker.state.reached, walker.state.reached == path.c[0]};
 }
 
 std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
     Normals normals;
-    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.world().unit_normal_of(surface));
+    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.world().unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
     double gap = parking_gap(p);
     for (int attempt = 0; attempt < kParkingAttempts; ++attempt, gap *= kParkingWidening) {
@@ -113,12 +134,14 @@ std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
 }
 
 Contact contact_of_blocker(const ContactSearch& search, const Path& path, const Travel& travelled) {
-    const int side = search.world().side_of_surface(*travelled.blocker, travelled.reached);
     Contact contact;
     contact.time = travelled.time;
     contact.count = 1;
-    contact.surfaces[0] = {*travelled.blocker,
-                           facing_normal(search.world(), *travelled.blocker, side, path.velocity(travelled.time))};
+    contact.surfaces[0] = facing_surface(search, *travelled.blocker, travelled.reached);
+    if (contact.surfaces[0].normal == Vec3{}) {
+        contact.surfaces[0].normal =
+            facing_normal(search.world(), *travelled.blocker, 0, travelled.reached, path.velocity(travelled.time));
+    }
     return contact;
 }
 

@@ -34,11 +34,34 @@ inline constexpr double kLongestParkingUlps = 4096.0;
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingGaps = 8.0;
 
-/// Contacts in a row, all slower than the resting speed and pressed on, after which a particle comes to rest for the
-/// step. Reason: in a pit of four or more faces a sliding particle circles into the apex in infinitely many ever
-/// shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger: circling costs more contacts
-/// a step.
+/// Contacts in a row, pressed on and all slower than the resting speed or without time between them, after which a
+/// particle comes to rest for the step. Reason: in a pit of four or more faces a sliding particle circles into the apex
+/// in infinitely many ever shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger:
+/// circling costs more contacts a step.
 inline constexpr int kMostSlowContacts = 32;
+
+/// One minus the cosine of the angle between normals below which two surfaces touched together count as one plane.
+/// Smaller: coplanar triangles take up the three places for touched surfaces. Larger: a blunt corner counts as flat.
+inline constexpr double kSameNormal = 1e-12;
+
+/// What a velocity that was projected onto a plane may still approach it by, relative to its length: a few roundings.
+/// Smaller: a projection is taken for infeasible and the next best, slower one is used. Larger: a particle creeps into
+/// a wall's gap.
+inline constexpr double kProjectionRounding = 0x1p-48;
+
+/// Slip of a sphere, relative to the speeds whose difference it is, below which it is rounding and the sphere rolls.
+/// Smaller: rolling is chopped into stretches of sliding. Larger: slow slip ends too early.
+inline constexpr double kSlipRounding = 0x1p-40;
+
+/// Fraction by which a sphere's distance at a contact may fall short of its radius and still be put right by parking;
+/// beyond it the sphere started in overlap and stays where it is. Smaller: grazing contacts are not put right. Larger:
+/// a sphere born in a slight overlap is pushed out.
+inline constexpr double kContactMismatch = 1e-9;
+
+/// Angle, rad, by which a particle turns around a rim or a curved surface in one straight stretch of sliding or
+/// rolling. Smaller: more stretches (each costs a query). Larger: it leaves the surface by more (angle^2 / 2 of the
+/// bend's radius) before it falls back.
+inline constexpr double kStretchAngle = 0.01;
 
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
 /// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
@@ -62,6 +85,12 @@ inline constexpr double kBoxSlack = 0x1p-20;
 
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
 inline constexpr double kSimultaneousUlps = 4.0;
+
+/// One minus the cosine of the angle between the normals of a face and of an edge or vertex that a sphere meets at the
+/// same time, below which the edge is the face's own seam and does not answer. Reason: contacts tie while the foot is
+/// within sqrt(2 * rounding * radius) of the edge, an angle of 1e-6 for coordinates of a thousand radii. Smaller: a
+/// grazing sphere is nudged by flat inner edges. Larger: blunt real edges answer as faces.
+inline constexpr double kSeamTurn = 1e-11;
 
 /// Distance by which a sphere may overlap a surface before its leg is refused, relative to radius plus coordinates.
 /// Reason: distances and parked centres are rounded to a few 1e-16 of the coordinates, and a parked sphere must pass.

@@ -16,6 +16,7 @@ namespace {
 // Streams of random numbers: the high byte says what is drawn, the rest is the emitter's number.
 constexpr std::uint32_t kBirthStream = 0x01000000;
 constexpr std::uint32_t kRateStream = 0x02000000;
+constexpr std::uint32_t kRadiusStream = 0x03000000;
 constexpr std::uint32_t kStreams = 0x01000000;
 
 void require(bool condition, const EmitterDescription& emitter, const char* what) {
@@ -49,6 +50,9 @@ void check(const EmitterDescription& emitter) {
     require(is_finite(emitter.velocity), emitter, "the velocity must be finite");
     require(std::isfinite(emitter.mass.mean) && is_spread(emitter.mass) && emitter.mass.mean > emitter.mass.spread,
             emitter, "every mass must be > 0 kg");
+    require(
+        std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) && emitter.radius.mean >= emitter.radius.spread,
+        emitter, "every radius must be >= 0 m");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
 }
 
@@ -150,7 +154,10 @@ double Emitter::rate_in_second(std::uint64_t second) const {
 
 Particle Emitter::make_particle(std::uint64_t number, double time) const {
     RandomSequence random(seed_, kBirthStream | stream_, number);
-    const Launch launch = launch_from(random);
+    // Radii have a stream of their own: giving particles a size changes nothing else about their birth.
+    const double radius = RandomSequence(seed_, kRadiusStream | stream_, number)
+                              .uniform_around(description_.radius.mean, description_.radius.spread);
+    const Launch launch = launch_from(radius, random);
     const bool own_direction = description_.direction == Vec3{};
     const Vec3 axis = own_direction ? launch.direction : normalized(description_.direction);
     const Vec3 direction = in_cone(axis, random);
@@ -159,12 +166,13 @@ Particle Emitter::make_particle(std::uint64_t number, double time) const {
     particle.position = launch.position;
     particle.velocity = direction * speed + description_.velocity;
     particle.mass = random.uniform_around(description_.mass.mean, description_.mass.spread);
+    particle.radius = radius;
     particle.birth_time = time;
     particle.lifetime = random.uniform_around(description_.lifetime.mean, description_.lifetime.spread);
     return particle;
 }
 
-Emitter::Launch Emitter::launch_from(RandomSequence& random) const {
+Emitter::Launch Emitter::launch_from(double radius, RandomSequence& random) const {
     if (const auto* disk = std::get_if<DiskShape>(&description_.shape)) {
         const Vec3 normal = normalized(disk->normal);
         const auto [first, second] = tangent_frame(normal);
@@ -182,13 +190,13 @@ Emitter::Launch Emitter::launch_from(RandomSequence& random) const {
         return {sphere->center + sphere->radius * normal, normal};
     }
     if (const auto* surface = std::get_if<MeshSurfaceShape>(&description_.shape)) {
-        return launch_from_mesh(*surface->mesh, random);
+        return launch_from_mesh(*surface->mesh, radius, random);
     }
     return {std::get<PointShape>(description_.shape).center, random.unit_vector()};
 }
 
 // The point's rounding error is a few ulp of the corners, not of the point; a gap taken from the corners is larger.
-Emitter::Launch Emitter::launch_from_mesh(const TriangleMesh& mesh, RandomSequence& random) const {
+Emitter::Launch Emitter::launch_from_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
     const double area = random.uniform() * cumulative_area_.back();
     const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(found - cumulative_area_.begin())];
@@ -203,7 +211,7 @@ Emitter::Launch Emitter::launch_from_mesh(const TriangleMesh& mesh, RandomSequen
     }
     const Vec3 normal = unit_normal(a, b, c);
     const double gap = parking_gap(max(max(abs(a), abs(b)), abs(c)));
-    return {a + u * (b - a) + v * (c - a) + gap * normal, normal};
+    return {a + u * (b - a) + v * (c - a) + (radius + gap) * normal, normal};
 }
 
 // Uniform in solid angle: by Archimedes' hat-box theorem the height along the axis is uniform.

@@ -67,6 +67,7 @@ struct EmitterDescription {
     MeanSpread speed;           ///< m/s
     Vec3 velocity;              ///< m/s, added to direction * speed
     MeanSpread mass{1.0, 0.0};  ///< kg, mean - spread > 0
+    MeanSpread radius;          ///< m, mean - spread >= 0; 0 is a point
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
 };
@@ -92,8 +93,8 @@ private:
         Vec3 direction;  ///< the shape's own, of unit length
     };
     [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
-    [[nodiscard]] Launch launch_from(RandomSequence& random) const;
-    [[nodiscard]] Launch launch_from_mesh(const TriangleMesh& mesh, RandomSequence& random) const;
+    [[nodiscard]] Launch launch_from(double radius, RandomSequence& random) const;
+    [[nodiscard]] Launch launch_from_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const;
     [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
     [[nodiscard]] double rate_in_second(std::uint64_t second) const;
     void append_births(std::uint64_t count, double time, std::vector<Particle>& births);

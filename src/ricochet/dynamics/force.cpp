@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,6 +32,7 @@ public:
         return input.velocity * (-coefficient_ / input.mass);
     }
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput&) const override { return 0.0; }
+    [[nodiscard]] bool is_steady() const override { return true; }
 
 private:
     double coefficient_;
@@ -66,7 +68,10 @@ std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force) 
     return std::make_unique<CallableForce>(std::move(force));
 }
 
-ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces) : forces_(std::move(forces)) {}
+ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
+    : forces_(std::move(forces)),
+      uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
+      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {}
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
     Vec3 sum;

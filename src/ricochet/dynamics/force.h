@@ -31,6 +31,8 @@ public:
     [[nodiscard]] virtual std::optional<double> potential_energy(const ForceInput& input) const = 0;
     /// True when the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] virtual bool is_uniform() const { return false; }
+    /// True when the acceleration does not depend on time: a particle at rest then stays at rest (it may sleep).
+    [[nodiscard]] virtual bool is_steady() const { return is_uniform(); }
 };
 
 /// Uniform gravity: the given acceleration, m/s^2.
@@ -49,9 +51,15 @@ public:
     /// Sum of the potentials, J; nothing when one force has none.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const;
     [[nodiscard]] bool empty() const { return forces_.empty(); }
+    /// True when the acceleration depends on neither position, velocity nor time.
+    [[nodiscard]] bool is_uniform() const { return uniform_; }
+    /// True when no force depends on time.
+    [[nodiscard]] bool is_steady() const { return steady_; }
 
 private:
     std::vector<std::unique_ptr<Force>> forces_;
+    bool uniform_ = true;
+    bool steady_ = true;
 };
 
 }  // namespace ricochet

@@ -21,6 +21,7 @@ void Particles::append(const Particle& particle) {
     id.push_back(particle.id);
     position.push_back(particle.position);
     velocity.push_back(particle.velocity);
+    spin.push_back(particle.spin);
     mass.push_back(particle.mass);
     radius.push_back(particle.radius);
     birth_time.push_back(particle.birth_time);
@@ -29,16 +30,22 @@ void Particles::append(const Particle& particle) {
     contacts.push_back(0);
     frozen.push_back(0);
     resting.push_back(0);
+    absorbed.push_back(0);
+    draws.push_back(0);
+    support.push_back({kNoSupport, kNoSupport, kNoSupport});
+    cascade_left.push_back(0.0);
+    booked_until.push_back(0.0);
 }
 
 Particle Particles::at(std::size_t i) const {
-    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i]};
+    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i], spin[i]};
 }
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(id, keep);
     compact_array(position, keep);
     compact_array(velocity, keep);
+    compact_array(spin, keep);
     compact_array(mass, keep);
     compact_array(radius, keep);
     compact_array(birth_time, keep);
@@ -47,6 +54,11 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(contacts, keep);
     compact_array(frozen, keep);
     compact_array(resting, keep);
+    compact_array(absorbed, keep);
+    compact_array(draws, keep);
+    compact_array(support, keep);
+    compact_array(cascade_left, keep);
+    compact_array(booked_until, keep);
 }
 
 std::vector<std::uint32_t> Particles::order_by_id() const {

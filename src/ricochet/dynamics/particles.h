@@ -2,6 +2,7 @@
 /// The particles: a structure of arrays, one entry a living particle.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -20,7 +21,11 @@ struct Particle {
     double radius = 0.0;                                        ///< m, >= 0; 0 is a point
     double birth_time = 0.0;                                    ///< s, simulation time
     double lifetime = std::numeric_limits<double>::infinity();  ///< s after birth at which it is retired
+    Vec3 spin{};                                                ///< angular velocity, rad/s; spheres only
 };
+
+/// In place of a surface number: none.
+inline constexpr std::uint32_t kNoSupport = 0xFFFFFFFFU;
 
 /// Structure of arrays. All vectors have the same length; entry i of each is particle i.
 class Particles {
@@ -28,6 +33,7 @@ public:
     std::vector<std::uint64_t> id;
     std::vector<Vec3> position;
     std::vector<Vec3> velocity;
+    std::vector<Vec3> spin;  ///< angular velocity, rad/s; zero for points
     std::vector<double> mass;
     std::vector<double> radius;
     std::vector<double> birth_time;
@@ -35,7 +41,13 @@ public:
     std::vector<double> unsimulated_time;  ///< s that the bounce budget cut off, summed over the particle's life
     std::vector<std::uint32_t> contacts;   ///< impacts so far (saturating)
     std::vector<std::uint8_t> frozen;      ///< 1 when the state left the range of the arithmetic: it no longer moves
-    std::vector<std::uint8_t> resting;     ///< 1 when the particle ended the last step at rest on a surface
+    std::vector<std::uint8_t> resting;     ///< 1 while at rest on the surfaces in `support`
+    std::vector<std::uint8_t> absorbed;    ///< 1 when an impact has removed it; gone after the step
+    std::vector<std::uint32_t> draws;      ///< random numbers drawn by impacts so far
+    /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.
+    std::vector<std::array<std::uint32_t, 3>> support;
+    std::vector<double> cascade_left;  ///< s of a bounce cascade that the end of the step has cut in two
+    std::vector<double> booked_until;  ///< s, simulation time up to which surfaces have carried a sleeping particle
 
     [[nodiscard]] std::size_t size() const { return id.size(); }
     [[nodiscard]] bool empty() const { return id.empty(); }

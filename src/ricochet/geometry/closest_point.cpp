@@ -17,6 +17,10 @@ constexpr double kSlenderNormal = 0x1p-4;
 /// Error of a side in plain doubles, relative to the lengths it is made of: 2^-48 of the normal and some roundings.
 constexpr double kSideError = 0x1p-47;
 
+/// Twice a triangle's area over its longest edge's square (within a factor 4) below which its barycentric coordinates
+/// lose digits in plain doubles.
+constexpr double kSlenderFace = 0x1p-10;
+
 /// Sine of a triangle's angle below which it has no face.
 constexpr double kThinnestFace = 0x1p-80;
 
@@ -76,6 +80,28 @@ ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Edge& e) {
     return {point, s.offset, squared, e.edge};
 }
 
+/// Weights of a point inside the face. Lengths are first divided by the longest, so that no product leaves the range.
+Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double longest = std::max({max_abs(b - a), max_abs(c - b), max_abs(a - c)});
+    const double scale = std::ldexp(1.0, -std::ilogb(longest));
+    const auto plain = [&](const Vec3& to, const Vec3& from) { return scale * (to - from); };
+    const Vec3 u = plain(b, a);
+    const Vec3 v = plain(c, a);
+    const Vec3 normal = cross(u, v);
+    if (max_abs(normal) > kSlenderFace) {
+        const auto part = [&](const Vec3& from, const Vec3& to) {
+            return std::max(0.0, dot(normal, cross(plain(to, from), plain(p, from))));
+        };
+        return {part(b, c), part(c, a), part(a, b)};
+    }
+    const auto precise = [&](const Vec3& to, const Vec3& from) { return scale * difference<DoubleDouble>(to, from); };
+    const PreciseVec3 precise_normal = scaled_to_one(cross_of(precise(b, a), precise(c, a)));
+    const auto part = [&](const Vec3& from, const Vec3& to) {
+        return std::max(0.0, dot_of(precise_normal, cross_of(precise(to, from), precise(p, from))).hi);
+    };
+    return {part(b, c), part(c, a), part(a, b)};
+}
+
 }  // namespace
 
 bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
@@ -122,6 +148,30 @@ ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, c
         if (is_nearer(face, nearest)) return face;
     }
     return nearest;
+}
+
+Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto along = [&](const Vec3& from, const Vec3& to) {
+        return closest_point_on_segment(nearest.point, from, to).fraction;
+    };
+    switch (nearest.feature) {
+        case TriangleFeature::kVertexA:
+            return {1, 0, 0};
+        case TriangleFeature::kVertexB:
+            return {0, 1, 0};
+        case TriangleFeature::kVertexC:
+            return {0, 0, 1};
+        case TriangleFeature::kEdgeAB:
+            return {1.0 - along(a, b), along(a, b), 0};
+        case TriangleFeature::kEdgeBC:
+            return {0, 1.0 - along(b, c), along(b, c)};
+        case TriangleFeature::kEdgeCA:
+            return {along(c, a), 0, 1.0 - along(c, a)};
+        case TriangleFeature::kFace:
+            break;
+    }
+    const Vec3 weights = face_weights(nearest.point, a, b, c);
+    return weights / (weights.x + weights.y + weights.z);
 }
 
 // The smallest distance is that of an end from the other segment, or that of two inner points where the common

@@ -47,6 +47,12 @@ struct ClosestPointOnTriangle {
 [[nodiscard]] ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                                const Vec3& c);
 
+/// Barycentric coordinates of a point of a triangle that closest_point_on_triangle() found, for the corners a, b and c:
+/// none negative, their sum 1. Exactly 0 where the point lies on an edge or a vertex. For slender triangles they are
+/// worked out in double-double, so that they lead back to the point, not only to its plane.
+[[nodiscard]] Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b,
+                                           const Vec3& c);
+
 /// Squared distance of two closed segments, m^2.
 [[nodiscard]] double squared_distance_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b);
 

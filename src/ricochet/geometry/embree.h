@@ -98,9 +98,10 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// A new device with default settings. Geometries want mask -1 and rays mask -1: Embree 4 masks always.
-[[nodiscard]] inline Device make_device() {
-    Device device(rtcNewDevice(nullptr));
+/// A new device; settings in Embree's own words, null for the defaults. Geometries want mask -1 and rays mask -1:
+/// Embree 4 masks always.
+[[nodiscard]] inline Device make_device(const char* settings = nullptr) {
+    Device device(rtcNewDevice(settings));
     if (device.get() == nullptr) throw RunError("Embree could not create a device");
     return device;
 }

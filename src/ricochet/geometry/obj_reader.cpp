@@ -127,25 +127,35 @@ private:
 
     void enter(std::string& name) {
         name = cursor_.rest_of_line();
-        const std::string& in_force = !material_.empty() ? material_ : (!group_.empty() ? group_ : object_);
-        current_group_ = in_force;
+        has_names_ = has_names_ || !name.empty();
         group_is_known_ = false;
     }
 
-    // Files without names keep empty lists; the first name found gives the faces before it the empty name.
+    // Files without names keep empty lists; the first name found gives the faces before it the empty names.
     void note_group() {
-        if (current_group_.empty() && mesh_.group_names.empty()) return;
-        if (mesh_.group_names.empty() && mesh_.face_count() > 1) {
-            (void)group_number("");
-            mesh_.face_groups.assign(mesh_.face_count() - 1, 0);
+        if (!has_names_) return;
+        if (!group_is_known_) {
+            if (mesh_.group_names.empty()) (void)name_number("");
+            const FaceGroup group{name_number(material_), name_number(group_), name_number(object_)};
+            if (mesh_.groups.empty() && mesh_.face_count() > 1) {
+                (void)group_number(FaceGroup{});
+                mesh_.face_groups.assign(mesh_.face_count() - 1, 0);
+            }
+            current_group_ = group_number(group);
+            group_is_known_ = true;
         }
-        if (!group_is_known_) current_group_number_ = group_number(current_group_);
-        group_is_known_ = true;
-        mesh_.face_groups.push_back(current_group_number_);
+        mesh_.face_groups.push_back(current_group_);
     }
 
-    std::uint32_t group_number(const std::string& name) {
-        const auto [place, is_new] = groups_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
+    std::uint32_t group_number(const FaceGroup& group) {
+        const auto [place, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh_.groups.size()));
+        if (is_new) mesh_.groups.push_back(group);
+        return place->second;
+    }
+
+    // Every name is stored once, however many combinations it is part of, so that memory stays bounded by the file.
+    std::uint32_t name_number(const std::string& name) {
+        const auto [place, is_new] = names_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
         if (is_new) mesh_.group_names.push_back(name);
         return place->second;
     }
@@ -156,10 +166,11 @@ private:
     std::string material_;
     std::string group_;
     std::string object_;
-    std::string current_group_;
+    bool has_names_ = false;
     bool group_is_known_ = false;
-    std::uint32_t current_group_number_ = 0;
-    std::map<std::string, std::uint32_t> groups_;
+    std::uint32_t current_group_ = 0;
+    std::map<FaceGroup, std::uint32_t> groups_;
+    std::map<std::string, std::uint32_t> names_;
 };
 
 }  // namespace

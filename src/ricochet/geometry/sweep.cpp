@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/expansion.h"
+#include "ricochet/geometry/polynomial.h"
 #include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
@@ -198,9 +199,41 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     return std::nullopt;
 }
 
+/// Times at which a cubic path passes through the plane, in order. At the ends the exact sides overrule the rounded
+/// distance: a crossing that rounding has pushed out of the interval is put back at its end.
+template <class Surface>
+Times passes_of_cubic(const Path& path, const Surface& surface, const Vec3& normal, int before, int after) {
+    Polynomial distance;
+    distance.degree = 3;
+    distance.duration = path.duration;
+    distance.coefficients[0] = DoubleDouble(dot(normal, path.c[0] - surface.origin()));
+    for (std::size_t k = 1; k <= 3; ++k) distance.coefficients[k] = DoubleDouble(dot(normal, path.c[k]));
+    Times times;
+    const double heading = dot(normal, path.c[1]) * before;
+    if (sign(distance.coefficients[0]) != before && heading < 0.0) times.append(0.0);
+    for (const double s : sign_changes(distance)) times.append(s);
+    if (sign(distance.value(path.duration)) != after) times.append(path.duration);
+    return times;
+}
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_cubic(const Path& path, const Surface& surface) {
+    const int before = surface.side(path.c[0]);
+    if (before == 0 && surface.contains(path.c[0])) return first_crossing_from_plane(path, surface);
+    const int after = surface.side(path.end);
+    const Vec3 normal = surface.normal();
+    for (const double s : passes_of_cubic(path, surface, normal, before, after)) {
+        const double heading = dot(normal, path.velocity(s));
+        const int side = s == 0.0 ? before : (heading < 0.0 ? 1 : -1);
+        if (crosses_around(path, surface, normal, s, side)) return Crossing{s, side};
+    }
+    return std::nullopt;
+}
+
 template <class Surface>
 std::optional<Crossing> crossing_of(const Path& path, const Surface& surface) {
-    return path.degree < 2 ? first_crossing_of_line(path, surface) : first_crossing_of_parabola(path, surface);
+    if (path.degree < 2) return first_crossing_of_line(path, surface);
+    return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
 }
 
 }  // namespace

@@ -13,6 +13,11 @@
 namespace ricochet {
 namespace {
 
+std::string& ray_library_settings() {
+    static std::string settings;
+    return settings;
+}
+
 /// Maps world doubles to the floats that the ray library sees: centred, and scaled by a power of two to about 1.
 struct FloatFrame {
     Vec3 center;
@@ -93,10 +98,10 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
 struct TriangleBvh::Impl {
     std::span<const Vec3> vertices;
     std::span<const Triangle> triangles;
-    double allowance = 0.0;
+    double reach = 0.0;
     double slack = 0.0;
     FloatFrame frame;
-    double padding = 0.0;  ///< in the float frame: rounding, slack and curvature
+    double padding = 0.0;  ///< in the float frame: rounding, slack and reach
     Box3 clip_box;         ///< world; generously larger than the padded boxes
     std::atomic<std::ptrdiff_t> memory{0};
     LoopOrder* build_order = nullptr;  ///< while the hierarchy is built
@@ -107,7 +112,7 @@ struct TriangleBvh::Impl {
     void set_frame();
     void write_bounds(std::uint32_t triangle, RTCBounds& bounds) const;
     void visit_all(Query& query) const;
-    void cast(Query& query, const Vec3& begin, const Vec3& direction, double reach) const;
+    void cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const;
 };
 
 void TriangleBvh::Impl::set_frame() {
@@ -119,7 +124,7 @@ void TriangleBvh::Impl::set_frame() {
     // Half extent H and a clipped leg of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
     slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
-    const double beside = frame.scale * (allowance + slack);
+    const double beside = frame.scale * (reach + slack);
     padding = kBoxPaddingUnits * 0x1p-24 * (4.5 * half_extent + beside) + beside;
     clip_box = grown(box, 2.0 * padding / frame.scale);
 }
@@ -137,7 +142,7 @@ void TriangleBvh::Impl::write_bounds(std::uint32_t triangle, RTCBounds& bounds) 
 
 void TriangleBvh::Impl::build() {
     set_frame();
-    device = embree::make_device();
+    device = embree::make_device(ray_library_settings().c_str());
     rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
     scene = embree::Scene(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -160,9 +165,9 @@ void TriangleBvh::Impl::build() {
         if (limit >= query.fraction_limit) return;
         query.fraction_limit = limit;
         // Rounded up generously: a shorter ray must still reach everything up to the limit.
-        const double reach = (limit - query.clip_begin) * query.ray_per_fraction;
+        const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
         float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
-        tfar = std::min(tfar, round_up(std::max(reach, 0.0) * (1.0 + 0x1p-20)));
+        tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
     });
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
@@ -174,19 +179,18 @@ void TriangleBvh::Impl::build() {
     embree::check_device(device.get(), "building the hierarchy of a collider");
 }
 
-TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                         double curvature_allowance)
+TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach)
     : impl_(std::make_unique<Impl>()) {
     impl_->vertices = vertices;
     impl_->triangles = triangles;
-    impl_->allowance = curvature_allowance;
+    impl_->reach = reach;
     if (!triangles.empty()) impl_->build();
 }
 TriangleBvh::~TriangleBvh() = default;
 TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
 TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
 
-double TriangleBvh::curvature_allowance() const { return impl_->allowance; }
+double TriangleBvh::reach() const { return impl_->reach; }
 double TriangleBvh::slack() const { return impl_->slack; }
 std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.load()); }
 
@@ -196,7 +200,7 @@ void TriangleBvh::Impl::visit_all(Query& query) const {
     }
 }
 
-void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double reach) const {
+void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const {
     embree::QueryContext context;
     embree::init_context(context, &query);
     RTCRayHit ray{};
@@ -207,7 +211,7 @@ void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direct
     ray.ray.dir_y = static_cast<float>(direction.y);
     ray.ray.dir_z = static_cast<float>(direction.z);
     ray.ray.tnear = 0.0F;
-    ray.ray.tfar = round_up(reach * (1.0 + 0x1p-20)) + 0x1p-24F;
+    ray.ray.tfar = round_up(ray_length * (1.0 + 0x1p-20)) + 0x1p-24F;
     ray.ray.mask = 0xFFFFFFFFU;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree::intersect1(scene.get(), context, ray);
@@ -231,9 +235,11 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
     // A segment too short for single precision is a point as far as boxes go.
     const bool is_point = query.ray_per_fraction <= kShortestRay;
     const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
-    const double reach = (range->end - range->begin) * query.ray_per_fraction;
-    impl_->cast(query, frame.apply(from + range->begin * delta), direction, reach);
+    const double ray_length = (range->end - range->begin) * query.ray_per_fraction;
+    impl_->cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
 }
+
+void set_ray_library_settings(std::string settings) { ray_library_settings() = std::move(settings); }
 
 std::string ray_library_version() {
     const embree::Device device = embree::make_device();

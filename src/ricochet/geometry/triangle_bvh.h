@@ -1,7 +1,7 @@
 /// \file
 /// Which triangles may a segment touch? A bounding volume hierarchy over padded boxes; the ray library lives behind it.
 ///
-/// The hierarchy works in single precision and only proposes: every triangle that comes within the curvature allowance
+/// The hierarchy works in single precision and only proposes: every triangle that comes within the reach
 /// of the segment (in exact arithmetic) is visited, and some that do not. Nothing that the ray library computes about
 /// triangles is used, so results do not depend on its version, instruction set or layout.
 #pragma once
@@ -24,14 +24,14 @@ public:
     using Visit = double (*)(void* context, std::uint32_t triangle);
 
     /// Builds the hierarchy with all threads. `vertices` and `triangles` must outlive it, be finite and, after
-    /// centring, below kLargestCoordinate. curvature_allowance (m, >= 0): paths may bulge that far off the segments
+    /// centring, below kLargestCoordinate. reach (m, >= 0): paths may bulge that far off the segments
     /// that are asked about. Throws RunError when memory is short.
-    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double curvature_allowance);
+    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach);
     ~TriangleBvh();
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
 
-    /// Visits every triangle whose distance from the segment [from, to] is at most curvature_allowance() + slack() (and
+    /// Visits every triangle whose distance from the segment [from, to] is at most reach() + slack() (and
     /// possibly more), up to the narrowed fraction, in unspecified order. Safe from any number of threads. Both ends
     /// must be finite.
     void visit(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
@@ -45,7 +45,7 @@ public:
     }
 
     /// m, as given.
-    [[nodiscard]] double curvature_allowance() const;
+    [[nodiscard]] double reach() const;
     /// m, what the boxes allow for places beside the segment (see kBoxSlack).
     [[nodiscard]] double slack() const;
     /// Bytes that the hierarchy holds (without the vertices and triangles).
@@ -55,6 +55,10 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Settings that hierarchies built from now on hand to the ray library, in its own words ("isa=sse2"); empty: its
+/// defaults. No result depends on them, which is what they are for: to show it. Not while hierarchies are being built.
+void set_ray_library_settings(std::string settings);
 
 /// Name, version and instruction sets of the ray library, for `--version` and reports.
 [[nodiscard]] std::string ray_library_version();

@@ -21,14 +21,25 @@ struct TriangleMesh {
     std::vector<Triangle> triangles;  ///< indices below vertices.size()
 };
 
+/// The names under which an OBJ file lists a face, as indices into PolygonMesh::group_names; 0 where there is none.
+struct FaceGroup {
+    std::uint32_t material = 0;  ///< of `usemtl`
+    std::uint32_t group = 0;     ///< of `g`, with all its names as they stand
+    std::uint32_t object = 0;    ///< of `o`
+
+    bool operator==(const FaceGroup&) const = default;
+    auto operator<=>(const FaceGroup&) const = default;
+};
+
 /// Faces of any valence as a file lists them, before triangulation.
 struct PolygonMesh {
     std::vector<Vec3> vertices;  ///< positions, finite
     std::vector<std::uint32_t>
         face_offsets;                    ///< face f has corners [face_offsets[f], face_offsets[f + 1]); size faces + 1
     std::vector<std::uint32_t> corners;  ///< vertex index of every corner
-    std::vector<std::uint32_t> face_groups;  ///< index into group_names per face; empty when the file names no groups
-    std::vector<std::string> group_names;    ///< OBJ g/o/usemtl names in order of first use
+    std::vector<std::uint32_t> face_groups;  ///< index into groups per face; empty when the file names no groups
+    std::vector<FaceGroup> groups;           ///< the combinations of names that faces have, in order of first use
+    std::vector<std::string> group_names;    ///< the names, each once; the first is the empty one
 
     [[nodiscard]] std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
 };

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "ricochet/core/atomic_file.h"
-#include "ricochet/io/run_files.h"
 
 namespace ricochet {
 namespace {
@@ -14,7 +13,8 @@ constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::filesystem::path folder) : folder_(std::move(folder)), thread_([this] { work(); }) {}
+FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files)
+    : folder_(std::move(folder)), files_(files), thread_([this] { work(); }) {}
 
 FrameWriter::~FrameWriter() {
     {
@@ -69,7 +69,7 @@ void FrameWriter::work() {
 }
 
 void FrameWriter::write_one(const Frame& frame) {
-    const std::string name = frame_file_name(frame.step);
+    const std::string name = files_.file_name(frame.step);
     bytes_since_series_ += write_vtp(folder_ / name, frame.data);
     series_.push_back({frame.data.time, 0, name});
     const std::size_t series_bytes = 100 * series_.size();
@@ -77,7 +77,7 @@ void FrameWriter::write_one(const Frame& frame) {
 }
 
 void FrameWriter::write_series() {
-    write_file(folder_ / kParticleSeriesFile, pvd_text(series_));
+    write_file(folder_ / files_.list, pvd_text(series_));
     listed_ = series_.size();
     bytes_since_series_ = 0;
 }

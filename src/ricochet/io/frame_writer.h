@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "ricochet/io/run_files.h"
 #include "ricochet/io/vtk.h"
 
 namespace ricochet {
@@ -21,7 +22,7 @@ class FrameWriter {
 public:
     static constexpr std::size_t kQueueLength = 2;
 
-    explicit FrameWriter(std::filesystem::path folder);
+    explicit FrameWriter(std::filesystem::path folder, FileSeries files = kParticleSeries);
     /// Gives up what is not yet written.
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
@@ -46,6 +47,7 @@ private:
     void stop();
 
     std::filesystem::path folder_;
+    FileSeries files_;
     std::vector<PvdEntry> series_;
     std::uint64_t bytes_since_series_ = 0;
     std::size_t listed_ = 0;  // entries of series_ that are in the series file

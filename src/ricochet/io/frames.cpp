@@ -23,9 +23,14 @@ std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
     return {{"hits", as_signed(totals.hits)}, {"impulse", totals.impulse}};
 }
 
+// A shape with a formula is one surface: every triangle that shows it has the whole surface's totals.
+TriangleTotals repeated(const TriangleTotals& totals, std::size_t count) {
+    return {std::vector<std::uint64_t>(count, totals.hits[0]), std::vector<Vec3>(count, totals.impulse[0])};
+}
+
 }  // namespace
 
-VtkPolyData particle_frame(const Particles& particles, double time) {
+VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres) {
     const std::vector<std::uint32_t> order = particles.order_by_id();
     std::vector<double> age = gathered(particles.birth_time, order);
     for (double& value : age) value = time - value;
@@ -39,7 +44,9 @@ VtkPolyData particle_frame(const Particles& particles, double time) {
                           {"age", std::move(age)},
                           {"contacts", gathered(particles.contacts, order)},
                           {"resting", gathered(particles.resting, order)},
+                          {"frozen", gathered(particles.frozen, order)},
                           {"unsimulated_time", gathered(particles.unsimulated_time, order)}};
+    if (has_spheres) frame.point_arrays.push_back({"spin", gathered(particles.spin, order)});
     return frame;
 }
 
@@ -48,7 +55,8 @@ VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& 
     frame.time = time;
     frame.points = mesh.vertices;
     frame.triangles = mesh.triangles;
-    frame.cell_arrays = total_arrays(totals);
+    const bool one_surface = totals.hits.size() == 1 && mesh.triangles.size() > 1;
+    frame.cell_arrays = total_arrays(one_surface ? repeated(totals, mesh.triangles.size()) : totals);
     return frame;
 }
 

@@ -11,8 +11,9 @@
 namespace ricochet {
 
 /// The particles at a time, in the order of their ids, with the arrays id, velocity, mass, radius, age, contacts,
-/// resting and unsimulated_time.
-[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time);
+/// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
+/// on it, see Simulation::has_spheres().
+[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres = false);
 
 /// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);

@@ -9,6 +9,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::string_view kFramePrefix = "particles_";
+constexpr std::string_view kContactPrefix = "contacts_";
 constexpr std::string_view kColliderPrefix = "collider_";
 constexpr std::string_view kExtension = ".vtp";
 
@@ -43,16 +44,23 @@ std::string_view without_partial_ending(std::string_view name) {
     return number(digits.substr(0, dash)) && number(digits.substr(dash + 1)) ? rest.substr(0, dot) : name;
 }
 
-}  // namespace
+std::string file_of_step(std::string_view prefix, std::uint64_t step) {
+    return fmt::format("{}{:06}{}", prefix, step, kExtension);
+}
 
-std::string frame_file_name(std::uint64_t step) { return fmt::format("{}{:06}{}", kFramePrefix, step, kExtension); }
-
-std::optional<std::uint64_t> step_of_frame_file(std::string_view name) {
-    const auto stem = stem_after(name, kFramePrefix);
+std::optional<std::uint64_t> step_of_file(std::string_view prefix, std::string_view name) {
+    const auto stem = stem_after(name, prefix);
     if (!stem) return std::nullopt;
     const auto step = number(*stem);
-    return step && frame_file_name(*step) == name ? step : std::nullopt;
+    return step && file_of_step(prefix, *step) == name ? step : std::nullopt;
 }
+
+}  // namespace
+
+std::string frame_file_name(std::uint64_t step) { return file_of_step(kFramePrefix, step); }
+std::optional<std::uint64_t> step_of_frame_file(std::string_view name) { return step_of_file(kFramePrefix, name); }
+std::string contact_file_name(std::uint64_t step) { return file_of_step(kContactPrefix, step); }
+std::optional<std::uint64_t> step_of_contact_file(std::string_view name) { return step_of_file(kContactPrefix, name); }
 
 std::string collider_file_name(std::size_t index, std::string_view name) {
     std::string plain(name.substr(0, 80));
@@ -73,7 +81,8 @@ std::optional<std::size_t> index_of_collider_file(std::string_view name) {
 bool is_run_file(std::string_view name) {
     const std::string_view finished = without_partial_ending(name);
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kParticleSeriesFile ||
-           finished == kColliderSeriesFile || step_of_frame_file(finished) || index_of_collider_file(finished);
+           finished == kColliderSeriesFile || finished == kContactSeriesFile || step_of_frame_file(finished) ||
+           step_of_contact_file(finished) || index_of_collider_file(finished);
 }
 
 }  // namespace ricochet

@@ -14,11 +14,25 @@ inline constexpr const char* kRunInfoFile = "run.json";         ///< what is bei
 inline constexpr const char* kSummaryFile = "summary.json";     ///< what came out; written at the end
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
+inline constexpr const char* kContactSeriesFile = "contacts.pvd";
 
 /// particles_NNNNNN.vtp; the number is the step.
 [[nodiscard]] std::string frame_file_name(std::uint64_t step);
 /// The step of a frame file's name; nothing when it is not one.
 [[nodiscard]] std::optional<std::uint64_t> step_of_frame_file(std::string_view name);
+
+/// contacts_NNNNNN.vtp; the number is the step after which it was written.
+[[nodiscard]] std::string contact_file_name(std::uint64_t step);
+/// The step of a contact file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_contact_file(std::string_view name);
+
+/// Files that follow each other in time, and the file that lists them.
+struct FileSeries {
+    std::string (*file_name)(std::uint64_t step);
+    const char* list;
+};
+inline constexpr FileSeries kParticleSeries{&frame_file_name, kParticleSeriesFile};
+inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFile};
 
 /// collider_NN_name.vtp; characters other than letters, digits, '-' and '_' become '_'.
 [[nodiscard]] std::string collider_file_name(std::size_t index, std::string_view name);

@@ -23,7 +23,7 @@ struct CameraInfo {
 /// One collider of the run.
 struct ColliderInfo {
     std::string name;
-    std::string type;            ///< "mesh" or "plane"
+    std::string type;            ///< see type_name()
     std::string file;            ///< its file in the run's folder
     std::uint32_t material = 0;  ///< index of its material
 };

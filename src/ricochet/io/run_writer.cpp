@@ -42,8 +42,7 @@ Box3 mesh_region(const Simulation& simulation) {
 std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
     std::vector<ColliderInfo> infos;
     for (const ColliderDescription& collider : simulation.colliders()) {
-        const bool plane = std::holds_alternative<PlaneShape>(collider.shape);
-        infos.push_back({collider.name, plane ? "plane" : "mesh", collider_file_name(infos.size(), collider.name),
+        infos.push_back({collider.name, type_name(collider.shape), collider_file_name(infos.size(), collider.name),
                          collider.material});
     }
     return infos;
@@ -60,7 +59,12 @@ Box3 particle_region(const SimulationSetup& setup) {
 }
 
 RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region)
-    : folder_(std::move(folder)), info_(std::move(info)), region_(region), frames_(folder_) {
+    : folder_(std::move(folder)),
+      info_(std::move(info)),
+      region_(region),
+      has_spheres_(simulation.has_spheres()),
+      frames_(folder_) {
+    if (simulation.options().record_contacts) contacts_.emplace(folder_, simulation);
     region_.include(mesh_region(simulation));
     info_.colliders = describe_colliders(simulation);
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
@@ -70,15 +74,21 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
     if (!series.empty()) write_file(folder_ / kColliderSeriesFile, pvd_text(series));
 }
 
+void RunWriter::add_step(const Simulation& simulation) {
+    if (contacts_) contacts_->add_step(simulation);
+}
+
 void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
-    frames_.submit(simulation.step_index(), particle_frame(simulation.particles(), simulation.time()));
+    if (contacts_) contacts_->write(simulation);
+    frames_.submit(simulation.step_index(), particle_frame(simulation.particles(), simulation.time(), has_spheres_));
     last_frame_ = simulation.step_index();
 }
 
 RunSummary RunWriter::finish(const Simulation& simulation) {
     write_frame(simulation);
     frames_.finish();
+    if (contacts_) contacts_->finish();
     write_colliders(simulation);
     RunSummary summary = summarize(simulation);
     summary.frames = frames_.submitted();

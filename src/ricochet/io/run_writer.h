@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/run_info.h"
 #include "ricochet/io/summary.h"
@@ -26,7 +27,11 @@ public:
     /// besides the meshes. Fills in info.colliders. Throws RunError when the disk does not take it.
     RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region);
 
-    /// Hands the present state over as a frame. Throws what an earlier frame's writing threw.
+    /// To be called after every step of a simulation that records its contacts, so that none is lost between frames;
+    /// no effect for others. Throws like ContactLog::add_step().
+    void add_step(const Simulation& simulation);
+    /// Hands the present state over as a frame, with the contacts since the one before where the simulation records
+    /// them. Throws what an earlier frame's writing threw.
     void write_frame(const Simulation& simulation);
     /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
     /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
@@ -40,7 +45,9 @@ private:
     RunInfo info_;
     Box3 region_;
     std::optional<std::uint64_t> last_frame_;
+    bool has_spheres_ = false;
     FrameWriter frames_;
+    std::optional<ContactLog> contacts_;
 };
 
 }  // namespace ricochet

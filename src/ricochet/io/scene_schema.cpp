@@ -107,6 +107,8 @@ Json value_schema(const KeySpec& key) {
             return {{"type", "object"},
                     {"propertyNames", {{"minLength", 1}}},
                     {"additionalProperties", reference_to(*key.content)}};
+        case ValueType::text_table:
+            return {{"type", "object"}, {"propertyNames", {{"minLength", 1}}}, {"additionalProperties", text_schema()}};
     }
     return {};
 }

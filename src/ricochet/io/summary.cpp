@@ -21,18 +21,19 @@ Json json_of(const ColliderSummary& collider) {
 void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["particles_emitted"] = statistics.emitted;
     json["expired"] = statistics.expired;
+    json["absorbed"] = statistics.absorbed;
     json["out_of_bounds"] = statistics.out_of_bounds;
     json["frozen"] = statistics.frozen;
     json["particle_steps"] = statistics.particle_steps;
     json["contacts"] = statistics.contacts;
     json["bounces_per_step_max"] = statistics.bounces_per_step_max;
     json["resting"] = statistics.resting;
+    json["asleep"] = statistics.asleep;
     json["unsimulated_time"] = statistics.unsimulated_time;
     json["budget_exhausted"] = statistics.budget_exhausted;
     json["started_inside"] = statistics.started_inside;
     json["stayed"] = statistics.stayed;
     json["lost_impulses"] = statistics.lost_impulses;
-    json["leaks"] = nullptr;  // known only to a run that verifies itself
 }
 
 ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
@@ -40,11 +41,11 @@ ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
     const TriangleTotals totals = simulation.triangle_totals(i);
     ColliderSummary summary;
     summary.name = collider.name;
-    summary.type = "plane";
-    if (const auto mesh = simulation.collider_mesh(i)) {
-        summary.type = "mesh";
-        summary.triangles = mesh->triangles.size();
-    }
+    summary.type = type_name(collider.shape);
+    // A plane and a shape with a formula are one surface, and no triangles that anything collides with.
+    const bool is_mesh =
+        std::holds_alternative<MeshShape>(collider.shape) || std::holds_alternative<CuboidShape>(collider.shape);
+    if (is_mesh) summary.triangles = simulation.collider_mesh(i)->triangles.size();
     summary.hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
     summary.impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
     return summary;
@@ -59,6 +60,7 @@ RunSummary summarize(const Simulation& simulation) {
     summary.simulated_time = simulation.time();
     summary.particles_alive = simulation.particles().size();
     summary.statistics = simulation.statistics();
+    if (simulation.options().verify) summary.leaks = simulation.statistics().violations;
     summary.kinetic_energy = simulation.kinetic_energy();
     summary.potential_energy = simulation.potential_energy();
     summary.state_hash = simulation.state_hash();
@@ -82,6 +84,7 @@ std::string summary_text(const RunSummary& summary) {
     json["interrupted"] = summary.interrupted;
     json["particles_alive"] = summary.particles_alive;
     add_statistics(json, summary.statistics);
+    json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);  // known only to a run that verifies itself
     json["kinetic_energy"] = summary.kinetic_energy;
     json["potential_energy"] = summary.potential_energy ? Json(*summary.potential_energy) : Json(nullptr);
     json["state_hash"] = fmt::format("{:016x}", summary.state_hash);

@@ -15,7 +15,7 @@ namespace ricochet {
 /// One collider's totals over the run.
 struct ColliderSummary {
     std::string name;
-    std::string type;  ///< "mesh" or "plane"
+    std::string type;  ///< see type_name()
     std::string file;  ///< the collider's file in the run's folder
     std::uint64_t triangles = 0;
     std::uint64_t hits = 0;
@@ -35,6 +35,7 @@ struct RunSummary {
     bool interrupted = false;
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
+    std::optional<std::uint64_t> leaks;      ///< violations that a verified run found; nothing without --verify
     double kinetic_energy = 0.0;             ///< J
     std::optional<double> potential_energy;  ///< J; nothing where a force has no potential
     std::uint64_t state_hash = 0;

@@ -5,12 +5,10 @@
 #include <limits>
 
 #include "ricochet/core/double_double.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
-
-/// Rounding that a projection onto a plane leaves in w . n, relative to |v|.
-constexpr double kProjectionRounding = 0x1p-48;
 
 DoubleDouble squared_length(const Vec3& v) {
     return two_product(v.x, v.x) + two_product(v.y, v.y) + two_product(v.z, v.z);
@@ -21,23 +19,75 @@ bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale)
                        [&](const Vec3& n) { return dot(w, n) >= -kProjectionRounding * scale; });
 }
 
+/// Solid sphere: the tangential impulse that stops the slip is 2/7 of the slip momentum; spin changes by 5/2 of the
+/// velocity change over the radius.
+constexpr double kSphereStick = 2.0 / 7.0;
+constexpr double kSphereSpinUp = 5.0 / 2.0;
+
+/// Exponential variate of mean 1.
+double exponential(RandomSequence& random) {
+    for (double whole = 0.0;; whole += 1.0) {
+        const double first = random.uniform();
+        double last = first;
+        int run = 1;
+        for (;; ++run) {
+            const double next = random.uniform();
+            if (next >= last) break;
+            last = next;
+        }
+        if (run % 2 == 1) return whole + first;
+    }
+}
+
 }  // namespace
 
-Vec3 bounce(const Vec3& v, const Vec3& n, double restitution, double friction) {
-    const double approach = -dot(v, n);
-    if (!(approach > 0.0)) return v;
-    Vec3 after = v + ((1.0 + restitution) * approach) * n;
+Vec3 slip_velocity(const Motion& motion, double radius, const Vec3& n) {
+    const Vec3 tangential = motion.velocity - dot(motion.velocity, n) * n;
+    return radius > 0.0 ? tangential - radius * cross(motion.spin, n) : tangential;
+}
+
+Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction) {
+    const double approach = -dot(motion.velocity, n);
+    if (!(approach > 0.0)) return motion;
+    Motion after = motion;
+    after.velocity += ((1.0 + restitution) * approach) * n;
     if (friction > 0.0) {
-        const Vec3 tangential = v + approach * n;
-        const double slip = length(tangential);
-        const double loss = friction * (1.0 + restitution) * approach;
-        after -= slip <= loss ? tangential : (loss / slip) * tangential;
+        const Vec3 slip = slip_velocity(motion, radius, n);
+        const double speed = length(slip);
+        const double most = friction * (1.0 + restitution) * approach;
+        const double sticking = radius > 0.0 ? kSphereStick * speed : speed;
+        if (speed > 0.0) {
+            const Vec3 change = slip * (-std::min(most, sticking) / speed);
+            after.velocity += change;
+            if (radius > 0.0) after.spin -= (kSphereSpinUp / radius) * cross(n, change);
+        }
     } else if (restitution == 1.0) {
         // The rounded normal is not exactly of unit length; without this its error would add up over many bounces. The
         // correction itself must not lean to one side, hence the exact products.
-        after += (0.5 * (squared_length(v) - squared_length(after)).hi / length_squared(after)) * after;
+        const DoubleDouble gained = squared_length(motion.velocity) - squared_length(after.velocity);
+        after.velocity += (0.5 * gained.hi / length_squared(after.velocity)) * after.velocity;
     }
     return after;
+}
+
+Vec3 cosine_direction(const Vec3& n, RandomSequence& random) {
+    // Uniform on the disk, projected up to the hemisphere (Malley's method, e.g. Pharr, Jakob, Humphreys, "Physically
+    // Based Rendering").
+    const Vec3 disk = random.in_unit_disk();
+    const auto [t, b] = tangent_frame(n);
+    const double height = std::sqrt(std::max(0.0, 1.0 - disk.x * disk.x - disk.y * disk.y));
+    return disk.x * t + disk.y * b + height * n;
+}
+
+Vec3 thermal_velocity(const Vec3& n, double thermal_speed, RandomSequence& random) {
+    const double normal = std::sqrt(2.0 * exponential(random));
+    const double tangential = std::sqrt(2.0 * exponential(random));
+    Vec3 direction;
+    do direction = random.in_unit_disk();
+    while (direction == Vec3{});
+    direction = normalized(direction);
+    const auto [t, b] = tangent_frame(n);
+    return thermal_speed * (normal * n + tangential * (direction.x * t + direction.y * b));
 }
 
 // The closest point of a cone of up to three half spaces lies on one of its faces: in space, on a plane, on the line of

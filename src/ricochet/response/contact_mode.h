@@ -1,26 +1,45 @@
 /// \file
-/// Resting and sliding contact: what a particle does while something presses it onto a surface.
+/// Resting, sliding and rolling contact: what a particle does while something presses it onto a surface. Pure
+/// functions.
 #pragma once
 
 #include <span>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/response/bounce.h"
 
 namespace ricochet {
 
 /// One stretch of contact with constant acceleration along the surface.
-struct Slide {
-    Vec3 velocity;          ///< at the start, along the surface, m/s
-    Vec3 acceleration;      ///< along the surface, friction included, m/s^2
-    double duration = 0.0;  ///< s; shorter than asked for when sliding stops within
-    bool stops = false;     ///< sliding comes to a stop at the end of the duration
-    bool at_rest = false;   ///< held by friction (or by nothing at all) for the whole duration
+struct Stretch {
+    Motion motion;           ///< at the start, along the surface
+    Vec3 acceleration;       ///< along the surface, friction included, m/s^2
+    Vec3 spin_acceleration;  ///< rad/s^2
+    double duration = 0.0;   ///< s; shorter than asked for when slip or motion ends within
+    bool rolls = false;      ///< from its end on the sphere rolls without slip (set at the end of the stretch)
+    bool stops = false;      ///< motion comes to a stop at the end
+    bool at_rest = false;    ///< nothing moves for the whole duration
 };
 
-/// Plans the contact of a particle with velocity v and acceleration a against planes with the given unit normals (at
-/// most three), for at most `duration` seconds: velocity and acceleration lose what presses into the planes, Coulomb
-/// friction with the pressing acceleration holds or brakes.
-[[nodiscard]] Slide plan_slide(const Vec3& v, const Vec3& a, std::span<const Vec3> normals, double friction,
-                               double duration);
+/// The grip of a surface while a particle is pressed on.
+struct Grip {
+    double friction = 0.0;          ///< Coulomb coefficient
+    double rolling_friction = 0.0;  ///< see Material
+    double pressure = 1.0;  ///< factor on the pressing force (a bounce cascade presses with less than the full force)
+};
+
+/// Plans the contact of a particle under acceleration a with planes of the given unit normals (at most three), for at
+/// most `duration` seconds: velocity and acceleration lose what presses into the planes, friction holds, brakes the
+/// slip, or keeps a sphere rolling (5/7 of the acceleration). Against several planes at once a sphere is braked like a
+/// point, its spin left alone.
+[[nodiscard]] Stretch plan_stretch(const Motion& motion, double radius, const Vec3& a, std::span<const Vec3> normals,
+                                   const Grip& grip, double duration);
+
+/// Spin of a sphere that rolls with velocity v on a surface of unit normal n; what it had about the normal is kept.
+[[nodiscard]] Vec3 rolling_spin(const Motion& motion, double radius, const Vec3& n);
+
+/// Time that the rest of a bounce cascade takes, s: the flights 2 v e^k / pressing, k = 0, 1, ..., summed. v: rebound
+/// speed; pressing: acceleration towards the surface, > 0; restitution < 1.
+[[nodiscard]] double cascade_duration(double rebound_speed, double pressing, double restitution);
 
 }  // namespace ricochet

@@ -51,8 +51,6 @@ void build_bounds(const SceneContext& context, SimulationSetup& setup) {
     setup.bounds = box;
 }
 
-OutputOptions output_of(const ObjectView& view) { return {view.text("format"), view.whole_number("every")}; }
-
 CameraDescription camera_of(const SceneContext& context, const ObjectView& view) {
     constexpr double kSmallestSine = 1e-6;  // of the angle between the view and up
     CameraDescription camera;
@@ -81,7 +79,9 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_colliders(context, scene.setup);
     build_emitters(context, scene.setup);
     build_particles(context, scene.setup);
-    scene.output = output_of(context.root().object("output"));
+    const ObjectView output = context.root().object("output");
+    scene.output = {output.text("format"), output.whole_number("every")};
+    scene.setup.options.record_contacts = output.boolean("contacts");
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"));
     if (scene.setup.particles.empty() && scene.setup.emitters.empty()) {
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");

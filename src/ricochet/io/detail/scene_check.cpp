@@ -161,6 +161,7 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
         case ValueType::list:
         case ValueType::list_or_file:
         case ValueType::table:
+        case ValueType::text_table:
             break;
     }
     return std::nullopt;
@@ -216,6 +217,7 @@ private:
                 }
                 return;
             case ValueType::table:
+            case ValueType::text_table:
                 check_table(node, key, path);
                 return;
             default:
@@ -238,9 +240,15 @@ private:
             refuse(node, path, found_expected(node, key));
             return;
         }
+        const KeySpec text{.name = "", .type = ValueType::text, .description = ""};
         for (JsonMember& member : *members) {
             if (member.key.empty()) diagnostics_.error(member.key_place, path, "found an empty name, expected a name");
-            check_object(member.value, *key.content, path_of_key(path, member.key));
+            const std::string member_path = path_of_key(path, member.key);
+            if (key.type == ValueType::table) {
+                check_object(member.value, *key.content, member_path);
+            } else {
+                check_value(member.value, text, member_path);
+            }
         }
     }
 

@@ -45,6 +45,15 @@ std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& vi
     }
 }
 
+const MeshGroups* SceneContext::load_groups(const ObjectView& view) {
+    if (!view.has("file")) return nullptr;
+    try {
+        return &meshes_.groups(file_of(view));
+    } catch (const InputError&) {
+        return nullptr;  // load_mesh() says why
+    }
+}
+
 Placement SceneContext::placement_of(const ObjectView& view) {
     Placement placement;
     placement.position = view.vector("position");

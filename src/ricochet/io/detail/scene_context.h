@@ -35,6 +35,8 @@ public:
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
     /// The mesh that the key "file" names; null pointer after reporting why there is none.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
+    /// The groups of the mesh that the key "file" names; null pointer where load_mesh() gives one.
+    [[nodiscard]] const MeshGroups* load_groups(const ObjectView& view);
     /// position, rotation and scale.
     [[nodiscard]] static Placement placement_of(const ObjectView& view);
 

@@ -81,6 +81,7 @@ EmitterDescription emitter_of(const ObjectView& view) {
     emitter.speed = view.pair("speed");
     emitter.velocity = view.vector("velocity");
     emitter.mass = view.pair("mass");
+    emitter.radius = view.pair("particle_radius");
     if (view.has("lifetime")) emitter.lifetime = view.pair("lifetime");
     return emitter;
 }

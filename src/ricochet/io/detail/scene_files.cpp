@@ -65,20 +65,26 @@ std::string read_bytes(const fs::path& path, std::uint64_t largest) {
     return bytes;
 }
 
-std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path) {
+const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
     std::error_code ignored;
     const auto [place, is_new] = entries_.try_emplace(fs::weakly_canonical(path, ignored));
     Entry& entry = place->second;
     if (is_new) {
         try {
             if (const auto problem = file_problem(path)) throw InputError(*problem);
-            entry.mesh = std::make_shared<const TriangleMesh>(read_mesh(path).mesh);
+            ImportedMesh imported = read_mesh(path);
+            entry.groups = groups_of(imported);
+            entry.mesh = std::make_shared<const TriangleMesh>(std::move(imported.mesh));
         } catch (const InputError& error) {
             entry.error = error.what();
         }
     }
     if (!entry.mesh) throw InputError(entry.error);
-    return entry.mesh;
+    return entry;
 }
+
+std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path) { return entry(path).mesh; }
+
+const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path).groups; }
 
 }  // namespace ricochet::detail

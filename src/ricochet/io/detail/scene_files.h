@@ -10,6 +10,7 @@
 #include <string>
 
 #include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/io/detail/mesh_groups.h"
 
 namespace ricochet::detail {
 
@@ -25,12 +26,17 @@ class MeshLibrary {
 public:
     /// Throws InputError, with the reader's message.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path);
+    /// The same for the groups that the file names.
+    [[nodiscard]] const MeshGroups& groups(const std::filesystem::path& path);
 
 private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
+        MeshGroups groups;
         std::string error;  ///< where it could not be read
     };
+    [[nodiscard]] const Entry& entry(const std::filesystem::path& path);
+
     std::map<std::filesystem::path, Entry> entries_;
 };
 

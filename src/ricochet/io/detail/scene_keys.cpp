@@ -38,8 +38,8 @@ const ObjectSpec& simulation_spec() {
              .fallback = "\"ballistic\"",
              .choices = {{"symplectic_euler", "the step's force first, then a straight line"},
                          {"ballistic", "a parabola: exact when the acceleration is constant"},
-                         {"midpoint", "second order", Built::no},
-                         {"rk4", "fourth order", Built::no}}},
+                         {"midpoint", "the explicit midpoint method: second order"},
+                         {"rk4", "the classical Runge-Kutta method: fourth order"}}},
             {.name = "response",
              .type = ValueType::choice,
              .description = "How impacts are answered.",
@@ -102,27 +102,48 @@ const ObjectSpec& material_spec() {
              .description = "Speed of the rebound over speed of the approach, along the normal.",
              .range = {.lower = 0.0, .upper = 1.0},
              .fallback = "1"},
+            {.name = "restitution_threshold",
+             .description = "Below this speed of approach the restitution falls linearly to 0.",
+             .unit = "m/s",
+             .range = kNotNegative,
+             .fallback = "0"},
             {.name = "friction",
              .description = "Coulomb's coefficient, for impacts and for sliding.",
              .range = kNotNegative,
+             .fallback = "0"},
+            {.name = "rolling_friction",
+             .description = "Moment that resists rolling, over radius times normal force; for particles with a radius.",
+             .range = kNotNegative,
+             .fallback = "0"},
+            {.name = "diffuse",
+             .description = "Accommodation: fraction of the impacts that are reflected by the cosine law.",
+             .range = {.lower = 0.0, .upper = 1.0},
+             .fallback = "0"},
+            {.name = "wall_temperature",
+             .description = "Diffuse reflections leave with the thermal speeds of a wall of this temperature.",
+             .unit = "K",
+             .range = kPositive,
+             .without = "diffuse reflections keep the speed of arrival"},
+            {.name = "absorption",
+             .description = "Fraction of the impacts that remove the particle.",
+             .range = {.lower = 0.0, .upper = 1.0},
              .fallback = "0"},
         }};
     return spec;
 }
 
 const ObjectSpec& rotation_spec() {
-    static const ObjectSpec spec{
-        .title = "rotation",
-        .description = "A turn about an axis through the mesh's own origin, by the right-hand rule.",
-        .keys = {
-            {.name = "axis",
-             .type = ValueType::vector,
-             .description = "Direction of the axis, of any length.",
-             .range = kCoordinate,
-             .required = true,
-             .not_zero = true},
-            {.name = "degrees", .description = "Angle.", .unit = "degrees", .required = true},
-        }};
+    static const ObjectSpec spec{.title = "rotation",
+                                 .description = "A turn about an axis through the own origin, by the right-hand rule.",
+                                 .keys = {
+                                     {.name = "axis",
+                                      .type = ValueType::vector,
+                                      .description = "Direction of the axis, of any length.",
+                                      .range = kCoordinate,
+                                      .required = true,
+                                      .not_zero = true},
+                                     {.name = "degrees", .description = "Angle.", .unit = "degrees", .required = true},
+                                 }};
     return spec;
 }
 
@@ -130,30 +151,70 @@ std::vector<KeySpec> placement_keys(std::string_view needs) {
     return {
         {.name = "position",
          .type = ValueType::vector,
-         .description = "Where the mesh's origin is put; scale and rotation come first.",
+         .description = "Where its origin is put; scale and rotation come first.",
          .unit = "m",
          .range = kCoordinate,
          .fallback = "[0, 0, 0]",
          .needs = needs},
         {.name = "rotation",
          .type = ValueType::object,
-         .description = "Turns the mesh.",
+         .description = "Turns it.",
          .without = "not turned",
          .needs = needs,
          .content = &rotation_spec()},
         {.name = "scale",
          .type = ValueType::scale,
-         .description = "Factor, or one a mesh axis; a negative one mirrors.",
+         .description = "Factor, or one for each of its own axes; a negative one mirrors.",
          .range = kCoordinate,
          .fallback = "1",
          .needs = needs},
     };
 }
 
+KeySpec center_key() {
+    return {.name = "center",
+            .type = ValueType::vector,
+            .description = "Its centre.",
+            .unit = "m",
+            .range = kCoordinate,
+            .fallback = "[0, 0, 0]"};
+}
+
+KeySpec radius_key() {
+    return {.name = "radius", .description = "Its radius.", .unit = "m", .range = kLength, .required = true};
+}
+
+KeySpec height_key() {
+    return {.name = "height", .description = "Its height.", .unit = "m", .range = kLength, .required = true};
+}
+
+KeySpec size_key() {
+    return {.name = "size",
+            .type = ValueType::vector,
+            .description = "Full edge lengths.",
+            .unit = "m",
+            .range = kLength,
+            .required = true};
+}
+
+// A shape's own measures, then where it stands.
+std::vector<KeySpec> placed_keys(std::vector<KeySpec> keys) {
+    for (KeySpec& key : placement_keys("")) keys.push_back(std::move(key));
+    return keys;
+}
+
 std::vector<KeySpec> mesh_collider_keys() {
     std::vector<KeySpec> keys = {
         {.name = "file", .type = ValueType::file, .description = "The mesh: OBJ, PLY, STL or OFF.", .required = true}};
     for (KeySpec& key : placement_keys("")) keys.push_back(std::move(key));
+    keys.push_back({.name = "group_materials",
+                    .type = ValueType::text_table,
+                    .description =
+                        "Materials of parts of an OBJ mesh: names that the file gives to its faces, each with "
+                        "one of the names in `materials`. A face goes by its `usemtl` name; where that is not "
+                        "listed by its `g` name (the whole line, then word by word), then by its `o` name. "
+                        "Faces without a listed name take the collider's material.",
+                    .without = "the collider's material everywhere"});
     keys.push_back({.name = "motion", .type = ValueType::list, .description = "Keyframes.", .built = Built::no});
     return keys;
 }
@@ -191,6 +252,13 @@ const ObjectSpec& collider_spec() {
             {.name = "mesh",
              .description = "A triangle mesh from a file, open or closed.",
              .keys = mesh_collider_keys()},
+            {.name = "sphere",
+             .description = "A ball about its own origin; an ellipsoid when the scale differs by axis.",
+             .keys = placed_keys({radius_key()})},
+            {.name = "cylinder",
+             .description = "A cylinder with flat caps about its own z axis, its middle at the origin.",
+             .keys = placed_keys({radius_key(), height_key()})},
+            {.name = "box", .description = "A box about its own origin.", .keys = placed_keys({size_key()})},
         }};
     return spec;
 }
@@ -263,7 +331,8 @@ std::vector<KeySpec> launch_keys() {
          .description = "Radius of a particle.",
          .unit = "m",
          .range = kNotNegative,
-         .built = Built::only_zero},
+         .low_end = kNotNegative,
+         .fallback = "0"},
     };
 }
 
@@ -275,19 +344,6 @@ std::vector<KeySpec> emitter_keys() {
     for (KeySpec& key : schedule_keys()) keys.push_back(std::move(key));
     for (KeySpec& key : launch_keys()) keys.push_back(std::move(key));
     return keys;
-}
-
-KeySpec center_key() {
-    return {.name = "center",
-            .type = ValueType::vector,
-            .description = "Its centre.",
-            .unit = "m",
-            .range = kCoordinate,
-            .fallback = "[0, 0, 0]"};
-}
-
-KeySpec radius_key() {
-    return {.name = "radius", .description = "Its radius.", .unit = "m", .range = kLength, .required = true};
 }
 
 std::vector<KeySpec> mesh_emitter_keys() {
@@ -361,12 +417,13 @@ const ObjectSpec& particle_spec() {
              .range = kCoordinate,
              .fallback = "[0, 0, 0]"},
             {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
-            {.name = "radius",
-             .description = "Its radius.",
-             .unit = "m",
-             .range = kNotNegative,
-             .fallback = "0",
-             .built = Built::only_zero},
+            {.name = "radius", .description = "Its radius.", .unit = "m", .range = kNotNegative, .fallback = "0"},
+            {.name = "spin",
+             .type = ValueType::vector,
+             .description = "Its angular velocity; for particles with a radius.",
+             .unit = "rad/s",
+             .range = kCoordinate,
+             .fallback = "[0, 0, 0]"},
         }};
     return spec;
 }
@@ -406,6 +463,10 @@ const ObjectSpec& output_spec() {
              .description = "Steps from one frame to the next. The last state is always written.",
              .range = {.lower = 1.0, .upper = 4294967295.0},
              .fallback = "1"},
+            {.name = "contacts",
+             .type = ValueType::boolean,
+             .description = "Write every impact, as points with their columns, once a frame.",
+             .fallback = "false"},
         }};
     return spec;
 }
@@ -620,6 +681,8 @@ std::string expectation(const KeySpec& key) {
             return "a list [...] of objects, or {\"file\": ...}";
         case ValueType::table:
             return fmt::format("an object {{\"name\": {{...}}}} ({} by name)", key.content->title);
+        case ValueType::text_table:
+            return "an object {\"name\": \"text\"}";
     }
     return "";
 }

@@ -27,6 +27,7 @@ enum class ValueType {
     list,          ///< a list of objects of KeySpec::content
     list_or_file,  ///< the same, or {"file": ...}
     table,         ///< an object whose keys are names and whose values are objects of KeySpec::content
+    text_table,    ///< an object whose keys are names and whose values are texts that are not empty
 };
 
 /// Allowed numbers (or vector components).

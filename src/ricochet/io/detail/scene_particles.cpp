@@ -55,6 +55,7 @@ void build_particles(SceneContext& context, SimulationSetup& setup) {
         particle.velocity = view.vector("velocity");
         particle.mass = view.number("mass");
         particle.radius = view.number("radius");
+        particle.spin = view.vector("spin");
         setup.particles.push_back(particle);
     }
     warn_about_particles_outside(context, setup);

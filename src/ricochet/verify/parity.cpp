@@ -1,4 +1,4 @@
-#include "support/parity.h"
+#include "ricochet/verify/parity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,41 +6,19 @@
 #include <string>
 #include <utility>
 
-#include "support/exact_oracle.h"
+#include "ricochet/verify/detail/meeting.h"
+#include "ricochet/verify/detail/signs.h"
 
-namespace ricochet::testing {
+namespace ricochet {
 namespace {
 
-// Both determinants below pass at most 8 roundings a term; 16 u leaves ample room for the rounding of the bound itself.
-constexpr double kFilter = 0x1p-49;
+using verify::planar_sign;
+using verify::spatial_sign;
 
-/// Sign of (b - a) x (p - a) in the plane of x and y.
-int planar_orientation(const Vec3& a, const Vec3& b, const Vec3& p) {
-    const double first = (b.x - a.x) * (p.y - a.y);
-    const double second = (b.y - a.y) * (p.x - a.x);
-    if (first == 0.0 && second == 0.0) return 0;  // a difference is zero only when it is exactly
-    const double determinant = first - second;
-    if (std::fabs(determinant) > kFilter * (std::fabs(first) + std::fabs(second))) return determinant > 0.0 ? 1 : -1;
-    const Rational difference =
-        (exact(b.x) - exact(a.x)) * (exact(p.y) - exact(a.y)) - (exact(b.y) - exact(a.y)) * (exact(p.x) - exact(a.x));
-    return sign_of(difference);
-}
-
-/// The sign of planar_orientation when p moves by (e, e^2), e positive and infinitesimal, and was on the line of a and
-/// b.
-int perturbed_orientation(const Vec3& a, const Vec3& b) {
+/// The sign of planar_sign when p moves by (e, e^2), e positive and infinitesimal, and was on the line of a and b.
+int perturbed_sign(const Vec3& a, const Vec3& b) {
     if (b.y != a.y) return b.y > a.y ? -1 : 1;
     return b.x > a.x ? 1 : -1;
-}
-
-/// Sign of (b - a) x (c - a) . (p - a).
-int spatial_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-    const Vec3 u = b - p, v = c - p, w = a - p;
-    const double determinant = dot(u, cross(w, v));
-    const Vec3 minors{std::fabs(w.y * v.z) + std::fabs(w.z * v.y), std::fabs(w.z * v.x) + std::fabs(w.x * v.z),
-                      std::fabs(w.x * v.y) + std::fabs(w.y * v.x)};
-    if (std::fabs(determinant) > kFilter * dot(abs(u), minors)) return determinant > 0.0 ? 1 : -1;
-    return sign_of(exact_orient3d(a, b, c, p));
 }
 
 using Position = std::array<double, 3>;
@@ -92,7 +70,8 @@ void ParityOracle::add_faces(const TriangleMesh& mesh) {
             face.corners[i] = permuted(mesh.vertices[t[i]]);
             face.box.include(face.corners[i]);
         }
-        face.area_sign = planar_orientation(face.corners[0], face.corners[1], face.corners[2]);
+        face.area_sign = planar_sign(0, 1, face.corners[0], face.corners[1], face.corners[2]);
+        if (verify::on_one_line(face.corners[0], face.corners[1], face.corners[2])) continue;
         box_.include(face.box);
         faces_.push_back(face);
     }
@@ -157,21 +136,21 @@ void ParityOracle::fill_columns() {
 
 ParityOracle::Crossing ParityOracle::crossing(const Face& face, const Vec3& point) {
     const auto& [a, b, c] = face.corners;
-    const std::array<int, 3> sides{planar_orientation(a, b, point), planar_orientation(b, c, point),
-                                   planar_orientation(c, a, point)};
+    const std::array<int, 3> sides{planar_sign(0, 1, a, b, point), planar_sign(0, 1, b, c, point),
+                                   planar_sign(0, 1, c, a, point)};
     if (face.area_sign == 0) {
         // Parallel to the ray: the perturbed ray passes beside it, but the point may lie on it.
         if (sides != std::array<int, 3>{0, 0, 0}) return Crossing::none;
-        return exact_segment_meets_triangle(point, point, a, b, c) ? Crossing::touches : Crossing::none;
+        return verify::meets(point, point, {a, b, c}) ? Crossing::touches : Crossing::none;
     }
     for (const int side : sides) {
         if (side * face.area_sign < 0) return Crossing::none;
     }
-    const int height = spatial_orientation(a, b, c, point) * face.area_sign;  // of the point over the triangle
+    const int height = spatial_sign(a, b, c, point) * face.area_sign;  // of the point over the triangle
     if (height == 0) return Crossing::touches;
     if (height > 0) return Crossing::none;
     for (std::size_t i = 0; i < 3; ++i) {
-        if (sides[i] == 0 && perturbed_orientation(face.corners[i], face.corners[(i + 1) % 3]) != face.area_sign) {
+        if (sides[i] == 0 && perturbed_sign(face.corners[i], face.corners[(i + 1) % 3]) != face.area_sign) {
             return Crossing::none;
         }
     }
@@ -202,4 +181,4 @@ Side ParityOracle::side(const Vec3& point) const {
     return is_inside ? Side::inside : Side::outside;
 }
 
-}  // namespace ricochet::testing
+}  // namespace ricochet

@@ -1,0 +1,98 @@
+/// \file
+/// Private to the exact response: one particle on its way through one step.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "ricochet/response/contact_mode.h"
+#include "ricochet/response/exact.h"
+
+namespace ricochet {
+
+class Mover {
+public:
+    Mover(const ExactResponse& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
+        : rules_(rules),
+          particle_(particle),
+          state_(particle.state),
+          scratch_(scratch),
+          search_(rules.world_, scratch.contacts),
+          start_(particle.state.position),
+          first_leg_(scratch.legs.size()),
+          remaining_(duration) {}
+
+    MoveOutcome run();
+
+private:
+    // Flying (exact.cpp).
+    std::optional<Contact> follow(const Flight& flight);
+    void accept_chain();
+    [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings_.bounce_budget; }
+    void leave_surface(const Flight& flight);
+    void freeze();
+
+    // Impacts (mover_impact.cpp).
+    std::optional<Contact> answer(const Flight& flight, const Contact& contact);
+    void reflect(const Contact& contact);
+    void reflect_off(const ContactSurface& surface, const Material& material);
+    [[nodiscard]] Motion random_reflection(const ContactSurface& surface, const Material& material);
+    void push_out_of_corner(const Contact& contact);
+    void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
+    void record(const ContactSurface& surface, const Vec3& velocity_before);
+    [[nodiscard]] const Material& material_of(SurfaceId surface) const;
+
+    // Resting, sliding, rolling (mover_contact.cpp).
+    [[nodiscard]] const ContactSurface* support_of(const Flight& flight, const Contact& contact,
+                                                   const Motion& arriving) const;
+    std::optional<Contact> go_on_in_contact();
+    std::optional<Contact> stay_in_contact(const Flight& flight, const ContactSurface& support, const Motion& arriving);
+    std::optional<Contact> follow_surface(const ContactSurface& support, bool kicked);
+    std::optional<Contact> finish_cascade(const ContactSurface& support, bool& ended_early);
+    std::optional<Contact> spend_cascade(const ContactSurface& support, double left, bool& ended_early);
+    std::optional<Contact> travel_stretch(const Stretch& stretch, const ContactSurface& support, const Vec3& a,
+                                          bool& ended_early);
+    void land(const Motion& arriving, const Grip& grip);
+    void rest(SurfaceId support, const Vec3& a);
+    void wait(double duration, SurfaceId support, const Vec3& a);
+    [[nodiscard]] bool is_held(const Vec3& a, const ContactSurface& support) const;
+    [[nodiscard]] Flight flight_of(const Stretch& stretch, const ContactSurface& support) const;
+    [[nodiscard]] double time_on(const ContactSurface& support, const Path& path) const;
+    [[nodiscard]] Vec3 acceleration_now(const Flight& flight) const;
+    [[nodiscard]] Grip grip_of(SurfaceId surface) const;
+    void finish_stretch(const Stretch& stretch, double elapsed);
+
+    // What the particle touches.
+    void remember(const ContactSurface& surface);
+    void gather_touched(const Contact& contact);
+    void note_recent(SurfaceId surface);
+    void set_touched(std::size_t k, const ContactSurface& surface);
+    [[nodiscard]] double seam_turn() const;
+    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
+    [[nodiscard]] ContactSurface touched_surface(std::size_t k) const {
+        return {touched_.surfaces[k], touched_normals_[k], touched_flat_[k]};
+    }
+    [[nodiscard]] std::span<const Vec3> touched_normals() const {
+        return {touched_normals_.data(), static_cast<std::size_t>(touched_.count)};
+    }
+
+    const ExactResponse& rules_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    MoveScratch& scratch_;
+    ContactSearch search_;
+    Vec3 start_;  // where the step began
+    std::size_t first_leg_;
+    MoveOutcome outcome_;
+    double remaining_;
+    Support touched_;  // cascade_left unused
+    std::array<Vec3, 3> touched_normals_;
+    std::array<bool, 3> touched_flat_{};
+    std::array<SurfaceId, 6> recent_{};  // the last surfaces met: what else may be touched when contact begins
+    std::size_t recent_count_ = 0;       // ever noted
+    int slow_contacts_ = 0;              // in a row, all slower than the resting speed or without time between them
+    double remaining_at_contact_ = -1.0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,278 @@
+#include "ricochet/verify/detail/checked_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <cstddef>
+
+#include "ricochet/core/box3.h"
+
+namespace ricochet::verify {
+namespace {
+
+using Digits = boost::multiprecision::cpp_bin_float_50;
+
+/// Half axes closer than this, relative, are equal: a rotation rounds the columns of a uniform scale by about 2^-52.
+constexpr double kEqualAxes = 0x1p-49;
+
+/// Error of a local coordinate in doubles relative to the distance from the centre, and of a sum relative to its terms:
+/// some 6 roundings of 2^-53.
+constexpr double kRoughError = 0x1p-49;
+
+/// Room for rounding around the box of a shape, relative to its size and place.
+constexpr double kBoxSlack = 1e-12;
+
+/// Halvings in search of the multiplier: more would not change a double.
+constexpr int kHalvings = 120;
+
+/// Values (1 is the size of the shape) below which a place counts as on the surface: far above the errors of fifty
+/// digits, far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than that: legs that are
+/// free would be reported. Smaller than 1e-45: rounding would decide.
+const Digits kOnSurface("1e-36");
+
+template <class Real>
+using VectorOf = std::array<Real, 3>;
+
+template <class Real>
+Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+VectorOf<Digits> digits(const Vec3& v) { return {Digits(v.x), Digits(v.y), Digits(v.z)}; }
+VectorOf<Digits> times(const Digits& s, const VectorOf<Digits>& v) { return {s * v[0], s * v[1], s * v[2]}; }
+VectorOf<Digits> minus(const VectorOf<Digits>& u, const VectorOf<Digits>& v) {
+    return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+}
+VectorOf<Digits> unit(const VectorOf<Digits>& v) { return times(1 / sqrt(product(v, v)), v); }
+VectorOf<Digits> across(const VectorOf<Digits>& u, const VectorOf<Digits>& v) {
+    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+Digits square(const Digits& x) { return x * x; }
+double square(double x) { return x * x; }
+
+int sign_of(const Digits& x, const Digits& bound) { return (x > bound ? 1 : 0) - (x < -bound ? 1 : 0); }
+
+}  // namespace
+
+struct CheckedShape::Impl {
+    Impl(const AffineMap& map, bool is_cylinder);
+
+    [[nodiscard]] VectorOf<double> rough_local(const Vec3& p) const;
+    [[nodiscard]] VectorOf<Digits> local(const Vec3& p) const;
+    [[nodiscard]] int rough_side(const Vec3& p) const;
+    [[nodiscard]] int exact_side(const VectorOf<Digits>& y) const;
+    [[nodiscard]] Digits round_value(const VectorOf<Digits>& y) const;
+    [[nodiscard]] bool box_misses(const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const;
+    [[nodiscard]] bool is_certainly_clear(const Vec3& p, double least) const;
+    [[nodiscard]] Digits square_distance_from_round(const VectorOf<Digits>& y) const;
+    [[nodiscard]] Digits square_distance(const VectorOf<Digits>& y) const;
+
+    Vec3 center;
+    std::size_t round_axes;           ///< 3, or 2 where there are caps
+    VectorOf<double> half{};          ///< half axes, m
+    VectorOf<VectorOf<Digits>> axes;  ///< unit
+    VectorOf<Vec3> rough_axes;
+    double smallest = 0.0;  ///< round half axis
+    Box3 box;
+};
+
+CheckedShape::Impl::Impl(const AffineMap& map, bool is_cylinder)
+    : center(map.translation), round_axes(is_cylinder ? 2 : 3) {
+    VectorOf<VectorOf<Digits>> columns;
+    for (int i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        columns[k] = digits({map.row_x[i], map.row_y[i], map.row_z[i]});
+        half[k] = static_cast<double>(Digits(sqrt(product(columns[k], columns[k]))));
+    }
+    const auto [low, high] = std::minmax(half[0], half[1]);
+    const double third = round_axes == 3 ? half[2] : high;
+    const double middle = std::max(low, std::min(high, third));
+    smallest = std::min(low, third);
+    if (std::max(high, third) - smallest <= kEqualAxes * smallest) {
+        std::fill_n(half.begin(), round_axes, middle);
+        smallest = middle;
+    }
+    axes[0] = unit(columns[0]);
+    axes[1] = unit(minus(columns[1], times(product(columns[1], axes[0]), axes[0])));
+    axes[2] = across(axes[0], axes[1]);
+    Vec3 reach;
+    for (std::size_t i = 0; i < 3; ++i) {
+        rough_axes[i] = {static_cast<double>(axes[i][0]), static_cast<double>(axes[i][1]),
+                         static_cast<double>(axes[i][2])};
+        reach += half[i] * abs(rough_axes[i]);
+    }
+    reach += kBoxSlack * (reach + abs(center));
+    box.include(center - reach);
+    box.include(center + reach);
+}
+
+VectorOf<double> CheckedShape::Impl::rough_local(const Vec3& p) const {
+    const Vec3 w = p - center;
+    return {dot(rough_axes[0], w), dot(rough_axes[1], w), dot(rough_axes[2], w)};
+}
+
+VectorOf<Digits> CheckedShape::Impl::local(const Vec3& p) const {
+    const VectorOf<Digits> w = minus(digits(p), digits(center));
+    return {product(axes[0], w), product(axes[1], w), product(axes[2], w)};
+}
+
+/// Zero on the round part of the surface, negative inside.
+Digits CheckedShape::Impl::round_value(const VectorOf<Digits>& y) const {
+    Digits value = -1;
+    for (std::size_t i = 0; i < round_axes; ++i) value += square(Digits(y[i] / half[i]));
+    return value;
+}
+
+/// 0 when doubles leave doubt.
+int CheckedShape::Impl::rough_side(const Vec3& p) const {
+    const VectorOf<double> y = rough_local(p);
+    const double error = kRoughError * length(p - center);
+    double value = -1.0;
+    double bound = kRoughError;
+    for (std::size_t i = 0; i < round_axes; ++i) {
+        value += square(y[i] / half[i]);
+        bound += (kRoughError * square(y[i]) + (2.0 * std::fabs(y[i]) + error) * error) / square(half[i]);
+    }
+    if (value > 2.0 * bound) return 1;
+    const bool is_within = value < -2.0 * bound;
+    if (round_axes == 3) return is_within ? -1 : 0;
+    const double height = std::fabs(y[2]) - half[2];
+    const double cap_bound = 2.0 * (error + kRoughError * half[2]);
+    if (height > cap_bound) return 1;
+    return is_within && height < -cap_bound ? -1 : 0;
+}
+
+int CheckedShape::Impl::exact_side(const VectorOf<Digits>& y) const {
+    const int around = sign_of(round_value(y), kOnSurface);
+    if (round_axes == 3) return around;
+    return std::max(around, sign_of(Digits(abs(y[2]) / half[2] - 1), kOnSurface));
+}
+
+bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
+    const Vec3 lower = min(p, q), upper = max(p, q);
+    return lower.x > box.upper.x || upper.x < box.lower.x || lower.y > box.upper.y || upper.y < box.lower.y ||
+           lower.z > box.upper.z || upper.z < box.lower.z;
+}
+
+/// Is the whole segment outside? Its ends are. Between the planes of the caps the value has its least at one place.
+bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const {
+    const VectorOf<Digits> step = minus(to, from);
+    Digits first = 0;
+    Digits last = 1;
+    for (const int up : {1, -1}) {
+        if (round_axes == 3) break;
+        const Digits above = up * from[2] - half[2];
+        const Digits change = up * step[2];
+        if (change == 0 && above > 0) return true;
+        if (change > 0) last = std::min(last, Digits(-above / change));
+        if (change < 0) first = std::max(first, Digits(-above / change));
+    }
+    if (first > last) return true;
+    Digits slope = 0;
+    Digits curvature = 0;
+    for (std::size_t i = 0; i < round_axes; ++i) {
+        slope += from[i] * step[i] / square(Digits(half[i]));
+        curvature += square(Digits(step[i] / half[i]));
+    }
+    const Digits lowest = curvature == 0 ? first : std::clamp(Digits(-slope / curvature), first, last);
+    VectorOf<Digits> nearest = from;
+    for (std::size_t i = 0; i < 3; ++i) nearest[i] += lowest * step[i];
+    return round_value(nearest) > kOnSurface;
+}
+
+/// The map to the unit ball (or cylinder) stretches nothing by more than 1 / smallest half axis.
+bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
+    const VectorOf<double> y = rough_local(p);
+    double from_axis = 0.0;
+    for (std::size_t i = 0; i < round_axes; ++i) from_axis += square(y[i] / half[i]);
+    const double beside = smallest * (std::sqrt(from_axis) - 1.0);
+    const double above = round_axes == 2 ? std::fabs(y[2]) - half[2] : beside;
+    const double room = 1e-9 * (least + length(p - center) + half[0] + half[1] + half[2]);
+    return std::max(beside, above) > least + room || std::max(beside, above) < -least - room;
+}
+
+/// For every multiplier m > -smallest^2 the squared distance from the ellipsoid (or the cylinder's side) is at least
+/// sum y_i^2 m / (a_i^2 + m) - m, and equal to it for the best one (Lagrange duality of one quadratic constraint, which
+/// leaves no gap). An error of the multiplier, which is sought in doubles, counts by its square.
+Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y) const {
+    VectorOf<double> rough{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < round_axes; ++i) {
+        rough[i] = static_cast<double>(y[i]);
+        sum += square(rough[i] * half[i]);
+    }
+    // u = m + smallest^2; the bound rises while sum (y_i a_i / (a_i^2 - smallest^2 + u))^2 > 1.
+    double low = 0.0;
+    double high = std::sqrt(sum);
+    const auto rises = [&](double u) {
+        double squares = 0.0;
+        for (std::size_t i = 0; i < round_axes; ++i) {
+            const double excess = (half[i] - smallest) * (half[i] + smallest);
+            squares += square(rough[i] * half[i] / (excess + u));
+        }
+        return squares > 1.0;
+    };
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        if (!(middle > low && middle < high)) break;
+        (rises(middle) ? low : high) = middle;
+    }
+    const Digits u(high);
+    const Digits m = u - square(Digits(smallest));
+    Digits bound = -m;
+    for (std::size_t i = 0; i < round_axes; ++i) {
+        const Digits below = square(Digits(half[i])) + m;
+        if (below > 0) bound += square(y[i]) * m / below;
+    }
+    return bound;
+}
+
+/// Of a cylinder outside: across the nearer parts of side and cap; inside: from the nearer one.
+Digits CheckedShape::Impl::square_distance(const VectorOf<Digits>& y) const {
+    Digits around = square_distance_from_round(y);
+    if (round_axes == 3) return around;
+    const Digits height = abs(y[2]) - half[2];
+    const bool is_beside = round_value(y) > 0;
+    if (height > 0) return is_beside ? Digits(around + square(height)) : square(height);
+    return is_beside ? around : std::min(around, square(height));
+}
+
+CheckedShape::CheckedShape(const AffineMap& world_from_unit, bool is_cylinder)
+    : impl_(std::make_unique<Impl>(world_from_unit, is_cylinder)) {}
+CheckedShape::~CheckedShape() = default;
+CheckedShape::CheckedShape(CheckedShape&&) noexcept = default;
+CheckedShape& CheckedShape::operator=(CheckedShape&&) noexcept = default;
+
+int CheckedShape::side(const Vec3& p) const {
+    if (impl_->box_misses(p, p)) return 1;
+    const int rough = impl_->rough_side(p);
+    return rough != 0 ? rough : impl_->exact_side(impl_->local(p));
+}
+
+bool CheckedShape::meets(const Vec3& p, const Vec3& q) const {
+    if (impl_->box_misses(p, q)) return false;
+    const int of_p = side(p);
+    if (of_p == 0 || side(q) != of_p) return true;
+    return of_p > 0 && !impl_->is_apart(impl_->local(p), impl_->local(q));
+}
+
+/// The body is convex: a segment from its surface to an inner place is inside; one to an outer place is outside unless
+/// it dips in, and then it does so at once, also in the first 2^-40 of its length (or by less than that).
+bool CheckedShape::meets_after_start(const Vec3& p, const Vec3& q) const {
+    const int of_q = side(q);
+    if (of_q <= 0) return of_q == 0;
+    const VectorOf<Digits> from = impl_->local(p);
+    const VectorOf<Digits> to = impl_->local(q);
+    VectorOf<Digits> next = from;
+    for (std::size_t i = 0; i < 3; ++i) next[i] += (to[i] - from[i]) * Digits(0x1p-40);
+    return impl_->exact_side(next) <= 0 || !impl_->is_apart(next, to);
+}
+
+bool CheckedShape::is_nearer(const Vec3& p, double least) const {
+    if (impl_->is_certainly_clear(p, least)) return false;
+    return impl_->square_distance(impl_->local(p)) < square(Digits(least));
+}
+
+}  // namespace ricochet::verify

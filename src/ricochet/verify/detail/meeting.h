@@ -1,0 +1,25 @@
+/// \file
+/// Does a leg meet a surface? Exact, with the verifier's own signs.
+#pragma once
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet::verify {
+
+/// The corners of a triangle whose area is not zero.
+struct Corners {
+    Vec3 a;
+    Vec3 b;
+    Vec3 c;
+};
+
+/// True when the closed segment [p, q], which may be a point, and the closed triangle have a point in common.
+[[nodiscard]] bool meets(const Vec3& p, const Vec3& q, const Corners& triangle);
+
+/// The same for a segment whose start may lie on the triangle: true when any other point of it does.
+[[nodiscard]] bool meets_after_start(const Vec3& p, const Vec3& q, const Corners& triangle);
+
+/// About where [p, q] meets the triangle's plane (rounded); p when it runs in that plane.
+[[nodiscard]] Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& triangle);
+
+}  // namespace ricochet::verify

@@ -1,0 +1,120 @@
+/// \file
+/// Which triangles are near a leg or a place: a hierarchy of boxes in doubles, of the verifier's own. It may name
+/// triangles that are not near, but leaves none out.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/verify/detail/meeting.h"
+
+namespace ricochet::verify {
+
+/// A triangle of a collider.
+struct NamedTriangle {
+    Corners corners;
+    std::uint32_t collider = 0;
+    std::uint32_t triangle = 0;  ///< of the collider's mesh
+};
+
+/// Immutable; safe from any number of threads.
+class TriangleTree {
+public:
+    TriangleTree() = default;
+    explicit TriangleTree(std::vector<NamedTriangle> triangles);
+
+    /// Calls visit(triangle) for every triangle whose box the segment [p, q] touches, and perhaps for a few more.
+    template <class Visit>
+    void near_segment(const Vec3& p, const Vec3& q, const Visit& visit) const {
+        if (!nodes_.empty()) visit_nodes(SegmentTest(p, q, largest_), visit);
+    }
+    /// Calls visit(triangle) for every triangle whose box touches `box`.
+    template <class Visit>
+    void near_box(const Box3& box, const Visit& visit) const {
+        if (!nodes_.empty()) visit_nodes([&](const Box3& other) { return touches(box, other); }, visit);
+    }
+
+private:
+    struct Node {
+        Box3 box;
+        std::uint32_t first = 0;  ///< a leaf's first triangle; else the second child (the first one is the next node)
+        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for others
+    };
+
+    static bool touches(const Box3& a, const Box3& b) {
+        // Without branches, which are hard to foretell here.
+        const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
+        const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
+        const bool z = (a.lower.z <= b.upper.z) & (b.lower.z <= a.upper.z);
+        return x & y & z;
+    }
+
+    /// Separating axes: those of the boxes, without rounding, and across the segment, with room for it.
+    class SegmentTest {
+    public:
+        SegmentTest(const Vec3& p, const Vec3& q, double largest) : start_(p), step_(q - p), size_(abs(step_)) {
+            box_.include(p);
+            box_.include(q);
+            // Each product below passes some 5 roundings of 2^-53 with coordinates of this size.
+            slack_ = 0x1p-48 * std::fmax(largest, std::fmax(max_abs(p), max_abs(q)));
+        }
+        bool operator()(const Box3& box) const {
+            if (!touches(box_, box)) return false;
+            const Vec3 half = 0.5 * (box.upper - box.lower);
+            // A segment that is short beside the box seldom passes it by.
+            if (max_abs(size_) < max_abs(half)) return true;
+            const Vec3 centre = 0.5 * (box.lower + box.upper) - start_;
+            return overlaps(step_.x, step_.y, centre.x, centre.y, size_.x, size_.y, half.x, half.y) &&
+                   overlaps(step_.y, step_.z, centre.y, centre.z, size_.y, size_.z, half.y, half.z) &&
+                   overlaps(step_.z, step_.x, centre.z, centre.x, size_.z, size_.x, half.z, half.x);
+        }
+
+    private:
+        [[nodiscard]] bool overlaps(double du, double dv, double cu, double cv, double su, double sv, double hu,
+                                    double hv) const {
+            return std::fabs(du * cv - dv * cu) <= su * (hv + slack_) + sv * (hu + slack_);
+        }
+        Box3 box_;
+        Vec3 start_;
+        Vec3 step_;
+        Vec3 size_;
+        double slack_ = 0.0;
+    };
+
+    template <class Test, class Visit>
+    void visit_nodes(const Test& test, const Visit& visit) const {
+        std::array<std::uint32_t, kMostDepth> open{};
+        std::size_t count = 0;
+        open[count++] = 0;
+        while (count > 0) {
+            const std::uint32_t index = open[--count];
+            const Node& node = nodes_[index];
+            if (!test(node.box)) continue;
+            if (node.count == 0) {
+                open[count++] = node.first;
+                open[count++] = index + 1;
+                continue;
+            }
+            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+                if (test(boxes_[k])) visit(triangles_[k]);
+            }
+        }
+    }
+
+    void build(std::size_t begin, std::size_t end, const std::vector<Box3>& boxes, std::vector<std::uint32_t>& order);
+
+    /// Halving 2^32 triangles leaves no more levels than this.
+    static constexpr std::size_t kMostDepth = 48;
+
+    std::vector<NamedTriangle> triangles_;  ///< in the order of the leaves
+    std::vector<Box3> boxes_;               ///< of each of them
+    std::vector<Node> nodes_;               ///< depth first
+    double largest_ = 0.0;                  ///< coordinate
+};
+
+}  // namespace ricochet::verify

@@ -1,0 +1,247 @@
+#include "ricochet/verify/verifier.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/verify/detail/checked_shape.h"
+#include "ricochet/verify/detail/meeting.h"
+#include "ricochet/verify/detail/nearness.h"
+#include "ricochet/verify/detail/signs.h"
+#include "ricochet/verify/detail/triangle_tree.h"
+
+namespace ricochet {
+namespace {
+
+using verify::CheckedShape;
+using verify::NamedTriangle;
+using verify::TriangleTree;
+
+template <class T>
+struct OfCollider {
+    std::uint32_t collider;
+    T surface;
+};
+
+bool same_bits(const Vec3& a, const Vec3& b) {
+    const auto same = [](double x, double y) {
+        return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+    };
+    return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
+
+void add_triangles(const TriangleMesh& mesh, std::uint32_t collider, std::vector<NamedTriangle>& triangles) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        const verify::Corners corners{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+        if (verify::on_one_line(corners.a, corners.b, corners.c)) continue;
+        triangles.push_back({corners, collider, static_cast<std::uint32_t>(t)});
+    }
+}
+
+Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }
+
+}  // namespace
+
+struct Verifier::Impl {
+    /// What one step is judged by.
+    struct Judged {
+        const VerifiedStep& step;
+        std::vector<Violation>& violations;
+
+        void report(ViolationKind kind, const Vec3& place, double time, std::optional<std::uint32_t> collider,
+                    std::optional<std::uint32_t> triangle = std::nullopt) const {
+            violations.push_back({kind, step.particle, place, time, collider, triangle});
+        }
+    };
+
+    explicit Impl(const std::vector<VerifiedSurface>& surfaces);
+
+    void check_chain(const Judged& judged, const Vec3& before) const;
+    void check_leg(const Judged& judged, const Leg& leg, bool starts_on_surface) const;
+    void check_sides(const Judged& judged, VerifiedParticle& particle) const;
+    void check_distance(const Judged& judged, VerifiedParticle& particle) const;
+    [[nodiscard]] std::vector<Side> sides_of(const Vec3& p) const;
+    [[nodiscard]] bool is_on_surface(const Vec3& p) const;
+    /// Calls found(collider, triangle or nothing) for every surface that is nearer to p than `least`, in no fixed
+    /// order.
+    template <class Found>
+    void visit_nearer(const Vec3& p, double least, const Found& found) const;
+
+    std::vector<OfCollider<VerifiedPlane>> planes;
+    std::vector<OfCollider<CheckedShape>> shapes;
+    std::vector<OfCollider<ParityOracle>> bodies;  ///< closed meshes
+    TriangleTree triangles;
+};
+
+Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces) {
+    std::vector<NamedTriangle> all;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const auto collider = static_cast<std::uint32_t>(i);
+        if (const auto* mesh = std::get_if<TriangleMesh>(&surfaces[i])) {
+            add_triangles(*mesh, collider, all);
+            if (count_open_edges(*mesh) == 0) bodies.push_back({collider, ParityOracle(*mesh)});
+        } else if (const auto* plane = std::get_if<VerifiedPlane>(&surfaces[i])) {
+            planes.push_back({collider, *plane});
+        } else {
+            const auto& shape = std::get<VerifiedShape>(surfaces[i]);
+            shapes.push_back({collider, CheckedShape(shape.world_from_unit, shape.is_cylinder)});
+        }
+    }
+    triangles = TriangleTree(std::move(all));
+}
+
+std::vector<Side> Verifier::Impl::sides_of(const Vec3& p) const {
+    std::vector<Side> sides;
+    sides.reserve(planes.size() + shapes.size() + bodies.size());
+    for (const auto& [collider, plane] : planes) {
+        sides.push_back(side_of(verify::height_sign(plane.normal, plane.point, p)));
+    }
+    for (const auto& [collider, shape] : shapes) sides.push_back(side_of(shape.side(p)));
+    for (const auto& [collider, body] : bodies) sides.push_back(body.side(p));
+    return sides;
+}
+
+bool Verifier::Impl::is_on_surface(const Vec3& p) const {
+    bool is_on = false;
+    triangles.near_segment(p, p, [&](const NamedTriangle& t) { is_on = is_on || verify::meets(p, p, t.corners); });
+    return is_on;
+}
+
+template <class Found>
+void Verifier::Impl::visit_nearer(const Vec3& p, double least, const Found& found) const {
+    for (const auto& [collider, plane] : planes) {
+        if (verify::is_nearer(p, plane.point, plane.normal, least)) found(collider, std::nullopt);
+    }
+    for (const auto& [collider, shape] : shapes) {
+        if (shape.is_nearer(p, least)) found(collider, std::nullopt);
+    }
+    const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
+    const Vec3 reach{padded, padded, padded};
+    triangles.near_box({p - reach, p + reach}, [&](const NamedTriangle& t) {
+        if (verify::is_nearer(p, t.corners, least)) found(t.collider, t.triangle);
+    });
+}
+
+void Verifier::Impl::check_chain(const Judged& judged, const Vec3& before) const {
+    const VerifiedStep& step = judged.step;
+    const auto expect = [&](const Vec3& at, const Vec3& next) {
+        if (!same_bits(at, next)) judged.report(ViolationKind::gap, next, step.time, std::nullopt);
+    };
+    expect(before, step.from);
+    Vec3 at = step.from;
+    for (const Leg& leg : step.legs) {
+        expect(at, leg.from);
+        at = leg.to;
+    }
+    expect(at, step.to);
+}
+
+/// A particle that stands on surfaces at the leg's start may leave them to either side.
+void Verifier::Impl::check_leg(const Judged& judged, const Leg& leg, bool starts_on_surface) const {
+    const Vec3& p = leg.from;
+    const Vec3& q = leg.to;
+    if (same_bits(p, q)) return;  // its place belongs to the leg before
+    if (!is_finite(p) || !is_finite(q)) {
+        judged.report(ViolationKind::gap, q, leg.time, std::nullopt);
+        return;
+    }
+    const std::size_t first = judged.violations.size();
+    for (const auto& [collider, plane] : planes) {
+        const int of_p = verify::height_sign(plane.normal, plane.point, p);
+        const int of_q = verify::height_sign(plane.normal, plane.point, q);
+        const bool leaves = starts_on_surface && of_p == 0 && of_q != 0;
+        if (of_p * of_q <= 0 && !leaves) judged.report(ViolationKind::crossing, q, leg.time, collider);
+    }
+    for (const auto& [collider, shape] : shapes) {
+        if (!shape.meets(p, q)) continue;
+        const bool leaves = starts_on_surface && shape.side(p) == 0 && !shape.meets_after_start(p, q);
+        if (!leaves) judged.report(ViolationKind::crossing, q, leg.time, collider);
+    }
+    triangles.near_segment(p, q, [&](const NamedTriangle& t) {
+        if (!verify::meets(p, q, t.corners)) return;
+        if (starts_on_surface && !verify::meets_after_start(p, q, t.corners)) return;
+        judged.report(ViolationKind::crossing, verify::place_of_meeting(p, q, t.corners), leg.time, t.collider,
+                      t.triangle);
+    });
+    std::sort(judged.violations.begin() + static_cast<std::ptrdiff_t>(first), judged.violations.end(),
+              [](const Violation& a, const Violation& b) {
+                  return a.collider != b.collider ? a.collider < b.collider : a.triangle < b.triangle;
+              });
+}
+
+/// A place that is not finite is on no known side; that it was reached has been reported as a gap.
+void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particle) const {
+    const VerifiedStep& step = judged.step;
+    if (!is_finite(step.to)) return;
+    std::vector<Side> sides = sides_of(step.to);
+    if (particle.sides.empty()) particle.sides.assign(sides.size(), Side::on_surface);
+    const auto compare = [&](std::size_t k, std::uint32_t collider) {
+        if (particle.sides[k] == sides[k] || particle.sides[k] == Side::on_surface) return;
+        judged.report(ViolationKind::wrong_side, step.to, step.time, collider);
+    };
+    std::size_t k = 0;
+    for (const auto& plane : planes) compare(k++, plane.collider);
+    for (const auto& shape : shapes) compare(k++, shape.collider);
+    for (const auto& body : bodies) compare(k++, body.collider);
+    particle.sides = std::move(sides);
+}
+
+void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& particle) const {
+    const VerifiedStep& step = judged.step;
+    if (!(step.radius > 0.0) || !is_finite(step.to)) return;
+    double largest = std::max(max_abs(step.from), max_abs(step.to));
+    for (const Leg& leg : step.legs) largest = std::max({largest, max_abs(leg.from), max_abs(leg.to)});
+    const double least = step.radius - sphere_tolerance(step.radius, largest);
+    if (!(least > 0.0)) return;
+    std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> first;
+    visit_nearer(step.to, least, [&](std::uint32_t collider, std::optional<std::uint32_t> triangle) {
+        const auto name = std::pair(collider, triangle);
+        if (!first || name < *first) first = name;
+    });
+    if (first && particle.has_been_free) {
+        judged.report(ViolationKind::overlap, step.to, step.time, first->first, first->second);
+    }
+    particle.has_been_free = !first;
+}
+
+Verifier::Verifier(const std::vector<VerifiedSurface>& surfaces) : impl_(std::make_unique<Impl>(surfaces)) {}
+Verifier::~Verifier() = default;
+Verifier::Verifier(Verifier&&) noexcept = default;
+Verifier& Verifier::operator=(Verifier&&) noexcept = default;
+
+VerifiedParticle Verifier::watch(const Vec3& position, double radius) const {
+    VerifiedParticle particle;
+    particle.position = position;
+    if (!is_finite(position)) return particle;
+    particle.sides = impl_->sides_of(position);
+    particle.is_on_surface =
+        std::find(particle.sides.begin(), particle.sides.end(), Side::on_surface) != particle.sides.end() ||
+        impl_->is_on_surface(position);
+    const double least = radius - sphere_tolerance(radius, max_abs(position));
+    if (least > 0.0) {
+        impl_->visit_nearer(position, least,
+                            [&](std::uint32_t, std::optional<std::uint32_t>) { particle.has_been_free = false; });
+    }
+    return particle;
+}
+
+void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const {
+    if (step.legs.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position)) return;
+    const Impl::Judged judged{step, violations};
+    impl_->check_chain(judged, particle.position);
+    bool starts_on_surface = particle.is_on_surface;
+    for (const Leg& leg : step.legs) {
+        impl_->check_leg(judged, leg, starts_on_surface);
+        starts_on_surface = starts_on_surface && same_bits(leg.from, leg.to);
+    }
+    impl_->check_sides(judged, particle);
+    impl_->check_distance(judged, particle);
+    particle.position = step.to;
+    particle.is_on_surface = starts_on_surface;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,83 @@
+/// \file
+/// Checks what particles did, independently of the code that moved them: every leg that was travelled against the
+/// surfaces near it, and after every step the side of every closed surface and the distance of spheres.
+///
+/// Independent: this folder includes none of the sweep's predicates, trees or distance code (tests/layers checks that).
+/// Its signs come from whole numbers of any length, its parity from counted crossings, its distances from a hundred
+/// digits wherever doubles leave doubt. It is given the surfaces in world coordinates as they collide, so placements
+/// are not checked again.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "ricochet/core/leg.h"
+#include "ricochet/core/transform.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/verify/parity.h"
+#include "ricochet/verify/violation.h"
+
+namespace ricochet {
+
+/// An infinite plane.
+struct VerifiedPlane {
+    Vec3 point;
+    Vec3 normal;  ///< not zero
+};
+
+/// The image of the unit ball, or of the cylinder x^2 + y^2 <= 1, |z| <= 1 with its caps.
+struct VerifiedShape {
+    AffineMap world_from_unit;  ///< rotation times scale, and a translation
+    bool is_cylinder = false;
+};
+
+/// A collider in world coordinates. Triangles of a mesh without area take no part, as in collisions.
+using VerifiedSurface = std::variant<TriangleMesh, VerifiedPlane, VerifiedShape>;
+
+/// What the verifier remembers of a particle from one step to the next.
+struct VerifiedParticle {
+    Vec3 position;
+    /// Per closed surface (closed meshes, shapes; planes count too: their two sides). on_surface: not decided yet, for
+    /// a particle that was born exactly on the surface and takes the side that it moves to.
+    std::vector<Side> sides;
+    bool is_on_surface = false;  ///< of any surface, open ones included
+    /// False while it overlaps something from its birth on: its distance is not judged until it has been free once.
+    bool has_been_free = true;
+};
+
+/// What a particle did in a step.
+struct VerifiedStep {
+    std::uint64_t particle = 0;  ///< id
+    Vec3 from;                   ///< where it stood before, m
+    Vec3 to;                     ///< where it stands now, m
+    double radius = 0.0;         ///< m
+    double time = 0.0;           ///< s, at the end of the step
+    std::span<const Leg> legs;   ///< in the order of time
+};
+
+/// Immutable; safe from any number of threads.
+class Verifier {
+public:
+    /// Collider i is surfaces[i]. A mesh is closed when every edge belongs to an even number of triangle sides.
+    explicit Verifier(const std::vector<VerifiedSurface>& surfaces);
+    ~Verifier();
+    Verifier(Verifier&&) noexcept;
+    Verifier& operator=(Verifier&&) noexcept;
+
+    /// Looks at a particle at its birth. A place that is not finite has no side and is not judged.
+    [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
+
+    /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the legs, then
+    /// sides, then overlaps, each in the order of colliders and triangles. Updates what is remembered.
+    void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#include "cli/violation_report.h"
+
+#include <gtest/gtest.h>
+
+namespace ricochet::cli {
+namespace {
+
+const std::vector<ColliderDescription> kColliders = {{"floor", PlaneShape{}, 0}, {"tube", MeshShape{}, 0}};
+
+TEST(ViolationReport, NamesParticlePlaceTimeColliderAndTriangle) {
+    const std::vector<Violation> violations = {{ViolationKind::crossing, 7, {1, 0.1, -2}, 0.25, 1, 99},
+                                               {ViolationKind::wrong_side, 8, {0, 0, 0}, 1, 0, {}},
+                                               {ViolationKind::overlap, 9, {0, 0, 0}, 1, 1, 3},
+                                               {ViolationKind::gap, 10, {0, 0, 0}, 1, {}, {}}};
+    EXPECT_EQ(violation_lines(violations, 4, kColliders),
+              (std::vector<std::string>{
+                  "leak: particle 7 at (1, 0.10000000000000001, -2) m, time 0.25 s: a leg meets collider \"tube\", "
+                  "triangle 99",
+                  "leak: particle 8 at (0, 0, 0) m, time 1 s: is on another side than at birth of collider \"floor\"",
+                  "leak: particle 9 at (0, 0, 0) m, time 1 s: overlaps collider \"tube\", triangle 3",
+                  "leak: particle 10 at (0, 0, 0) m, time 1 s: its legs do not join"}));
+}
+
+TEST(ViolationReport, ListsTwentyAndCountsTheRest) {
+    const std::vector<Violation> violations(25);
+    const auto lines = violation_lines(violations, 5000, kColliders);
+    ASSERT_EQ(lines.size(), 21U);
+    EXPECT_EQ(lines.back(), "leak: and 4980 more");
+    EXPECT_EQ(violation_lines({violations.data(), 20}, 20, kColliders).size(), 20U);
+    EXPECT_TRUE(violation_lines({}, 0, kColliders).empty());
+}
+
+}  // namespace
+}  // namespace ricochet::cli

@@ -1,0 +1,126 @@
+// Spheres against worlds of meshes, planes and shapes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "response/course.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace {
+
+using testing::Course;
+
+constexpr double kRadius = 0.05;
+
+/// A square floor of many triangles, tilted so that no coordinate of it is exact.
+struct TiltedFloor {
+    TiltedFloor() : normal(normalized(Vec3{0.3, -0.2, 1.0})) {
+        const auto [t, b] = tangent_frame(normal);
+        along = t;
+        across = b;
+        mesh = testing::floor_mesh(1.0, 16);
+        for (Vec3& v : mesh.vertices) v = Vec3{7, -3, 2} + v.x * along + v.y * across;
+    }
+    [[nodiscard]] Vec3 place(double x, double y, double height) const {
+        return Vec3{7, -3, 2} + x * along + y * across + height * normal;
+    }
+    Vec3 normal;
+    Vec3 along;
+    Vec3 across;
+    TriangleMesh mesh;
+};
+
+// Flat inner edges and vertices must not be felt: no kick out of the plane of incidence, no second impact.
+TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneEvenOverSeamsAndVertices) {
+    const TiltedFloor floor;
+    Course course({testing::mesh_collider(floor.mesh)}, {"", 1.0, 0.0}, {});
+    RandomSequence random(1, 0, 0);
+    for (int i = 0; i < test::scaled(4000); ++i) {
+        // The foot is on a seam, on a vertex, a little beside them, or anywhere.
+        double x = 0.125 * std::floor(14.0 * random.uniform() - 7.0);
+        double y = 0.125 * std::floor(14.0 * random.uniform() - 7.0);
+        const double beside = i % 4 == 0 ? 0.0 : std::pow(10.0, -3.0 - 13.0 * random.uniform());
+        x += i % 3 == 0 ? 0.1 * random.uniform() : beside;
+        y += i % 5 == 0 ? 0.1 * random.uniform() : -beside;
+        const double approach = std::pow(10.0, -3.0 * random.uniform());
+        const Vec3 v = std::cos(static_cast<double>(i)) * floor.along +
+                       std::sin(static_cast<double>(i)) * floor.across - approach * floor.normal;
+        MovingParticle sphere{{floor.place(x, y, kRadius) - 0.05 * v, v, 1.0, kRadius, 0.0}, {}, 0, 0};
+        ASSERT_EQ(course.move(sphere, 0.1).bounces, 1U) << i;
+        const Vec3 expected = v + (2.0 * approach) * floor.normal;
+        ASSERT_LT(length(sphere.state.velocity - expected), 1e-13) << i;
+    }
+}
+
+TEST(SphereOnAFlatFloorOfManyTriangles, RollsOverSeamsWithoutLosingSpeed) {
+    const TiltedFloor floor;
+    Course course({testing::mesh_collider(floor.mesh)}, {"", 0.5, 0.4}, -9.81 * floor.normal);
+    const Vec3 v = 0.8 * floor.along + 0.31 * floor.across;
+    MovingParticle sphere{
+        {floor.place(-0.9, -0.4, kRadius + 1e-14), v, 1.0, kRadius, 0.0}, cross(floor.normal, v) / kRadius, 0, 0};
+    for (int k = 0; k < 200; ++k) (void)course.move(sphere, 0.01);
+    EXPECT_LT(length(sphere.state.velocity - v), 1e-11);
+    EXPECT_LT(length(sphere.state.position - floor.place(-0.9 + 1.6, -0.4 + 0.62, kRadius)), 1e-10);
+}
+
+TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
+    // A pit of three steep walls: the sphere touches the walls far from the bottom.
+    const std::vector<ColliderDescription> walls{testing::plane_collider({0, 0, 0}, {2, 0, 1}),
+                                                 testing::plane_collider({0, 0, 0}, {-1, 1.7, 1}),
+                                                 testing::plane_collider({0, 0, 0}, {-1, -1.7, 1})};
+    Course course(walls, {"", 0.3, 0.1}, {0, 0, -9.81});
+    MovingParticle sphere{{{0.02, 0.01, 1.5}, {0.3, 0.1, -2}, 1.0, 0.3, 0.0}, {}, 0, 0};
+    bool resting = false;
+    for (int k = 0; k < 600; ++k) {
+        const MoveOutcome outcome = course.move(sphere, 0.01);
+        EXPECT_EQ(outcome.unsimulated_time, 0.0);
+        resting = outcome.resting;
+        for (const auto& [plane, surface] : course.world.planes()) {
+            ASSERT_GE(signed_distance(sphere.state.position, plane), 0.3 - sphere_tolerance(0.3, 2.0));
+        }
+    }
+    EXPECT_TRUE(resting);
+}
+
+// Two plates with barely room: bouncing between them goes on for ever and never gets out.
+TEST(SphereBetweenPlatesANanometreWiderThanItself, NeitherLeaksNorSticks) {
+    const double gap = 2.0 * kRadius + 1e-9;
+    Course course(
+        {testing::mesh_collider(testing::floor_mesh(4.0, 8)), testing::mesh_collider(testing::floor_mesh(4.0, 8, gap))},
+        {"", 1.0, 0.0}, {}, IntegratorKind::ballistic, 1000000);
+    MovingParticle sphere{{{-3.5, 0.1, 0.5 * gap}, {1.0, 0.02, 1e-5}, 1.0, kRadius, 0.0}, {}, 0, 0};
+    std::uint64_t bounces = 0;
+    for (int k = 0; k < 60; ++k) {
+        const MoveOutcome outcome = course.move(sphere, 0.1);
+        bounces += outcome.bounces;
+        ASSERT_EQ(outcome.unsimulated_time, 0.0);
+        ASSERT_NEAR(sphere.state.position.z, 0.5 * gap, 0.5e-9 + sphere_tolerance(kRadius, 4.0));
+    }
+    EXPECT_NEAR(sphere.state.position.x, 2.5, 1e-9);
+    // One bounce for every nanometre of way across.
+    EXPECT_NEAR(static_cast<double>(bounces), 6.0 * 1e-5 / 1e-9, 600.0);
+}
+
+TEST(SphereOnAnEdgeAndOnAVertex, IsTurnedBackAlongTheLineToTheFoot) {
+    const TriangleMesh plate{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    Course course({testing::mesh_collider(plate)}, {"", 1.0, 0.0}, {});
+    // Beyond the edge y = 0 by half a radius: the normal leans out by 30 degrees.
+    MovingParticle on_edge{{{0.4, -0.5 * kRadius, 0.5}, {0, 0, -1}, 1.0, kRadius, 0.0}, {}, 0, 0};
+    ASSERT_EQ(course.move(on_edge, 1.0).bounces, 1U);
+    EXPECT_LT(length(on_edge.state.velocity - Vec3{0, -std::sin(3.14159265358979323846 / 3.0), 0.5}), 1e-14);
+    // Head-on at the corner, along its diagonal.
+    const Vec3 out = normalized(Vec3{-1, -1, 0});
+    MovingParticle on_corner{{0.5 * out, -out, 1.0, kRadius, 0.0}, {}, 0, 0};
+    ASSERT_EQ(course.move(on_corner, 1.0).bounces, 1U);
+    EXPECT_LT(length(on_corner.state.velocity - out), 1e-14);
+    EXPECT_NEAR(course.scratch.records[0].time, 0.5 - kRadius, 1e-15);
+}
+
+}  // namespace
+}  // namespace ricochet

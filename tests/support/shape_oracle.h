@@ -1,0 +1,57 @@
+/// \file
+/// Slow reference answers for shapes with a formula, to 50 digits, by halving.
+#pragma once
+
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "ricochet/core/transform.h"
+#include "ricochet/geometry/path.h"
+
+namespace ricochet::testing {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+using RealVector = std::array<Real, 3>;
+
+[[nodiscard]] RealVector real(const Vec3& v);
+[[nodiscard]] Real dot(const RealVector& u, const RealVector& v);
+[[nodiscard]] Real length(const RealVector& v);
+/// u + s v.
+[[nodiscard]] RealVector sum(const RealVector& u, const Real& s, const RealVector& v);
+
+/// Place on the polynomial of the path's stored coefficients.
+[[nodiscard]] RealVector position(const Path& path, const Real& s);
+
+/// The shape that AnalyticShape documents: its axes are the columns of the map, orthonormalised in their order; its
+/// half axes are the columns' lengths rounded to doubles, and those that agree to 2^-49 are equal.
+class ShapeOracle {
+public:
+    ShapeOracle(const AffineMap& world_from_local, bool is_capped);
+
+    struct Nearest {
+        Real distance;      ///< signed, positive outside
+        RealVector normal;  ///< outward, world
+    };
+    [[nodiscard]] Nearest nearest(const RealVector& p) const;
+    /// Negative inside, positive outside, 0 on the surface; smooth but for the rim.
+    [[nodiscard]] Real value(const RealVector& p) const;
+    /// Has the closed segment a point on the surface?
+    [[nodiscard]] bool meets(const RealVector& p, const RealVector& q) const;
+
+    [[nodiscard]] const std::array<double, 3>& half_axes() const { return half_; }
+    /// World coordinates of a place given in the shape's frame.
+    [[nodiscard]] RealVector world(const RealVector& local) const;
+
+private:
+    [[nodiscard]] RealVector local(const RealVector& p) const;
+    [[nodiscard]] Real form(const RealVector& y) const;
+    /// Nearest point of the ellipsoid or ellipse, in the frame.
+    [[nodiscard]] Nearest nearest_around(const RealVector& y) const;
+
+    std::array<RealVector, 3> axes_;
+    RealVector center_;
+    std::array<double, 3> half_{};
+    std::size_t round_axes_;  ///< 3 or 2
+};
+
+}  // namespace ricochet::testing

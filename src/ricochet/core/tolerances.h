@@ -53,6 +53,11 @@ inline constexpr double kProjectionRounding = 0x1p-48;
 /// Smaller: rolling is chopped into stretches of sliding. Larger: slow slip ends too early.
 inline constexpr double kSlipRounding = 0x1p-40;
 
+/// Speed that a brake to a stop may leave, relative to the speed it began with, and still is a stop: rounding across
+/// the heading. Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: real sideways
+/// motion is lost.
+inline constexpr double kStopRounding = 0x1p-40;
+
 /// Fraction by which a sphere's distance at a contact may fall short of its radius and still be put right by parking;
 /// beyond it the sphere started in overlap and stays where it is. Smaller: grazing contacts are not put right. Larger:
 /// a sphere born in a slight overlap is pushed out.

@@ -160,10 +160,12 @@ std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, const Conta
     const Flight flight = flight_of(stretch, support);
     ended_early = flight.path.duration < stretch.duration;
     if (flight.path.duration <= 0.0) return std::nullopt;
-    push(support.surface, flight.path.duration * (stretch.acceleration - a), false);
     const double before = remaining_;
+    const Vec3 turned = stretch.motion.velocity - state_.velocity;
     auto next = follow(flight);
-    finish_stretch(stretch, before - remaining_);
+    const double elapsed = before - remaining_;
+    push(support.surface, turned + elapsed * (stretch.acceleration - a), false);
+    finish_stretch(stretch, elapsed);
     return next;
 }
 
@@ -174,7 +176,7 @@ void Mover::finish_stretch(const Stretch& stretch, double elapsed) {
         // After braking to a stop only rounding is left along the heading.
         const Vec3 heading = normalized(stretch.motion.velocity);
         state_.velocity -= dot(state_.velocity, heading) * heading;
-        if (length(state_.velocity) <= 0x1p-40 * length(stretch.motion.velocity)) state_.velocity = Vec3{};
+        if (length(state_.velocity) <= kStopRounding * length(stretch.motion.velocity)) state_.velocity = Vec3{};
     }
     if (stretch.rolls && state_.radius > 0.0 && (whole || stretch.motion.spin == Vec3{})) {
         particle_.spin = rolling_spin({state_.velocity, particle_.spin}, state_.radius, touched_normals_[0]);

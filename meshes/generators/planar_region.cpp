@@ -91,7 +91,12 @@ PlanarRegion lattice_region(std::span<const double> xs, std::span<const double> 
     for (std::size_t j = 0; j + 1 < ys.size(); ++j) {
         for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
             if (!solid(i, j)) continue;
-            add_quad(region, point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1), 0);
+            // Points are made in this order, whatever order a compiler evaluates arguments in.
+            const std::uint32_t d = point(i, j + 1);
+            const std::uint32_t c = point(i + 1, j + 1);
+            const std::uint32_t b = point(i + 1, j);
+            const std::uint32_t a = point(i, j);
+            add_quad(region, a, b, c, d, 0);
         }
     }
     return region;

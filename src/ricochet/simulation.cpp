@@ -107,9 +107,9 @@ struct Simulation::Impl {
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
-    [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.resting[i] != 0 && may_sleep; }
+    [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
     [[nodiscard]] MovingParticle moving(std::size_t i, double start) const;
-    void add_weight(std::size_t i, double until, double sign);
+    void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
     void add_weights_of_sleepers(double sign);
     void collect_violations(const std::vector<BlockCounts>& blocks);
     void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
@@ -269,6 +269,7 @@ void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const 
     particles.unsimulated_time[i] += outcome.unsimulated_time;
     particles.contacts[i] += outcome.bounces;
     particles.resting[i] = outcome.resting ? 1 : 0;
+    particles.held[i] = outcome.held ? 1 : 0;
     particles.frozen[i] = outcome.frozen ? 1 : 0;
     particles.absorbed[i] = outcome.absorbed ? 1 : 0;
     particles.support[i].fill(kNoSupport);
@@ -287,24 +288,26 @@ void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts
     }
 }
 
-// The impulse of a sleeping particle's weight since it was last moved.
-void Simulation::Impl::add_weight(std::size_t i, double until, double sign) {
+// The impulse of a sleeping particle's weight since it was last moved, or (sign -1) exactly that taken back.
+void Simulation::Impl::add_weight(std::size_t i, double until, double sign, BlockCounts& counts) {
     const double elapsed = until - particles.booked_until[i];
     if (totals.empty() || !is_asleep(i) || !(elapsed > 0.0)) return;
-    const Vec3 impulse = (sign * particles.mass[i] * elapsed) * forces.acceleration(input(i, until));
-    BlockCounts counts;
-    add_hits({{particles.support[i][0], impulse, false}}, counts);
-    statistics.lost_impulses += counts.lost_impulses;
+    std::vector<SurfaceHit> hits;
+    response.add_weight(moving(i, until), elapsed, hits);
+    for (SurfaceHit& hit : hits) hit.impulse *= sign;
+    add_hits(hits, counts);
 }
 
 void Simulation::Impl::add_weights_of_sleepers(double sign) {
     const double now = time_at(statistics.steps);
-    for (std::size_t i = 0; i < particles.size(); ++i) add_weight(i, now, sign);
+    BlockCounts counts;  // an overflow is counted when the weight is booked for good
+    for (std::size_t i = 0; i < particles.size(); ++i) add_weight(i, now, sign, counts);
 }
 
 void Simulation::Impl::retire(double now) {
     std::vector<std::uint8_t> keep(particles.size(), 1);
     bool any = false;
+    BlockCounts counts;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
         const bool outside = bounds && !bounds->contains(particles.position[i]);
@@ -313,13 +316,15 @@ void Simulation::Impl::retire(double now) {
         statistics.expired += !absorbed && expired ? 1 : 0;
         statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
         keep[i] = absorbed || expired || outside ? 0 : 1;
-        if (keep[i] == 0) add_weight(i, std::min(now, particles.birth_time[i] + particles.lifetime[i]), 1.0);
+        if (keep[i] == 0) add_weight(i, std::min(now, particles.birth_time[i] + particles.lifetime[i]), 1.0, counts);
         any = any || keep[i] == 0;
     }
+    statistics.lost_impulses += counts.lost_impulses;
     if (any) particles.compact(keep);
     if (any && check) check->compact(keep);
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
-    statistics.asleep = may_sleep ? statistics.resting : 0;
+    const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
+    statistics.asleep = may_sleep ? held : 0;
 }
 
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}

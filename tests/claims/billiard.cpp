@@ -150,6 +150,16 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     return sum_of(parts);
 }
 
+/// Every leg of the chain that was travelled; a chain that does not join its ends counts as a crossing.
+void Billiard::check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to,
+                          BilliardTally& tally) const {
+    tally.crossing_legs += chain.front() == from && chain.back() == to ? 0 : 1;
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+        ++tally.checked_legs;
+        tally.crossing_legs += oracle_meets(mesh_, chain[k - 1], chain[k]) ? 1 : 0;
+    }
+}
+
 BilliardTally Billiard::aim(int particles, int impacts, int check_every, std::uint64_t seed) const {
     const std::vector<Vec3> start = start_points(particles, seed);
     std::vector<BilliardTally> parts((start.size() + kBlock - 1) / kBlock);
@@ -164,8 +174,7 @@ BilliardTally Billiard::aim(int particles, int impacts, int check_every, std::ui
                 const Vec3 before = particle.position;
                 particle.fly(tally);
                 if (static_cast<int>(particle.random.uniform() * check_every) == 0) {
-                    ++tally.checked_legs;
-                    tally.crossing_legs += oracle_meets(mesh_, before, particle.position) ? 1 : 0;
+                    check_legs(scratch.chain, before, particle.position, tally);
                 }
                 if (k % 8 == 7 || k + 1 == impacts) inside = inside && may_be_at(particle.position);
             }

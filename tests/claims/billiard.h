@@ -44,6 +44,7 @@ public:
     [[nodiscard]] bool is_closed() const { return oracle_ != nullptr; }
 
 private:
+    void check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to, BilliardTally& tally) const;
     [[nodiscard]] bool may_be_at(const Vec3& point) const { return !oracle_ || oracle_->inside(point); }
 
     TriangleMesh mesh_;  // in world coordinates

@@ -99,7 +99,7 @@ TEST_P(ClosedMesh, HoldsWhatFallsInStraightPieces) {
 
 TEST_P(ClosedMesh, HoldsWhatIsAimedAtItsVerticesAndEdges) {
     everywhere([](const Billiard& billiard, const Amount& n) {
-        const int check_every = std::max(1, n.particles * n.steps / 20);
+        const int check_every = std::max(1, n.particles * n.steps / 200);
         const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 4);
         EXPECT_EQ(tally.not_inside, 0U);
         EXPECT_GT(tally.contacts, 0U);

@@ -143,7 +143,7 @@ TEST(ContactLog, ADropIsLoggedAsItsClosedFormSays) {
 
 TEST(ContactLog, EveryFileHasAllColumnsAlsoWhenThereWasNoImpact) {
     const TemporaryFolder folder;
-    run_into(folder.path(""), gas(scaled(200)));
+    run_into(folder.path(""), gas(std::max(50, scaled(200))));
     const auto files = contact_files(folder);
     EXPECT_EQ(files.size(), 8U);  // steps 0, 4, ..., 24 and 25
     std::vector<std::string> names;
@@ -353,7 +353,7 @@ TEST(ContactLog, WritesOutBetweenFramesWhenItsMemoryIsFullAndLosesNothing) {
     const auto parts = contact_files(small);
     const auto whole = contact_files(large);
     ASSERT_EQ(whole.size(), 1U);
-    EXPECT_GT(parts.size(), 20U);
+    EXPECT_GT(parts.size(), 5U);
     std::vector<double> times;
     for (const auto& [step, file] : parts) {
         const auto& here = column<double>(file, "time");

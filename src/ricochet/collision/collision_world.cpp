@@ -260,6 +260,11 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
     return signed_distance(p, a, b, c);
 }
 
+double CollisionWorld::size_of(SurfaceId surface) const {
+    const Range& range = ranges_[collider_of(surface)];
+    return range.kind == Kind::shape ? shapes_[range.index].shape.bounds().diagonal() : bounds_.diagonal();
+}
+
 int CollisionWorld::side_of_surface(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind == Kind::plane) return side_of(planes_[range.index].plane, p);

@@ -105,6 +105,9 @@ public:
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const Vec3& p) const;
     /// Signed distance from a plane, a triangle's plane or a shape, m; accurate also next to it.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
+    /// A length that tells how large a shape with a formula is: the diagonal of its box, m; that of all colliders' box
+    /// for planes and triangles.
+    [[nodiscard]] double size_of(SurfaceId surface) const;
     /// True for planes and triangles.
     [[nodiscard]] bool is_flat(SurfaceId surface) const { return ranges_[collider_of(surface)].kind != Kind::shape; }
     /// Exact side of a surface's plane: +1 where its normal points to, -1 behind, 0 in the plane.

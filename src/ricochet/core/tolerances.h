@@ -63,6 +63,10 @@ inline constexpr double kStopRounding = 0x1p-40;
 /// a sphere born in a slight overlap is pushed out.
 inline constexpr double kContactMismatch = 1e-9;
 
+/// Angle, rad, by which the direction of sliding or of slip may turn in one stretch: friction keeps its direction
+/// over a stretch. Smaller: more stretches (each costs a query). Larger: where a slide ends depends on the time step.
+inline constexpr double kHeadingTurn = 0.05;
+
 /// Angle, rad, by which a particle turns around a rim or a curved surface in one straight stretch of sliding or
 /// rolling. Smaller: more stretches (each costs a query). Larger: it leaves the surface by more (angle^2 / 2 of the
 /// bend's radius) before it falls back.

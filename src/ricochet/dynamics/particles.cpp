@@ -30,6 +30,7 @@ void Particles::append(const Particle& particle) {
     contacts.push_back(0);
     frozen.push_back(0);
     resting.push_back(0);
+    held.push_back(0);
     absorbed.push_back(0);
     draws.push_back(0);
     support.push_back({kNoSupport, kNoSupport, kNoSupport});
@@ -54,6 +55,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(contacts, keep);
     compact_array(frozen, keep);
     compact_array(resting, keep);
+    compact_array(held, keep);
     compact_array(absorbed, keep);
     compact_array(draws, keep);
     compact_array(support, keep);

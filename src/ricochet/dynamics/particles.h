@@ -42,6 +42,7 @@ public:
     std::vector<std::uint32_t> contacts;   ///< impacts so far (saturating)
     std::vector<std::uint8_t> frozen;      ///< 1 when the state left the range of the arithmetic: it no longer moves
     std::vector<std::uint8_t> resting;     ///< 1 while at rest on the surfaces in `support`
+    std::vector<std::uint8_t> held;        ///< 1 while at rest because friction and support hold it
     std::vector<std::uint8_t> absorbed;    ///< 1 when an impact has removed it; gone after the step
     std::vector<std::uint32_t> draws;      ///< random numbers drawn by impacts so far
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.

@@ -171,7 +171,13 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
             break;
     }
     const Vec3 weights = face_weights(nearest.point, a, b, c);
-    return weights / (weights.x + weights.y + weights.z);
+    // A triangle that is a line to rounding has no such weights worth having: then those on an edge are nearer.
+    const std::array<Vec3, 4> candidates{
+        Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
+        Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
+    const auto miss = [&](const Vec3& w) { return length_squared(w.x * a + w.y * b + w.z * c - nearest.point); };
+    return *std::min_element(candidates.begin(), candidates.end(),
+                             [&](const Vec3& v, const Vec3& w) { return miss(v) < miss(w); });
 }
 
 // The smallest distance is that of an end from the other segment, or that of two inner points where the common

@@ -58,6 +58,10 @@ std::optional<Contact> Mover::follow(const Flight& flight) {
         leave_surface(flight);
         return std::nullopt;
     }
+    if (!contact && state_.radius > 0.0 && search_.starts_in_overlap() && !search_.surfaces_at(path.c[0]).empty()) {
+        leave_surface(flight);
+        return std::nullopt;
+    }
     if (contact) {
         const Parking parking = park(search_, path, *contact);
         outcome_.stayed += parking.stayed ? 1 : 0;

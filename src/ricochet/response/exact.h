@@ -76,6 +76,7 @@ struct MoveOutcome {
     std::uint32_t bounces = 0;      ///< impacts
     double unsimulated_time = 0.0;  ///< s that the budget cut off
     bool resting = false;           ///< ended the step at rest on its support
+    bool held = false;              ///< at rest because friction and its support hold it: it stays while forces do
     bool frozen = false;            ///< the state left the range of the arithmetic; the particle was not moved
     bool absorbed = false;          ///< an impact removed it
     std::uint32_t stayed = 0;       ///< impacts after which no certified place nearer to the surface was found
@@ -101,6 +102,9 @@ public:
 
     /// Moves one particle from its time by `duration` seconds and updates it.
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const;
+
+    /// Appends the impulses, N s, that a particle held at rest gives to its support in `duration` seconds.
+    void add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const;
 
 private:
     friend class Mover;

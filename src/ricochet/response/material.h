@@ -24,6 +24,10 @@ struct Material {
     [[nodiscard]] double restitution_at(double approach) const {
         return approach < restitution_threshold ? restitution * (approach / restitution_threshold) : restitution;
     }
+    /// True when bounces that start at this approach speed, m/s, die out on the surface.
+    [[nodiscard]] bool can_hold(double approach) const {
+        return restitution_at(approach) < 1.0 && diffuse < 1.0 && !(diffuse > 0.0 && wall_temperature);
+    }
     /// True when impacts draw random numbers.
     [[nodiscard]] bool is_random() const { return diffuse > 0.0 || absorption > 0.0; }
 };

@@ -12,6 +12,9 @@
 namespace ricochet {
 
 class Mover {
+    /// Stretches of a step that are not cut further because friction turns.
+    static constexpr double kShortestStretches = 32.0;
+
 public:
     Mover(const ExactResponse& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
         : rules_(rules),
@@ -21,9 +24,12 @@ public:
           search_(rules.world_, scratch.contacts),
           start_(particle.state.position),
           first_leg_(scratch.legs.size()),
-          remaining_(duration) {}
+          remaining_(duration),
+          shortest_stretch_(duration / kShortestStretches) {}
 
     MoveOutcome run();
+    /// Books the weight of a particle at rest for the whole duration.
+    void weigh();
 
 private:
     // Flying (exact.cpp).
@@ -48,26 +54,33 @@ private:
                                                    const Motion& arriving) const;
     std::optional<Contact> go_on_in_contact();
     std::optional<Contact> stay_in_contact(const Flight& flight, const ContactSurface& support, const Motion& arriving);
-    std::optional<Contact> follow_surface(const ContactSurface& support, bool kicked);
-    std::optional<Contact> finish_cascade(const ContactSurface& support, bool& ended_early);
-    std::optional<Contact> spend_cascade(const ContactSurface& support, double left, bool& ended_early);
-    std::optional<Contact> travel_stretch(const Stretch& stretch, const ContactSurface& support, const Vec3& a,
+    std::optional<Contact> follow_surface(ContactSurface support, bool kicked);
+    std::optional<Contact> finish_cascade(ContactSurface support, bool& ended_early);
+    std::optional<Contact> spend_cascade(ContactSurface& support, double left, bool& ended_early);
+    [[nodiscard]] Stretch plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration);
+    std::optional<Contact> travel_stretch(const Stretch& stretch, ContactSurface& support, const Vec3& a,
                                           bool& ended_early);
-    void land(const Motion& arriving, const Grip& grip);
-    void rest(SurfaceId support, const Vec3& a);
-    void wait(double duration, SurfaceId support, const Vec3& a);
-    [[nodiscard]] bool is_held(const Vec3& a, const ContactSurface& support) const;
-    [[nodiscard]] Flight flight_of(const Stretch& stretch, const ContactSurface& support) const;
-    [[nodiscard]] double time_on(const ContactSurface& support, const Path& path) const;
-    [[nodiscard]] Vec3 acceleration_now(const Flight& flight) const;
-    [[nodiscard]] Grip grip_of(SurfaceId surface) const;
+    void land(const Motion& arriving, double friction);
+    void rest(const Vec3& a, bool held);
+    void wait(double duration, const Vec3& a);
     void finish_stretch(const Stretch& stretch, double elapsed);
 
-    // What the particle touches.
+    // The shape of a contact (mover_surface.cpp).
+    [[nodiscard]] Vec3 acceleration_now(const Flight& flight) const;
+    [[nodiscard]] double curvature(const ContactSurface& surface, const Vec3& velocity) const;
+    [[nodiscard]] Vec3 pull_on(const ContactSurface& surface, const Vec3& a, const Vec3& velocity) const;
+    [[nodiscard]] double slow_restitution(SurfaceId surface) const;
+    [[nodiscard]] Flight flight_of(const Stretch& stretch, const ContactSurface& support, bool& ends) const;
+    [[nodiscard]] double time_on(const ContactSurface& support, const Path& path, double bend) const;
+    void turn_along(ContactSurface& support);
+    void share(const Vec3& velocity_change, double elapsed);
+
+    // What the particle touches (mover_surface.cpp).
     void remember(const ContactSurface& surface);
     void gather_touched(const Contact& contact);
     void note_recent(SurfaceId surface);
     void set_touched(std::size_t k, const ContactSurface& surface);
+    void touch_again(const Support& support);
     [[nodiscard]] double seam_turn() const;
     [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
     [[nodiscard]] ContactSurface touched_surface(std::size_t k) const {
@@ -89,6 +102,8 @@ private:
     Support touched_;  // cascade_left unused
     std::array<Vec3, 3> touched_normals_;
     std::array<bool, 3> touched_flat_{};
+    std::array<double, 3> shares_{};     // how hard the touched surfaces hold it in the present stretch, m/s^2
+    double shortest_stretch_ = 0.0;      // s
     std::array<SurfaceId, 6> recent_{};  // the last surfaces met: what else may be touched when contact begins
     std::size_t recent_count_ = 0;       // ever noted
     int slow_contacts_ = 0;              // in a row, all slower than the resting speed or without time between them

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
 #include "ricochet/response/mover.h"
 
 namespace ricochet {
@@ -17,15 +16,6 @@ bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
 }  // namespace
 
-Vec3 Mover::acceleration_now(const Flight& flight) const {
-    return is_kicked(flight) ? flight.acceleration : rules_.forces_.acceleration(state_);
-}
-
-Grip Mover::grip_of(SurfaceId surface) const {
-    const Material& material = material_of(surface);
-    return {material.friction, material.rolling_friction, 1.0};
-}
-
 /// The surface that the particle is pressed onto most, when all its rebounds are so slow that the cascade of bounces
 /// becomes contact; null when it flies on.
 const ContactSurface* Mover::support_of(const Flight& flight, const Contact& contact, const Motion& arriving) const {
@@ -35,12 +25,13 @@ const ContactSurface* Mover::support_of(const Flight& flight, const Contact& con
     double hardest = 0.0;
     for (const ContactSurface& surface : contact.all()) {
         const Material& material = material_of(surface.surface);
-        const double pressing = std::max(0.0, -dot(a, surface.normal));
         // What the step's own kick put into the velocity is not the speed of an impact.
-        const double approach = -dot(arriving.velocity, surface.normal) - pressing * flight.kick_duration;
+        const double kicked = std::max(0.0, -dot(a, surface.normal)) * flight.kick_duration;
+        const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        const bool can_rest = material.restitution < 1.0 && !material.is_random();
+        const bool can_rest = material.can_hold(rules_.settings_.resting_speed);
         if (approach > 0.0 && rebound >= (can_rest ? rules_.settings_.resting_speed : 0.0)) return nullptr;
+        const double pressing = -dot(pull_on(surface, a, arriving.velocity), surface.normal);
         if (!can_rest || pressing <= hardest) continue;
         hardest = pressing;
         support = &surface;
@@ -53,35 +44,33 @@ const ContactSurface* Mover::support_of(const Flight& flight, const Contact& con
 std::optional<Contact> Mover::go_on_in_contact() {
     if (particle_.support.count == 0) return std::nullopt;
     const Support before = std::exchange(particle_.support, Support{});
-    const double cascade_left = before.cascade_left;
-    for (std::size_t k = 0; k < before.count; ++k) {
-        note_recent(before.surfaces[k]);
-        if (const auto surface = touching(before.surfaces[k])) remember(*surface);
-    }
-    if (touched_.count == 0) return std::nullopt;
-    const ContactSurface support = touched_surface(0);
+    touch_again(before);
     const Vec3 a = rules_.forces_.acceleration(state_);
-    if (!(dot(a, support.normal) < 0.0)) return std::nullopt;
+    std::size_t hardest = 0;
+    double pressing = 0.0;
+    for (std::size_t k = 0; k < touched_.count; ++k) {
+        const double here = -dot(pull_on(touched_surface(k), a, state_.velocity), touched_normals_[k]);
+        if (here > pressing) hardest = k;
+        pressing = std::max(pressing, here);
+    }
+    if (!(pressing > 0.0)) return std::nullopt;
+    ContactSurface support = touched_surface(hardest);
     if (rules_.settings_.integrator == IntegratorKind::symplectic_euler) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
-        if (is_held(a, support)) rest(support.surface, a);
+        const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
+        if (still && is_finite(a) && plan(support, a, 1.0, remaining_).at_rest) rest(a, true);
         return std::nullopt;
     }
     bool ended_early = false;
-    auto next = spend_cascade(support, cascade_left, ended_early);
+    auto next = spend_cascade(support, before.cascade_left, ended_early);
     return next || ended_early ? next : follow_surface(support, false);
-}
-
-bool Mover::is_held(const Vec3& a, const ContactSurface& support) const {
-    if (state_.velocity != Vec3{} || particle_.spin != Vec3{} || !is_finite(a)) return false;
-    return plan_stretch({}, state_.radius, a, touched_normals(), grip_of(support.surface), 1.0).at_rest;
 }
 
 /// Finishes the cascade, then slides, rolls or rests until the step ends, the surface ends, or something else is met.
 std::optional<Contact> Mover::stay_in_contact(const Flight& flight, const ContactSurface& support,
                                               const Motion& arriving) {
     if (is_kicked(flight)) {
-        land(arriving, grip_of(support.surface));
+        land(arriving, material_of(support.surface).friction);
         return follow_surface(support, true);
     }
     bool ended_early = false;
@@ -90,16 +79,15 @@ std::optional<Contact> Mover::stay_in_contact(const Flight& flight, const Contac
 }
 
 /// Slides, rolls or rests. A kicked particle has had its force already.
-std::optional<Contact> Mover::follow_surface(const ContactSurface& support, bool kicked) {
+std::optional<Contact> Mover::follow_surface(ContactSurface support, bool kicked) {
     bool ended_early = false;
     for (int count = 0; count < kMostStretches && remaining_ > 0.0; ++count) {
         const Vec3 a = kicked ? Vec3{} : rules_.forces_.acceleration(state_);
-        if (dot(a, support.normal) > 0.0) return std::nullopt;  // nothing presses any more
-        const Motion motion{state_.velocity, particle_.spin};
-        const Grip grip = kicked ? Grip{0.0, 0.0, 0.0} : grip_of(support.surface);
-        const Stretch stretch = plan_stretch(motion, state_.radius, a, touched_normals(), grip, remaining_);
+        const Vec3 pull = pull_on(support, a, state_.velocity);
+        if (dot(pull, support.normal) > 0.0) return std::nullopt;  // nothing presses any more
+        const Stretch stretch = plan(support, pull, kicked ? 0.0 : 1.0, remaining_);
         if (stretch.at_rest) {
-            rest(support.surface, a);
+            rest(a, !kicked);
             return std::nullopt;
         }
         auto next = travel_stretch(stretch, support, a, ended_early);
@@ -110,34 +98,34 @@ std::optional<Contact> Mover::follow_surface(const ContactSurface& support, bool
 }
 
 /// The rest of the bounce cascade, summed.
-std::optional<Contact> Mover::finish_cascade(const ContactSurface& support, bool& ended_early) {
+std::optional<Contact> Mover::finish_cascade(ContactSurface support, bool& ended_early) {
     const double rebound = std::max(0.0, dot(state_.velocity, support.normal));
-    const double pressing = -dot(rules_.forces_.acceleration(state_), support.normal);
+    const Vec3 a = rules_.forces_.acceleration(state_);
+    const double pressing = -dot(pull_on(support, a, state_.velocity), support.normal);
     const Vec3 before = state_.velocity;
     state_.velocity = project_off(before - rebound * support.normal, touched_normals());
     push(support.surface, state_.velocity - before, false);
     if (!(pressing > 0.0)) return std::nullopt;
-    const double duration = cascade_duration(rebound, pressing, material_of(support.surface).restitution);
+    const double duration = cascade_duration(rebound, pressing, slow_restitution(support.surface));
     return spend_cascade(support, duration, ended_early);
 }
 
 /// Lets the time of a cascade pass; on average it presses with (1 + e) / 2 of the full force. What the step's end cuts
 /// off goes on in the next step.
-std::optional<Contact> Mover::spend_cascade(const ContactSurface& support, double left, bool& ended_early) {
-    Grip grip = grip_of(support.surface);
-    grip.pressure = 0.5 * (1.0 + material_of(support.surface).restitution);
+std::optional<Contact> Mover::spend_cascade(ContactSurface& support, double left, bool& ended_early) {
+    const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
     for (int part = 0; part < kMostStretches && left > 0.0 && remaining_ > 0.0; ++part) {
         const Vec3 a = rules_.forces_.acceleration(state_);
-        const Motion motion{state_.velocity, particle_.spin};
-        const double duration = std::min(left, remaining_);
-        const Stretch stretch = plan_stretch(motion, state_.radius, a, touched_normals(), grip, duration);
-        left -= stretch.duration;
+        const Vec3 pull = pull_on(support, a, state_.velocity);
+        const Stretch stretch = plan(support, pull, pressure, std::min(left, remaining_));
+        const double before = remaining_;
         if (stretch.at_rest) {
-            wait(stretch.duration, support.surface, a);
-            continue;
+            wait(stretch.duration, a);
+        } else {
+            auto next = travel_stretch(stretch, support, a, ended_early);
+            if (next || ended_early) return next;
         }
-        auto next = travel_stretch(stretch, support, a, ended_early);
-        if (next || ended_early) return next;
+        left -= before - remaining_;
     }
     if (remaining_ <= 0.0) {
         particle_.support = touched_;
@@ -146,26 +134,49 @@ std::optional<Contact> Mover::spend_cascade(const ContactSurface& support, doubl
     return std::nullopt;
 }
 
-/// Time passes at rest; the surface carries the weight.
-void Mover::wait(double duration, SurfaceId support, const Vec3& a) {
-    push(support, -state_.velocity - duration * a, false);
+/// Plans a stretch against all that is touched. pull: the forces' acceleration and what the bend of the way adds.
+Stretch Mover::plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration) {
+    shares_ = normal_accelerations(pull, touched_normals());
+    double pressing = 0.0;
+    double friction = 0.0;
+    for (std::size_t k = 0; k < touched_.count; ++k) {
+        pressing += shares_[k];
+        friction += shares_[k] * material_of(touched_.surfaces[k]).friction;
+    }
+    const double all = length(pull - project_off(pull, touched_normals()));
+    Grip grip;
+    grip.friction = all > 0.0 ? friction / all : 0.0;
+    grip.rolling_friction = material_of(support.surface).rolling_friction;
+    grip.pressure = pressure;
+    grip.shortest = shortest_stretch_;
+    grip.negligible_way = kTouchingGaps * parking_gap(state_.position);
+    const Motion motion{state_.velocity, particle_.spin};
+    return plan_stretch(motion, state_.radius, pull, touched_normals(), grip, duration);
+}
+
+/// Time passes at rest; the surfaces carry the weight.
+void Mover::wait(double duration, const Vec3& a) {
+    share(-state_.velocity - duration * a, duration);
     state_.velocity = Vec3{};
     state_.time += duration;
     remaining_ = std::max(0.0, remaining_ - duration);
 }
 
 /// Follows one stretch under acceleration a. Returns the contact it ran into; ended_early: the surface ended first.
-std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, const ContactSurface& support, const Vec3& a,
+std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, ContactSurface& support, const Vec3& a,
                                              bool& ended_early) {
-    const Flight flight = flight_of(stretch, support);
-    ended_early = flight.path.duration < stretch.duration;
-    if (flight.path.duration <= 0.0) return std::nullopt;
+    const Flight flight = flight_of(stretch, support, ended_early);
+    if (flight.path.duration <= 0.0) {
+        ended_early = true;
+        return std::nullopt;
+    }
     const double before = remaining_;
     const Vec3 turned = stretch.motion.velocity - state_.velocity;
     auto next = follow(flight);
     const double elapsed = before - remaining_;
-    push(support.surface, turned + elapsed * (stretch.acceleration - a), false);
+    share(turned + elapsed * (stretch.acceleration - a), elapsed);
     finish_stretch(stretch, elapsed);
+    if (!next && !support.flat && !ended_early) turn_along(support);
     return next;
 }
 
@@ -184,115 +195,52 @@ void Mover::finish_stretch(const Stretch& stretch, double elapsed) {
 }
 
 /// Landing without a rebound: the approach is lost, friction answers the impulse.
-void Mover::land(const Motion& arriving, const Grip& grip) {
+void Mover::land(const Motion& arriving, double friction) {
     const Vec3 before = state_.velocity;  // with the rebound, whose impulse is booked already
     state_.velocity = arriving.velocity;
     particle_.spin = arriving.spin;
     for (const Vec3& normal : touched_normals()) {
-        const Motion after = bounce({state_.velocity, particle_.spin}, state_.radius, normal, 0.0, grip.friction);
+        const Motion after = bounce({state_.velocity, particle_.spin}, state_.radius, normal, 0.0, friction);
         state_.velocity = after.velocity;
         particle_.spin = after.spin;
     }
     state_.velocity = project_off(state_.velocity, touched_normals());
-    push(touched_.surfaces[0], state_.velocity - before, false);
+    shares_ = normal_accelerations(before - state_.velocity, touched_normals());
+    share(state_.velocity - before, 1.0);
 }
 
-void Mover::rest(SurfaceId support, const Vec3& a) {
-    // Landing again from one gap above, step after step, it would creep downhill.
-    if (length(state_.position - start_) <= kTouchingGaps * parking_gap(start_)) {
+/// Rests for what is left of the step. held: until the forces change.
+void Mover::rest(const Vec3& a, bool held) {
+    // Landing again from one gap above, step after step, it would creep downhill: it goes back the way it came.
+    if (state_.position != start_ && length(state_.position - start_) <= kTouchingGaps * parking_gap(start_)) {
         state_.position = start_;
-        scratch_.legs.resize(first_leg_);
+        for (std::size_t k = scratch_.legs.size(); k-- > first_leg_;) {
+            Leg back = scratch_.legs[k];
+            std::swap(back.from, back.to);
+            back.time = state_.time;
+            scratch_.legs.push_back(back);
+        }
     }
     particle_.spin = Vec3{};
-    wait(remaining_, support, a);
+    wait(remaining_, a);
     outcome_.resting = true;
+    outcome_.held = held;
     particle_.support = touched_;
 }
 
-/// How long a path along a support stays on it. On a round one (a rim, a curved surface) straight stretches turn by at
-/// most kStretchAngle before the particle is let go to fall the little that the surface has bent away.
-double Mover::time_on(const ContactSurface& support, const Path& path) const {
-    if (support.flat) {
-        Path of_contact_point = path;
-        of_contact_point.c[0] -= state_.radius * support.normal;
-        return rules_.world_.time_over(support.surface, of_contact_point, kTouchingGaps * parking_gap(state_.position));
-    }
-    const double bend = state_.radius > 0.0 ? state_.radius : rules_.world_.bounds().diagonal();
-    const double speed = length(path.c[1]);
-    const double acceleration = 2.0 * length(path.c[2]);
-    const double by_speed = speed > 0.0 ? kStretchAngle * bend / speed : path.duration;
-    const double by_acceleration =
-        acceleration > 0.0 ? std::sqrt(2.0 * kStretchAngle * bend / acceleration) : path.duration;
-    return std::min({path.duration, by_speed, by_acceleration});
+void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {
+    MovingParticle copy = particle;
+    MoveScratch scratch;
+    Mover(*this, copy, duration, scratch).weigh();
+    hits.insert(hits.end(), scratch.hits.begin(), scratch.hits.end());
 }
 
-/// The path of a stretch, up to where the supporting surface ends; its end keeps the parking gap.
-Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support) const {
-    const Vec3& v = stretch.motion.velocity;
-    const Vec3& a = stretch.acceleration;
-    Path path = parabola_path(state_.position, v, a, stretch.duration);
-    if (is_finite(path.end)) {
-        const double on = time_on(support, path);
-        if (on < stretch.duration) path = parabola_path(state_.position, v, a, on);
-        if (support.flat) {
-            const double height = rules_.world_.nearest(support.surface, path.end).distance - state_.radius;
-            path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * support.normal);
-        }
-    }
-    Flight flight{path, a, 0.0, state_, v + path.duration * a};
-    return flight;
-}
-
-/// Surfaces touched together decide where a pressed particle can go; at most three matter. An edge beside a face within
-/// the reach of touching is that face's own seam: on a flat surface it must not be felt.
-void Mover::remember(const ContactSurface& surface) {
-    for (std::size_t k = 0; k < touched_.count; ++k) {
-        const double turn = 1.0 - dot(touched_normals_[k], surface.normal);
-        const bool is_seam = touched_flat_[k] != surface.flat && turn <= seam_turn();
-        if (turn > kSameNormal && !is_seam) continue;
-        if (surface.flat && !touched_flat_[k]) set_touched(k, surface);
-        return;
-    }
-    if (touched_.count < touched_normals_.size()) set_touched(touched_.count++, surface);
-}
-
-/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
-double Mover::seam_turn() const {
-    if (state_.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingGaps * parking_gap(state_.position) / state_.radius;
-}
-
-void Mover::set_touched(std::size_t k, const ContactSurface& surface) {
-    touched_.surfaces[k] = surface.surface;
-    touched_normals_[k] = surface.normal;
-    touched_flat_[k] = surface.flat;
-}
-
-/// What a particle touches that has just met `contact`: that, and what it met before and has not left.
-void Mover::gather_touched(const Contact& contact) {
-    touched_ = {};
-    for (const ContactSurface& surface : contact.all()) remember(surface);
-    for (std::size_t k = 0; k < std::min(recent_count_, recent_.size()); ++k) {
-        if (const auto surface = touching(recent_[k])) remember(*surface);
-    }
-}
-
-void Mover::note_recent(SurfaceId surface) {
-    const auto known = recent_.begin() + static_cast<std::ptrdiff_t>(std::min(recent_count_, recent_.size()));
-    if (std::find(recent_.begin(), known, surface) == known) recent_[recent_count_++ % recent_.size()] = surface;
-}
-
-/// The surface as the particle touches it now; nothing when it does not.
-std::optional<ContactSurface> Mover::touching(SurfaceId surface) const {
-    const CollisionWorld& world = rules_.world_;
-    const double reach = kTouchingGaps * parking_gap(state_.position);
-    const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
-    if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;
-    if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
-    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
-    const double distance = world.signed_distance_from(surface, state_.position);
-    const Vec3 normal = world.unit_normal_of(surface, state_.position);
-    return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
+void Mover::weigh() {
+    touch_again(particle_.support);
+    const Vec3 a = rules_.forces_.acceleration(state_);
+    shares_ = normal_accelerations(a, touched_normals());
+    if (touched_.count == 0) touched_.surfaces = particle_.support.surfaces;  // share() gives the rest to the first
+    wait(remaining_, a);
 }
 
 }  // namespace ricochet

@@ -31,7 +31,8 @@ std::optional<Contact> Mover::answer(const Flight& flight, const Contact& contac
     if (support == nullptr) return std::nullopt;
     gather_touched(contact);
     if (slow_contacts_ > kMostSlowContacts) {
-        rest(support->surface, flight.kick_duration > 0.0 ? Vec3{} : acceleration_now(flight));
+        shares_ = {};
+        rest(flight.kick_duration > 0.0 ? Vec3{} : acceleration_now(flight), false);
         return std::nullopt;
     }
     return stay_in_contact(flight, *support, arriving);

@@ -52,7 +52,7 @@ struct SimulationSetup {
 /// Counters over the whole run so far. Every one is the same for any thread count.
 struct SimulationStatistics {
     std::uint64_t steps = 0;
-    std::uint64_t particle_steps = 0;  ///< sum over steps of the particles moved
+    std::uint64_t particle_steps = 0;  ///< sum over steps of the particles alive, resting ones too
     std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
     std::uint64_t expired = 0;         ///< retired at the end of their lifetime
     std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces

@@ -34,9 +34,12 @@ double Mover::curvature(const ContactSurface& surface, const Vec3& velocity) con
                                  state_.radius > 0.0 ? state_.radius : rules_.world_.size_of(surface.surface));
     const double step = kCurvatureStep * size;
     const Vec3 heading = along / speed;
-    const Vec3 ahead = rules_.world_.nearest(surface.surface, state_.position + step * heading).normal;
-    const Vec3 behind = rules_.world_.nearest(surface.surface, state_.position - step * heading).normal;
-    return dot(ahead - behind, heading) / (2.0 * step);
+    // A tangent soon comes out on the other side of a surface that bends towards it.
+    const auto normal_at = [&](double way) {
+        const Vec3 normal = rules_.world_.nearest(surface.surface, state_.position + way * heading).normal;
+        return dot(normal, surface.normal) < 0.0 ? -normal : normal;
+    };
+    return dot(normal_at(step) - normal_at(-step), heading) / (2.0 * step);
 }
 
 /// The acceleration that presses and pulls: that of the forces, and that by which a bent way turns off a straight one.
@@ -70,7 +73,7 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
     const Vec3 end_velocity = v;
     Path path = parabola_path(state_.position, v, a, stretch.duration);
     if (!is_finite(path.end)) return {path, a, 0.0, state_, v + path.duration * a};
-    const double bend = curvature(support, v);
+    const double bend = curvature(support, path.end - state_.position);
     const double on = time_on(support, path, bend);
     ends = on < stretch.duration && bend >= 0.0;
     if (on < stretch.duration) path = parabola_path(state_.position, v, a, on);
@@ -83,7 +86,8 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
         path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * support.normal);
     } else if (bend < 0.0) {
         const CollisionWorld::Nearest there = rules_.world_.nearest(support.surface, path.end);
-        const Vec3 lift = (state_.radius + parking_gap(path.end) - there.distance) * there.normal;
+        const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
+        const Vec3 lift = (side * (state_.radius + parking_gap(path.end)) - there.distance) * there.normal;
         const Vec3 end = flush_tiny(path.end + lift);
         v += lift / path.duration;
         path = parabola_path(state_.position, v, a, path.duration);

@@ -137,10 +137,8 @@ std::optional<Contact> Mover::spend_cascade(ContactSurface& support, double left
 /// Plans a stretch against all that is touched. pull: the forces' acceleration and what the bend of the way adds.
 Stretch Mover::plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration) {
     shares_ = normal_accelerations(pull, touched_normals());
-    double pressing = 0.0;
     double friction = 0.0;
     for (std::size_t k = 0; k < touched_.count; ++k) {
-        pressing += shares_[k];
         friction += shares_[k] * material_of(touched_.surfaces[k]).friction;
     }
     const double all = length(pull - project_off(pull, touched_normals()));

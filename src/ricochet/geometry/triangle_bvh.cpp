@@ -88,8 +88,23 @@ struct Query {
     double fraction_limit;
 };
 
+/// Bytes that the ray library holds; its own threads count too.
+struct MemoryCount {
+    std::atomic<std::ptrdiff_t> bytes{0};
+    HandOver begun;
+    HandOver counted;
+
+    MemoryCount() { begun.give(); }
+    ~MemoryCount() { counted.take(); }
+    MemoryCount(const MemoryCount&) = delete;
+    MemoryCount& operator=(const MemoryCount&) = delete;
+};
+
 bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
-    static_cast<std::atomic<std::ptrdiff_t>*>(user)->fetch_add(bytes, std::memory_order_relaxed);
+    auto& count = *static_cast<MemoryCount*>(user);
+    count.begun.take();
+    count.bytes.fetch_add(bytes, std::memory_order_relaxed);
+    count.counted.give();
     return true;
 }
 
@@ -103,10 +118,15 @@ struct TriangleBvh::Impl {
     FloatFrame frame;
     double padding = 0.0;  ///< in the float frame: rounding, slack and reach
     Box3 clip_box;         ///< world; generously larger than the padded boxes
-    std::atomic<std::ptrdiff_t> memory{0};
-    LoopOrder* build_order = nullptr;  ///< while the hierarchy is built
+    MemoryCount memory;
     embree::Device device;
     embree::Scene scene;
+
+    /// What the ray library's threads are given while they build.
+    struct Build {
+        const Impl* impl;
+        LoopOrder order;  // after impl: it tells that impl was set before the loop
+    };
 
     void build();
     void set_frame();
@@ -148,14 +168,13 @@ void TriangleBvh::Impl::build() {
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
-    rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
     rtcSetGeometryBoundsFunction(
         geometry,
         [](const RTCBoundsFunctionArguments* args) {
-            const auto& impl = *static_cast<const Impl*>(args->geometryUserPtr);
-            const LoopOrder::Body in_order(*impl.build_order);
-            impl.write_bounds(args->primID, *args->bounds_o);
+            auto& build = *static_cast<Build*>(args->geometryUserPtr);
+            const LoopOrder::Body in_order(build.order);
+            build.impl->write_bounds(args->primID, *args->bounds_o);
         },
         nullptr);
     rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
@@ -169,13 +188,14 @@ void TriangleBvh::Impl::build() {
         float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
         tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
     });
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    LoopOrder order;
-    build_order = &order;
-    rtcCommitScene(scene.get());
-    build_order = nullptr;
+    {
+        Build build{this, {}};
+        rtcSetGeometryUserData(geometry, &build);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene.get());
+    }
     embree::check_device(device.get(), "building the hierarchy of a collider");
 }
 
@@ -192,7 +212,7 @@ TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
 
 double TriangleBvh::reach() const { return impl_->reach; }
 double TriangleBvh::slack() const { return impl_->slack; }
-std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.load()); }
+std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.bytes.load()); }
 
 void TriangleBvh::Impl::visit_all(Query& query) const {
     for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle) {

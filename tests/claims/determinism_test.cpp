@@ -104,6 +104,25 @@ TEST_P(Determinism, StateTotalsAndStatisticsDoNotDependOnTheNumberOfThreads) {
     }
 }
 
+TEST_P(Determinism, TheStateDoesNotDependOnWhetherRestingParticlesSleep) {
+    const auto settling = [](bool sleeping) {
+        SimulationSetup setup = debris(sphere_mesh({0.1, 0.2, 0.3}, 1.0, 3), GetParam());
+        setup.options.sleeping = sleeping;
+        setup.options.duration = 4.0;
+        setup.materials[1] = {"felt", 0.3, 0.5};
+        setup.emitters[0].rate = {};
+        setup.emitters[0].lifetime = {100.0, 0.0};
+        return Simulation(std::move(setup));
+    };
+    Simulation awake = settling(false);
+    Simulation asleep = settling(true);
+    run(awake);
+    run(asleep);
+    EXPECT_EQ(asleep.state_hash(), awake.state_hash());
+    EXPECT_GT(asleep.statistics().asleep, 0U);
+    EXPECT_EQ(awake.statistics().asleep, 0U);
+}
+
 TEST_P(Determinism, TheStateDoesNotDependOnTheInstructionSetOfTheRayLibrary) {
     const TriangleMesh mesh = sphere_mesh({0.1, 0.2, 0.3}, 1.0, 3);
     std::vector<const char*> settings{"", "isa=sse2", "isa=sse4.2"};

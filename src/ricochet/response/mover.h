@@ -23,6 +23,8 @@ public:
           scratch_(scratch),
           search_(rules.world_, scratch.contacts),
           start_(particle.state.position),
+          began_(particle.support),
+          began_still_(particle.state.velocity == Vec3{} && particle.spin == Vec3{}),
           first_leg_(scratch.legs.size()),
           remaining_(duration),
           shortest_stretch_(duration / kShortestStretches) {}
@@ -95,7 +97,9 @@ private:
     ForceInput& state_;
     MoveScratch& scratch_;
     ContactSearch search_;
-    Vec3 start_;  // where the step began
+    Vec3 start_;        // where the step began
+    Support began_;     // what it touched then
+    bool began_still_;  // and that nothing moved
     std::size_t first_leg_;
     MoveOutcome outcome_;
     double remaining_;

@@ -222,7 +222,9 @@ void Mover::rest(const Vec3& a, bool held) {
     particle_.spin = Vec3{};
     wait(remaining_, a);
     outcome_.resting = true;
-    outcome_.held = held;
+    // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
+    outcome_.held = held && began_still_ && state_.position == start_ && began_.count == touched_.count &&
+                    began_.cascade_left == 0.0 && began_.surfaces == touched_.surfaces;
     particle_.support = touched_;
 }
 

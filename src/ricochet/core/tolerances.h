@@ -34,6 +34,20 @@ inline constexpr double kLongestParkingUlps = 4096.0;
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingGaps = 8.0;
 
+/// Times that a particle is projected out of what it is behind in one step; after that it goes back to where it came
+/// from. Reason: in a corner of several colliders one projection leads behind the next. Smaller: corners stop particles
+/// more often. Larger: sharp wedges cost more queries.
+inline constexpr int kMostProjections = 16;
+
+/// Restitution that a spring and damper can do at least: less would need damping without bound, which no step can
+/// follow. Smaller: the stability bound of dead surfaces shrinks with its root. Larger: they bounce more.
+inline constexpr double kLeastPenaltyRestitution = 0.01;
+
+/// Ways of one time tolerance within which a particle that has gone back to a collision counts as touching the surface.
+/// Reason: bisection leaves it up to one such way off. Smaller than 1: resting contact falls and lands in every step.
+/// Larger: particles rest on air that much further off.
+inline constexpr double kBracketsOfTouch = 2.0;
+
 /// Contacts in a row, pressed on and all slower than the resting speed or without time between them, after which a
 /// particle comes to rest for the step. Reason: in a pit of four or more faces a sliding particle circles into the apex
 /// in infinitely many ever shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger:
@@ -118,9 +132,21 @@ inline constexpr double kSeamSlack = 0x1p-48;
 /// not be stopped again and again. Larger: a sphere that overlaps at birth can sink in by that fraction of its path.
 inline constexpr double kSlowestApproach = 0x1p-48;
 
+/// Rounding of a pseudonormal, relative to the sum of the weights of the normals it is the mean of, and of its scalar
+/// product with a unit vector: a few roundings of 2^-50 and one of 2^-53 for each of some hundred triangles around a
+/// vertex. Below it normals count as cancelled and sides as undecided. Smaller: rounding tells sides apart at knife
+/// edges. Larger: edges sharper than that (rad) have no sides.
+inline constexpr double kPseudonormalRounding = 0x1p-44;
+
 /// Depth to which a path is halved while its chords are being certified. 2^-52 of the path is below the rounding of its
 /// points; a chord that still meets a triangle there is taken as an impact at that place.
 inline constexpr int kCertificateDepth = 52;
+
+/// Places at which one leg meets neighbouring triangles are one crossing when they are nearer to each other than this
+/// part of their largest coordinate. Reason: through an edge a leg meets two triangles at places that differ by
+/// rounding only. Smaller: such a crossing counts twice, and an open surface that was crossed looks as if it was not.
+/// Larger: the two faces of a thinner plate count as one.
+inline constexpr double kSameCrossing = 1e-9;
 
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.

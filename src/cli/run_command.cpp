@@ -34,6 +34,7 @@ struct RunArguments {
     std::string output;
     std::string output_state;
     std::string threads;
+    std::string response;
     bool quiet = false;
     bool resume = false;
     bool verify = false;
@@ -139,13 +140,18 @@ bool print_violations(const Simulation& simulation) {
 int run(const RunArguments& arguments) {
     refuse_what_is_not_built(arguments);
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
-    SceneDescription scene = load_scene(arguments.scene);
+    SceneArguments wanted = arguments.scene;
+    if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
+    SceneDescription scene = load_scene(wanted);
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);
     scene.setup.options.verify = arguments.verify;
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
 
+    for (const std::string& warning : simulation.warnings()) {
+        fmt::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
+    }
     const InterruptGuard guard;
     const OutputDirectory folder(arguments.output);
     check_writable(arguments.output_state);
@@ -177,6 +183,8 @@ void add_options(CLI::App& command, RunArguments& a) {
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
         ->type_name("FILE.csv");
     command.add_option("--threads", a.threads, "Worker threads (default: all processors)")->type_name("N");
+    command.add_option("--response", a.response, "How impacts are answered, in place of what the scene says")
+        ->type_name("exact|rollback|project|penalty");
     command.add_flag("--quiet", a.quiet, "No progress, no report");
     command.add_flag(
         "--verify", a.verify,

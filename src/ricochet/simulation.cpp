@@ -1,7 +1,10 @@
 #include "ricochet/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/collision/collision_world.h"
@@ -12,7 +15,8 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/shape_mesh.h"
-#include "ricochet/response/exact.h"
+#include "ricochet/response/penalty.h"
+#include "ricochet/response/rollback.h"
 #include "ricochet/run_check.h"
 
 namespace ricochet {
@@ -80,7 +84,11 @@ struct BlockCounts {
     std::uint64_t frozen = 0;
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
+    std::uint64_t trials = 0;
+    std::uint64_t penetrations = 0;
     double unsimulated = 0.0;
+    double penetration_sum = 0.0;
+    double penetration_deepest = 0.0;
     std::vector<ContactRecord> records;
     std::vector<Violation> violations;
 
@@ -91,8 +99,56 @@ struct BlockCounts {
         budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
         unsimulated += outcome.unsimulated_time;
         bounces_max = std::max(bounces_max, outcome.bounces);
+        trials += outcome.trials;
+        penetrations += outcome.depth > 0.0 ? 1 : 0;
+        penetration_sum += outcome.depth;
+        penetration_deepest = std::max(penetration_deepest, outcome.depth);
+    }
+    void add_to(SimulationStatistics& statistics) const {
+        statistics.contacts += contacts;
+        statistics.budget_exhausted += budget_exhausted;
+        statistics.stayed += stayed;
+        statistics.frozen += frozen;
+        statistics.lost_impulses += lost_impulses;
+        statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
+        statistics.unsimulated_time += unsimulated;
+        statistics.trials += trials;
+        statistics.penetrations += penetrations;
+        statistics.penetration_sum += penetration_sum;
+        statistics.penetration_deepest = std::max(statistics.penetration_deepest, penetration_deepest);
     }
 };
+
+ResponseSettings response_settings(const SimulationOptions& options) {
+    return {options.integrator, options.resting_speed, options.bounce_budget, options.seed,
+            options.time_step,  options.rollback,      options.project,       options.penalty};
+}
+
+double lightest_particle(const SimulationSetup& setup) {
+    double lightest = std::numeric_limits<double>::infinity();
+    for (const Particle& particle : setup.particles) lightest = std::min(lightest, particle.mass);
+    for (const auto& emitter : setup.emitters) lightest = std::min(lightest, emitter.mass.mean - emitter.mass.spread);
+    return lightest;
+}
+
+/// The sub-step against the stability bound of the lightest particle on the most damping of the surfaces used.
+std::vector<std::string> warnings_of(const SimulationSetup& setup) {
+    const SimulationOptions& options = setup.options;
+    const double mass = lightest_particle(setup);
+    if (options.response != ResponseKind::penalty || setup.colliders.empty() || !std::isfinite(mass)) return {};
+    const auto dampest = std::min_element(setup.materials.begin(), setup.materials.end(),
+                                          [](const auto& a, const auto& b) { return a.restitution < b.restitution; });
+    const ResponseSettings settings = response_settings(options);
+    const ContactSpring spring = contact_spring(settings, mass, dampest->restitution);
+    const double bound = longest_stable_step(spring, mass);
+    const double substep = options.time_step / options.penalty.substeps;
+    if (substep <= bound) return {};
+    return {fmt::format("the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
+                        "lightest particle {:.3g} kg, restitution {}): contacts may explode; use at least {} substeps "
+                        "or a softer spring",
+                        substep, bound, spring.stiffness, mass, dampest->restitution,
+                        std::ceil(options.time_step / bound))};
+}
 
 }  // namespace
 
@@ -108,7 +164,10 @@ struct Simulation::Impl {
     void collect_records(std::vector<BlockCounts>& blocks);
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
-    [[nodiscard]] MovingParticle moving(std::size_t i, double start) const;
+    [[nodiscard]] MovingParticle moving(std::size_t i, double start);
+    [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
+    void move_system(double from, double to, std::vector<BlockCounts>& blocks);
+    void compact(const std::vector<std::uint8_t>& keep);
     void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
     void add_weights_of_sleepers(double sign);
     void collect_violations(const std::vector<BlockCounts>& blocks);
@@ -123,12 +182,14 @@ struct Simulation::Impl {
     }
 
     SimulationOptions options;
+    std::vector<std::string> warnings;
     ForceField forces;
     std::vector<Material> materials;
     CollisionWorld world;
     std::vector<Emitter> emitters;
     std::optional<Box3> bounds;
-    ExactResponse response;
+    std::unique_ptr<Response> response;
+    std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
@@ -143,12 +204,12 @@ struct Simulation::Impl {
 
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(checked(setup.options)),
+      warnings(warnings_of(setup)),
       forces(std::move(setup.forces)),
       materials(checked_materials(std::move(setup.materials), setup.colliders)),
       world(std::move(setup.colliders)),
       bounds(setup.bounds),
-      response(world, forces, materials,
-               {options.integrator, options.resting_speed, options.bounce_budget, options.seed}),
+      response(make_response(options.response, {world, forces, materials, response_settings(options)})),
       totals(options.triangle_totals ? world.surface_count() : 0),
       steps(count_steps(options)),
       may_sleep(options.sleeping && forces.is_steady()) {
@@ -167,6 +228,10 @@ void Simulation::Impl::add(Particle particle) {
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
+    if (response->keeps_sides()) {
+        sides.resize(particles.size() * world.colliders().size());
+        if (is_finite(particle.position)) response->first_sides(particle.position, sides_of(particles.size() - 1));
+    }
     ++statistics.emitted;
 }
 
@@ -193,18 +258,14 @@ void Simulation::Impl::emit(double from, double to) {
 void Simulation::Impl::move_all(double from, double to) {
     const std::size_t count = particles.size();
     std::vector<BlockCounts> blocks((count + kBlock - 1) / kBlock);
-    parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        move_block(begin, end, from, to, blocks[block]);
-    });
-    for (const BlockCounts& block : blocks) {
-        statistics.contacts += block.contacts;
-        statistics.budget_exhausted += block.budget_exhausted;
-        statistics.stayed += block.stayed;
-        statistics.frozen += block.frozen;
-        statistics.lost_impulses += block.lost_impulses;
-        statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, block.bounces_max);
-        statistics.unsimulated_time += block.unsimulated;
+    if (options.response == ResponseKind::rollback && options.rollback.global) {
+        move_system(from, to, blocks);
+    } else {
+        parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+            move_block(begin, end, from, to, blocks[block]);
+        });
     }
+    for (const BlockCounts& block : blocks) block.add_to(statistics);
     statistics.particle_steps += count;
     if (options.record_contacts) collect_records(blocks);
     if (check) collect_violations(blocks);
@@ -241,7 +302,7 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
         if (stop <= start || is_asleep(i)) continue;
         MovingParticle particle = moving(i, start);
         scratch.legs.clear();
-        const MoveOutcome outcome = response.move(particle, stop - start, scratch);
+        const MoveOutcome outcome = response->move(particle, stop - start, scratch);
         if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
         store(i, particle, outcome);
         particles.booked_until[i] = stop;
@@ -251,14 +312,53 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     if (options.record_contacts) counts.records = scratch.records;
 }
 
-MovingParticle Simulation::Impl::moving(std::size_t i, double start) const {
+// All particles go back together: see rollback.h.
+void Simulation::Impl::move_system(double from, double to, std::vector<BlockCounts>& blocks) {
+    std::vector<SystemParticle> system(particles.size());
+    for (std::size_t i = 0; i < system.size(); ++i) {
+        const double start = std::max(from, particles.birth_time[i]);
+        const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
+        system[i].particle = moving(i, start);
+        system[i].start = start;
+        system[i].stop = stop;
+        system[i].is_out = particles.frozen[i] != 0;
+    }
+    std::vector<MoveScratch> scratch(blocks.size());
+    for (MoveScratch& block : scratch) {
+        block.record_contacts = options.record_contacts;
+        block.record_legs = check != nullptr;
+    }
+    move_together(response->rules(), system, from, to, scratch, kBlock);
+    for (std::size_t i = 0; i < system.size(); ++i) {
+        SystemParticle& moved = system[i];
+        if (particles.frozen[i] != 0 || moved.stop <= moved.start) continue;
+        BlockCounts& counts = blocks[i / kBlock];
+        if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
+        store(i, moved.particle, moved.outcome);
+        particles.booked_until[i] = moved.stop;
+        counts.add(moved.outcome);
+    }
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        if (!totals.empty()) add_hits(scratch[k].hits, blocks[k]);
+        if (options.record_contacts) blocks[k].records = std::move(scratch[k].records);
+    }
+}
+
+MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
     MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
     Support& support = particle.support;
     for (const SurfaceId surface : particles.support[i]) {
         if (surface != kNoSupport) support.surfaces[support.count++] = surface;
     }
     support.cascade_left = particles.cascade_left[i];
+    particle.sides = sides_of(i);
     return particle;
+}
+
+std::span<SideMemory> Simulation::Impl::sides_of(std::size_t i) {
+    if (sides.empty()) return {};
+    const std::size_t colliders = world.colliders().size();
+    return {sides.data() + i * colliders, colliders};
 }
 
 void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
@@ -293,7 +393,7 @@ void Simulation::Impl::add_weight(std::size_t i, double until, double sign, Bloc
     const double elapsed = until - particles.booked_until[i];
     if (totals.empty() || !is_asleep(i) || !(elapsed > 0.0)) return;
     std::vector<SurfaceHit> hits;
-    response.add_weight(moving(i, until), elapsed, hits);
+    response->add_weight(moving(i, until), elapsed, hits);
     for (SurfaceHit& hit : hits) hit.impulse *= sign;
     add_hits(hits, counts);
 }
@@ -320,11 +420,24 @@ void Simulation::Impl::retire(double now) {
         any = any || keep[i] == 0;
     }
     statistics.lost_impulses += counts.lost_impulses;
-    if (any) particles.compact(keep);
-    if (any && check) check->compact(keep);
+    if (any) compact(keep);
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
     const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
     statistics.asleep = may_sleep ? held : 0;
+}
+
+void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
+    if (!sides.empty()) {
+        const auto colliders = static_cast<std::ptrdiff_t>(world.colliders().size());
+        auto kept = sides.begin();
+        for (std::size_t i = 0; i < keep.size(); ++i) {
+            const auto first = sides.begin() + static_cast<std::ptrdiff_t>(i) * colliders;
+            if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
+        }
+        sides.erase(kept, sides.end());
+    }
+    particles.compact(keep);
+    if (check) check->compact(keep);
 }
 
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
@@ -383,6 +496,8 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     impl_->add_weights_of_sleepers(-1.0);
     return result;
 }
+
+const std::vector<std::string>& Simulation::warnings() const { return impl_->warnings; }
 
 bool Simulation::has_spheres() const { return impl_->has_spheres; }
 

@@ -15,8 +15,8 @@
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/response/exact.h"
 #include "ricochet/response/material.h"
+#include "ricochet/response/response.h"
 #include "ricochet/verify/violation.h"
 
 namespace ricochet {
@@ -36,6 +36,10 @@ struct SimulationOptions {
     bool verify = false;
     bool triangle_totals = true;         ///< keep hits and impulse per triangle (56 bytes each)
     std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
+    ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
+    RollbackSettings rollback = {};               ///< of the rollback response
+    ProjectSettings project = {};                 ///< of the project response
+    PenaltySettings penalty = {};                 ///< of the penalty response
 };
 
 /// Everything a simulation is made from.
@@ -67,6 +71,10 @@ struct SimulationStatistics {
     std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;        ///< what options.verify found wrong
+    std::uint64_t trials = 0;  ///< states that a response tested for collision or penetration; 0 for exact
+    std::uint64_t penetrations = 0;          ///< particle-steps in which a particle was seen behind a surface
+    double penetration_sum = 0.0;            ///< m, sum of their depths, before anything put them right
+    double penetration_deepest = 0.0;        ///< m
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 
@@ -118,6 +126,9 @@ public:
     /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run
     /// long.
     [[nodiscard]] bool has_spheres() const;
+
+    /// What the settings promise badly, one sentence each: a penalty sub-step beyond the stability bound.
+    [[nodiscard]] const std::vector<std::string>& warnings() const;
 
     /// What options.verify found wrong, in the order of steps and particles; the first kMostViolations of them. All are
     /// counted in statistics().violations.

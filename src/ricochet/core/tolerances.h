@@ -34,6 +34,20 @@ inline constexpr double kLongestParkingUlps = 4096.0;
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingGaps = 8.0;
 
+/// Times that a particle is projected out of what it is behind in one step; after that it goes back to where it came
+/// from. Reason: in a corner of several colliders one projection leads behind the next. Smaller: corners stop particles
+/// more often. Larger: sharp wedges cost more queries.
+inline constexpr int kMostProjections = 16;
+
+/// Restitution that a spring and damper can do at least: less would need damping without bound, which no step can
+/// follow. Smaller: the stability bound of dead surfaces shrinks with its root. Larger: they bounce more.
+inline constexpr double kLeastPenaltyRestitution = 0.01;
+
+/// Ways of one time tolerance within which a particle that has gone back to a collision counts as touching the surface.
+/// Reason: bisection leaves it up to one such way off. Smaller than 1: resting contact falls and lands in every step.
+/// Larger: particles rest on air that much further off.
+inline constexpr double kBracketsOfTouch = 2.0;
+
 /// Contacts in a row, pressed on and all slower than the resting speed or without time between them, after which a
 /// particle comes to rest for the step. Reason: in a pit of four or more faces a sliding particle circles into the apex
 /// in infinitely many ever shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger:

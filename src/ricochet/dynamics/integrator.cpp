@@ -111,4 +111,10 @@ Vec3 velocity_at(IntegratorKind kind, const ForceField& forces, const Flight& fl
     return one_step(kind, forces, flight.start, s).velocity;
 }
 
+PhaseState state_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s) {
+    if (s >= flight.path.duration) return {flight.path.end, flight.end_velocity};
+    if (flight.path.degree < 3) return {flight.path.position(s), flight.path.velocity(s)};
+    return one_step(kind, forces, flight.start, s);
+}
+
 }  // namespace ricochet

@@ -63,4 +63,8 @@ struct Flight {
 /// a step of length s from the flight's start: the Hermite path's own derivative would lose an order.
 [[nodiscard]] Vec3 velocity_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s);
 
+/// Position and velocity at flight time s: midpoint and rk4 step from the flight's start again, the others are on the
+/// flight's path.
+[[nodiscard]] PhaseState state_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s);
+
 }  // namespace ricochet

@@ -34,6 +34,11 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["started_inside"] = statistics.started_inside;
     json["stayed"] = statistics.stayed;
     json["lost_impulses"] = statistics.lost_impulses;
+    json["trials"] = statistics.trials;
+    json["penetrations"] = statistics.penetrations;
+    json["penetration_mean"] =
+        statistics.penetrations > 0 ? statistics.penetration_sum / static_cast<double>(statistics.penetrations) : 0.0;
+    json["penetration_deepest"] = statistics.penetration_deepest;
 }
 
 ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
@@ -55,6 +60,7 @@ ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
 
 RunSummary summarize(const Simulation& simulation) {
     RunSummary summary;
+    summary.response = name_of(simulation.options().response);
     summary.seed = simulation.options().seed;
     summary.time_step = simulation.options().time_step;
     summary.simulated_time = simulation.time();
@@ -75,6 +81,7 @@ std::string summary_text(const RunSummary& summary) {
     json["version"] = summary.version;
     json["scene"] = summary.scene;
     json["threads"] = summary.threads;
+    json["response"] = summary.response;
     json["seed"] = summary.seed;
     json["time_step"] = summary.time_step;
     json["steps"] = summary.statistics.steps;

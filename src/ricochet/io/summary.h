@@ -27,6 +27,7 @@ struct RunSummary {
     std::string version;  ///< of ricochet
     std::string scene;    ///< the scene file as it was named
     int threads = 0;
+    std::string response;  ///< by which impacts were answered
     std::uint64_t seed = 0;
     double time_step = 0.0;       ///< s
     double simulated_time = 0.0;  ///< s

@@ -162,6 +162,21 @@ Stretch plan_stretch(const Motion& motion, double radius, const Vec3& a, std::sp
     return slide_of_sphere(start, radius, n, along, along / pull, 0.0, most_friction, grip, duration);
 }
 
+Motion end_of_stretch(const Stretch& stretch, double elapsed, Motion motion, double radius, const Vec3& n) {
+    motion.spin = stretch.motion.spin + elapsed * stretch.spin_acceleration;
+    const bool whole = elapsed >= stretch.duration;
+    if (whole && stretch.stops) {
+        // After braking to a stop only rounding is left along the heading.
+        const Vec3 heading = normalized(stretch.motion.velocity);
+        motion.velocity -= dot(motion.velocity, heading) * heading;
+        if (length(motion.velocity) <= kStopRounding * length(stretch.motion.velocity)) motion.velocity = Vec3{};
+    }
+    if (stretch.rolls && radius > 0.0 && (whole || stretch.motion.spin == Vec3{})) {
+        motion.spin = rolling_spin(motion, radius, n);
+    }
+    return motion;
+}
+
 Vec3 rolling_spin(const Motion& motion, double radius, const Vec3& n) {
     return cross(n, motion.velocity) / radius + dot(motion.spin, n) * n;
 }

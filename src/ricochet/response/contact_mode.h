@@ -35,6 +35,9 @@ struct Grip {
 /// acceleration a presses onto them: a + sum N_i n_i is what project_off() leaves of a.
 [[nodiscard]] std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> normals);
 
+/// Stretches of a step that are not cut further because friction turns: the usual 1 / Grip::shortest.
+inline constexpr double kShortestStretches = 32.0;
+
 /// Plans the contact of a particle under acceleration a with planes of the given unit normals (at most three), for at
 /// most `duration` seconds: velocity and acceleration lose what presses into the planes, friction holds, brakes the
 /// slip, or keeps a sphere rolling (5/7 of the acceleration) where it grips enough for that. Friction keeps its
@@ -42,6 +45,11 @@ struct Grip {
 /// sphere is braked like a point, its spin left alone.
 [[nodiscard]] Stretch plan_stretch(const Motion& motion, double radius, const Vec3& a, std::span<const Vec3> normals,
                                    const Grip& grip, double duration);
+
+/// The motion after `elapsed` seconds of a stretch, from what the path gave (its velocity there; the spin of before):
+/// spun up, at a stop, or rolling on a surface of unit normal n where the stretch says so.
+[[nodiscard]] Motion end_of_stretch(const Stretch& stretch, double elapsed, Motion motion, double radius,
+                                    const Vec3& n);
 
 /// Spin of a sphere that rolls with velocity v on a surface of unit normal n; what it had about the normal is kept.
 [[nodiscard]] Vec3 rolling_spin(const Motion& motion, double radius, const Vec3& n);

@@ -7,33 +7,27 @@
 #include "ricochet/response/mover.h"
 
 namespace ricochet {
-namespace {
-
-/// States beyond this cannot be followed: the predicates would leave the range of doubles.
-bool can_be_followed(const Path& path) {
-    double reach = max_abs(path.c[0]);
-    double power = path.duration;
-    for (int k = 1; k <= path.degree; ++k, power *= path.duration) {
-        reach += power * max_abs(path.c[static_cast<std::size_t>(k)]);
-    }
-    return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
-}
-
-}  // namespace
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    return Mover(*this, particle, duration, scratch).run();
+    return Mover(rules_, particle, duration, scratch).run();
+}
+
+void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {
+    MovingParticle copy = particle;
+    MoveScratch scratch;
+    Mover(rules_, copy, duration, scratch).weigh();
+    hits.insert(hits.end(), scratch.hits.begin(), scratch.hits.end());
 }
 
 /// The loop that moves one particle: fly until something is in the way, answer, go on with the time that is left.
 MoveOutcome Mover::run() {
-    const IntegratorKind integrator = rules_.settings_.integrator;
+    const IntegratorKind integrator = rules_.settings.integrator;
     std::optional<Contact> contact = go_on_in_contact();
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {
         if (!contact) {
-            flight = first ? begin_flight(integrator, rules_.forces_, state_, remaining_)
-                           : resume_flight(integrator, rules_.forces_, state_, flight, remaining_);
+            flight = first ? begin_flight(integrator, rules_.forces, state_, remaining_)
+                           : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
             contact = follow(flight);
         }
         while (contact && has_budget() && !outcome_.absorbed) contact = answer(flight, *contact);
@@ -73,7 +67,7 @@ std::optional<Contact> Mover::follow(const Flight& flight) {
     }
     accept_chain();
     const double elapsed = contact ? contact->time : path.duration;
-    state_.velocity = velocity_at(rules_.settings_.integrator, rules_.forces_, flight, elapsed);
+    state_.velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, elapsed);
     state_.time += elapsed;
     remaining_ = std::max(0.0, remaining_ - elapsed);
     return contact;
@@ -81,7 +75,7 @@ std::optional<Contact> Mover::follow(const Flight& flight) {
 
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
 void Mover::leave_surface(const Flight& flight) {
-    state_.velocity = velocity_at(rules_.settings_.integrator, rules_.forces_, flight, 0.0);
+    state_.velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, 0.0);
     if (const auto place = step_off(search_, state_.position)) {
         if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
         first_leg_ = scratch_.legs.size();

@@ -7,21 +7,19 @@
 #include <span>
 
 #include "ricochet/response/contact_mode.h"
-#include "ricochet/response/exact.h"
+#include "ricochet/response/impact.h"
 
 namespace ricochet {
 
 class Mover {
-    /// Stretches of a step that are not cut further because friction turns.
-    static constexpr double kShortestStretches = 32.0;
-
 public:
-    Mover(const ExactResponse& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
+    Mover(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
         : rules_(rules),
           particle_(particle),
           state_(particle.state),
           scratch_(scratch),
-          search_(rules.world_, scratch.contacts),
+          search_(rules.world, scratch.contacts),
+          impact_(rules, particle, scratch, outcome_),
           start_(particle.state.position),
           began_(particle.support),
           began_still_(particle.state.velocity == Vec3{} && particle.spin == Vec3{}),
@@ -37,19 +35,12 @@ private:
     // Flying (exact.cpp).
     std::optional<Contact> follow(const Flight& flight);
     void accept_chain();
-    [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings_.bounce_budget; }
+    [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
     void leave_surface(const Flight& flight);
     void freeze();
 
     // Impacts (mover_impact.cpp).
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
-    void reflect(const Contact& contact);
-    void reflect_off(const ContactSurface& surface, const Material& material);
-    [[nodiscard]] Motion random_reflection(const ContactSurface& surface, const Material& material);
-    void push_out_of_corner(const Contact& contact);
-    void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
-    void record(const ContactSurface& surface, const Vec3& velocity_before);
-    [[nodiscard]] const Material& material_of(SurfaceId surface) const;
 
     // Resting, sliding, rolling (mover_contact.cpp).
     [[nodiscard]] const ContactSurface* support_of(const Flight& flight, const Contact& contact,
@@ -92,16 +83,17 @@ private:
         return {touched_normals_.data(), static_cast<std::size_t>(touched_.count)};
     }
 
-    const ExactResponse& rules_;
+    const ResponseRules& rules_;
     MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
     ContactSearch search_;
+    MoveOutcome outcome_;
+    ImpactAnswer impact_;
     Vec3 start_;        // where the step began
     Support began_;     // what it touched then
     bool began_still_;  // and that nothing moved
     std::size_t first_leg_;
-    MoveOutcome outcome_;
     double remaining_;
     Support touched_;  // cascade_left unused
     std::array<Vec3, 3> touched_normals_;

@@ -24,13 +24,13 @@ const ContactSurface* Mover::support_of(const Flight& flight, const Contact& con
     const ContactSurface* support = nullptr;
     double hardest = 0.0;
     for (const ContactSurface& surface : contact.all()) {
-        const Material& material = material_of(surface.surface);
+        const Material& material = impact_.material_of(surface.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(a, surface.normal)) * flight.kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        const bool can_rest = material.can_hold(rules_.settings_.resting_speed);
-        if (approach > 0.0 && rebound >= (can_rest ? rules_.settings_.resting_speed : 0.0)) return nullptr;
+        const bool can_rest = material.can_hold(rules_.settings.resting_speed);
+        if (approach > 0.0 && rebound >= (can_rest ? rules_.settings.resting_speed : 0.0)) return nullptr;
         const double pressing = -dot(pull_on(surface, a, arriving.velocity), surface.normal);
         if (!can_rest || pressing <= hardest) continue;
         hardest = pressing;
@@ -45,7 +45,7 @@ std::optional<Contact> Mover::go_on_in_contact() {
     if (particle_.support.count == 0) return std::nullopt;
     const Support before = std::exchange(particle_.support, Support{});
     touch_again(before);
-    const Vec3 a = rules_.forces_.acceleration(state_);
+    const Vec3 a = rules_.forces.acceleration(state_);
     std::size_t hardest = 0;
     double pressing = 0.0;
     for (std::size_t k = 0; k < touched_.count; ++k) {
@@ -55,7 +55,7 @@ std::optional<Contact> Mover::go_on_in_contact() {
     }
     if (!(pressing > 0.0)) return std::nullopt;
     ContactSurface support = touched_surface(hardest);
-    if (rules_.settings_.integrator == IntegratorKind::symplectic_euler) {
+    if (rules_.settings.integrator == IntegratorKind::symplectic_euler) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
         if (still && is_finite(a) && plan(support, a, 1.0, remaining_).at_rest) rest(a, true);
@@ -70,7 +70,7 @@ std::optional<Contact> Mover::go_on_in_contact() {
 std::optional<Contact> Mover::stay_in_contact(const Flight& flight, const ContactSurface& support,
                                               const Motion& arriving) {
     if (is_kicked(flight)) {
-        land(arriving, material_of(support.surface).friction);
+        land(arriving, impact_.material_of(support.surface).friction);
         return follow_surface(support, true);
     }
     bool ended_early = false;
@@ -82,7 +82,7 @@ std::optional<Contact> Mover::stay_in_contact(const Flight& flight, const Contac
 std::optional<Contact> Mover::follow_surface(ContactSurface support, bool kicked) {
     bool ended_early = false;
     for (int count = 0; count < kMostStretches && remaining_ > 0.0; ++count) {
-        const Vec3 a = kicked ? Vec3{} : rules_.forces_.acceleration(state_);
+        const Vec3 a = kicked ? Vec3{} : rules_.forces.acceleration(state_);
         const Vec3 pull = pull_on(support, a, state_.velocity);
         if (dot(pull, support.normal) > 0.0) return std::nullopt;  // nothing presses any more
         const Stretch stretch = plan(support, pull, kicked ? 0.0 : 1.0, remaining_);
@@ -100,11 +100,11 @@ std::optional<Contact> Mover::follow_surface(ContactSurface support, bool kicked
 /// The rest of the bounce cascade, summed.
 std::optional<Contact> Mover::finish_cascade(ContactSurface support, bool& ended_early) {
     const double rebound = std::max(0.0, dot(state_.velocity, support.normal));
-    const Vec3 a = rules_.forces_.acceleration(state_);
+    const Vec3 a = rules_.forces.acceleration(state_);
     const double pressing = -dot(pull_on(support, a, state_.velocity), support.normal);
     const Vec3 before = state_.velocity;
     state_.velocity = project_off(before - rebound * support.normal, touched_normals());
-    push(support.surface, state_.velocity - before, false);
+    impact_.push(support.surface, state_.velocity - before, false);
     if (!(pressing > 0.0)) return std::nullopt;
     const double duration = cascade_duration(rebound, pressing, slow_restitution(support.surface));
     return spend_cascade(support, duration, ended_early);
@@ -115,7 +115,7 @@ std::optional<Contact> Mover::finish_cascade(ContactSurface support, bool& ended
 std::optional<Contact> Mover::spend_cascade(ContactSurface& support, double left, bool& ended_early) {
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
     for (int part = 0; part < kMostStretches && left > 0.0 && remaining_ > 0.0; ++part) {
-        const Vec3 a = rules_.forces_.acceleration(state_);
+        const Vec3 a = rules_.forces.acceleration(state_);
         const Vec3 pull = pull_on(support, a, state_.velocity);
         const Stretch stretch = plan(support, pull, pressure, std::min(left, remaining_));
         const double before = remaining_;
@@ -139,12 +139,12 @@ Stretch Mover::plan(const ContactSurface& support, const Vec3& pull, double pres
     shares_ = normal_accelerations(pull, touched_normals());
     double friction = 0.0;
     for (std::size_t k = 0; k < touched_.count; ++k) {
-        friction += shares_[k] * material_of(touched_.surfaces[k]).friction;
+        friction += shares_[k] * impact_.material_of(touched_.surfaces[k]).friction;
     }
     const double all = length(pull - project_off(pull, touched_normals()));
     Grip grip;
     grip.friction = all > 0.0 ? friction / all : 0.0;
-    grip.rolling_friction = material_of(support.surface).rolling_friction;
+    grip.rolling_friction = impact_.material_of(support.surface).rolling_friction;
     grip.pressure = pressure;
     grip.shortest = shortest_stretch_;
     grip.negligible_way = kTouchingGaps * parking_gap(state_.position);
@@ -179,17 +179,10 @@ std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, ContactSurf
 }
 
 void Mover::finish_stretch(const Stretch& stretch, double elapsed) {
-    particle_.spin = stretch.motion.spin + elapsed * stretch.spin_acceleration;
-    const bool whole = elapsed >= stretch.duration;
-    if (whole && stretch.stops) {
-        // After braking to a stop only rounding is left along the heading.
-        const Vec3 heading = normalized(stretch.motion.velocity);
-        state_.velocity -= dot(state_.velocity, heading) * heading;
-        if (length(state_.velocity) <= kStopRounding * length(stretch.motion.velocity)) state_.velocity = Vec3{};
-    }
-    if (stretch.rolls && state_.radius > 0.0 && (whole || stretch.motion.spin == Vec3{})) {
-        particle_.spin = rolling_spin({state_.velocity, particle_.spin}, state_.radius, touched_normals_[0]);
-    }
+    const Motion motion = end_of_stretch(stretch, elapsed, {state_.velocity, particle_.spin}, state_.radius,
+                                         touched_normals_[0]);
+    state_.velocity = motion.velocity;
+    particle_.spin = motion.spin;
 }
 
 /// Landing without a rebound: the approach is lost, friction answers the impulse.
@@ -228,16 +221,9 @@ void Mover::rest(const Vec3& a, bool held) {
     particle_.support = touched_;
 }
 
-void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {
-    MovingParticle copy = particle;
-    MoveScratch scratch;
-    Mover(*this, copy, duration, scratch).weigh();
-    hits.insert(hits.end(), scratch.hits.begin(), scratch.hits.end());
-}
-
 void Mover::weigh() {
     touch_again(particle_.support);
-    const Vec3 a = rules_.forces_.acceleration(state_);
+    const Vec3 a = rules_.forces.acceleration(state_);
     shares_ = normal_accelerations(a, touched_normals());
     if (touched_.count == 0) touched_.surfaces = particle_.support.surfaces;  // share() gives the rest to the first
     wait(remaining_, a);

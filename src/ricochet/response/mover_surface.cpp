@@ -15,12 +15,12 @@ constexpr double kCurvatureStep = 1e-4;
 }  // namespace
 
 Vec3 Mover::acceleration_now(const Flight& flight) const {
-    return flight.kick_duration > 0.0 ? flight.acceleration : rules_.forces_.acceleration(state_);
+    return flight.kick_duration > 0.0 ? flight.acceleration : rules_.forces.acceleration(state_);
 }
 
 /// Restitution of the bounces of a cascade.
 double Mover::slow_restitution(SurfaceId surface) const {
-    return material_of(surface).restitution_at(rules_.settings_.resting_speed);
+    return impact_.material_of(surface).restitution_at(rules_.settings.resting_speed);
 }
 
 /// Curvature, 1/m, of the way that the centre takes along a surface in the direction of the velocity: positive where
@@ -30,13 +30,13 @@ double Mover::curvature(const ContactSurface& surface, const Vec3& velocity) con
     const Vec3 along = velocity - dot(velocity, surface.normal) * surface.normal;
     const double speed = length(along);
     if (speed == 0.0) return 0.0;
-    const double size = std::min(rules_.world_.size_of(surface.surface),
-                                 state_.radius > 0.0 ? state_.radius : rules_.world_.size_of(surface.surface));
+    const double size = std::min(rules_.world.size_of(surface.surface),
+                                 state_.radius > 0.0 ? state_.radius : rules_.world.size_of(surface.surface));
     const double step = kCurvatureStep * size;
     const Vec3 heading = along / speed;
     // A tangent soon comes out on the other side of a surface that bends towards it.
     const auto normal_at = [&](double way) {
-        const Vec3 normal = rules_.world_.nearest(surface.surface, state_.position + way * heading).normal;
+        const Vec3 normal = rules_.world.nearest(surface.surface, state_.position + way * heading).normal;
         return dot(normal, surface.normal) < 0.0 ? -normal : normal;
     };
     return dot(normal_at(step) - normal_at(-step), heading) / (2.0 * step);
@@ -54,7 +54,7 @@ double Mover::time_on(const ContactSurface& support, const Path& path, double be
     if (support.flat) {
         Path of_contact_point = path;
         of_contact_point.c[0] -= state_.radius * support.normal;
-        return rules_.world_.time_over(support.surface, of_contact_point, kTouchingGaps * parking_gap(state_.position));
+        return rules_.world.time_over(support.surface, of_contact_point, kTouchingGaps * parking_gap(state_.position));
     }
     const double way = bend != 0.0 ? kStretchAngle / std::fabs(bend) : INFINITY;
     const double speed = length(path.c[1]);
@@ -80,12 +80,12 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
     if (path.duration <= 0.0) return {path, a, 0.0, state_, v};
     if (support.flat) {
         // Of the plane, also where the end lies a little beyond the rim.
-        const CollisionWorld& world = rules_.world_;
+        const CollisionWorld& world = rules_.world;
         const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
         path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * support.normal);
     } else if (bend < 0.0) {
-        const CollisionWorld::Nearest there = rules_.world_.nearest(support.surface, path.end);
+        const CollisionWorld::Nearest there = rules_.world.nearest(support.surface, path.end);
         const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
         const Vec3 lift = (side * (state_.radius + parking_gap(path.end)) - there.distance) * there.normal;
         const Vec3 end = flush_tiny(path.end + lift);
@@ -108,7 +108,7 @@ void Mover::turn_along(ContactSurface& support) {
     const double left = length(along);
     if (left == 0.0) return;
     const Vec3 turned = (length(state_.velocity) / left) * along;
-    push(support.surface, turned - state_.velocity, false);
+    impact_.push(support.surface, turned - state_.velocity, false);
     state_.velocity = turned;
 }
 
@@ -119,10 +119,10 @@ void Mover::share(const Vec3& velocity_change, double elapsed) {
     for (std::size_t k = 1; k < touched_.count; ++k) {
         if (shares_[k] == 0.0) continue;
         const Vec3 part = (elapsed * shares_[k]) * touched_normals_[k];
-        push(touched_.surfaces[k], part, false);
+        impact_.push(touched_.surfaces[k], part, false);
         left -= part;
     }
-    push(touched_.surfaces[0], left, false);
+    impact_.push(touched_.surfaces[0], left, false);
 }
 
 /// Surfaces touched together decide where a pressed particle can go; at most three matter. An edge beside a face within
@@ -175,7 +175,7 @@ void Mover::note_recent(SurfaceId surface) {
 
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<ContactSurface> Mover::touching(SurfaceId surface) const {
-    const CollisionWorld& world = rules_.world_;
+    const CollisionWorld& world = rules_.world;
     const double reach = kTouchingGaps * parking_gap(state_.position);
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
     if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;

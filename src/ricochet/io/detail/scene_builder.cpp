@@ -12,6 +12,17 @@ namespace {
 
 constexpr double kMostSteps = 1e12;
 
+void build_response(const ObjectView& simulation, SimulationOptions& options) {
+    const ObjectView rollback = simulation.object("rollback");
+    options.rollback = {rollback.number("time_tolerance"), rollback.boolean("global")};
+    options.project = {simulation.object("project").number("offset")};
+    const ObjectView penalty = simulation.object("penalty");
+    if (penalty.has("stiffness")) options.penalty.stiffness = penalty.number("stiffness");
+    options.penalty.contact_steps = penalty.number("contact_steps");
+    options.penalty.substeps = static_cast<std::uint32_t>(penalty.whole_number("substeps"));
+    options.penalty.friction_speed = penalty.number("friction_speed");
+}
+
 void build_simulation(const SceneContext& context, SimulationOptions& options) {
     const ObjectView view = context.root().object("simulation");
     options.time_step = view.number("time_step");
@@ -20,6 +31,8 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     options.seed = view.whole_number("seed");
     options.resting_speed = view.number("resting_speed");
     options.bounce_budget = static_cast<std::uint32_t>(view.whole_number("bounce_budget"));
+    options.response = response_from_name(view.text("response")).value_or(options.response);
+    build_response(view, options);
     const double steps = options.duration / options.time_step;
     if (steps > kMostSteps) {
         context.error(view, "time_step",

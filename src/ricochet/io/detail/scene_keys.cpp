@@ -16,6 +16,68 @@ constexpr Range kCoordinate{.lower = -kLargestCoordinate, .upper = kLargestCoord
 constexpr Range kLength{.lower = 0.0, .upper = kLargestCoordinate, .lower_open = true};
 constexpr Range kCount{.lower = 0.0, .upper = 4294967295.0};
 
+const ObjectSpec& rollback_spec() {
+    static const ObjectSpec spec{
+        .title = "rollback",
+        .description = "Settings of the rollback response.",
+        .keys = {
+            {.name = "time_tolerance",
+             .description = "How closely bisection brackets the time of contact.",
+             .unit = "s",
+             .range = kPositive,
+             .fallback = "1e-9"},
+            {.name = "global",
+             .type = ValueType::boolean,
+             .description = "The whole system goes back to the earliest contact, as in textbooks, and not each particle "
+                            "for itself. Costs grow with particles times contacts.",
+             .fallback = "false"},
+        }};
+    return spec;
+}
+
+const ObjectSpec& project_spec() {
+    static const ObjectSpec spec{
+        .title = "project",
+        .description = "Settings of the project response.",
+        .keys = {
+            {.name = "offset",
+             .description = "Thickness of the layer on surfaces in which a particle counts as in contact, and to whose "
+                            "top it is put back.",
+             .unit = "m",
+             .range = kLength,
+             .fallback = "1e-6"},
+        }};
+    return spec;
+}
+
+const ObjectSpec& penalty_spec() {
+    static const ObjectSpec spec{
+        .title = "penalty",
+        .description = "Settings of the penalty response.",
+        .keys = {
+            {.name = "stiffness",
+             .description = "Spring constant of contacts.",
+             .unit = "N/m",
+             .range = kPositive,
+             .without = "for each particle the one with which an undamped contact lasts contact_steps sub-steps"},
+            {.name = "contact_steps",
+             .description = "Sub-steps that an undamped contact lasts, where no stiffness is given.",
+             .range = kPositive,
+             .fallback = "20"},
+            {.name = "substeps",
+             .type = ValueType::integer,
+             .description = "Equal parts that every step is cut into.",
+             .range = {.lower = 1.0, .upper = 1e6},
+             .fallback = "10"},
+            {.name = "friction_speed",
+             .description = "Friction grows linearly with the slip up to this speed.",
+             .unit = "m/s",
+             .range = kPositive,
+             .fallback = "0.001"},
+        }};
+    return spec;
+}
+
 const ObjectSpec& simulation_spec() {
     static const ObjectSpec spec{
         .title = "simulation",
@@ -45,9 +107,9 @@ const ObjectSpec& simulation_spec() {
              .description = "How impacts are answered.",
              .fallback = "\"exact\"",
              .choices = {{"exact", "finds the time of impact and reflects inside the step"},
-                         {"rollback", "finds a collision after the step and goes back to it", Built::no},
-                         {"project", "tests at the end of the step and puts the particle back", Built::no},
-                         {"penalty", "a spring and damper on the penetration", Built::no}}},
+                         {"rollback", "finds a collision after the step and goes back to it"},
+                         {"project", "tests at the end of the step and puts the particle back"},
+                         {"penalty", "a spring and damper on the penetration"}}},
             {.name = "seed",
              .type = ValueType::integer,
              .description = "Start of all random numbers: the same seed gives the same run, to the bit.",
@@ -65,6 +127,21 @@ const ObjectSpec& simulation_spec() {
                             "the rest of the step, and the time left out is counted.",
              .range = {.lower = 1.0, .upper = 4294967295.0},
              .fallback = "1000"},
+            {.name = "rollback",
+             .type = ValueType::object,
+             .description = "Of the rollback response.",
+             .without = "its defaults",
+             .content = &rollback_spec()},
+            {.name = "project",
+             .type = ValueType::object,
+             .description = "Of the project response.",
+             .without = "its defaults",
+             .content = &project_spec()},
+            {.name = "penalty",
+             .type = ValueType::object,
+             .description = "Of the penalty response.",
+             .without = "its defaults",
+             .content = &penalty_spec()},
         }};
     return spec;
 }

@@ -1,0 +1,113 @@
+#include "ricochet/response/impact.h"
+
+#include <array>
+#include <cmath>
+
+#include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Passes over the surfaces of a corner until none is approached; sharper corners take the velocity into the corner
+/// away.
+constexpr int kCornerPasses = 16;
+
+/// Boltzmann's constant, J/K (exact by the SI of 2019).
+constexpr double kBoltzmann = 1.380649e-23;
+
+}  // namespace
+
+bool can_be_followed(const Path& path) {
+    double reach = max_abs(path.c[0]);
+    double power = path.duration;
+    for (int k = 1; k <= path.degree; ++k, power *= path.duration) {
+        reach += power * max_abs(path.c[static_cast<std::size_t>(k)]);
+    }
+    return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
+}
+
+void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) { answer(surfaces, Rebound::by_material); }
+
+void ImpactAnswer::land(std::span<const ContactSurface> surfaces) { answer(surfaces, Rebound::none); }
+
+void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
+    scratch_.hits.push_back({surface, -particle_.state.mass * velocity_change, impact});
+}
+
+void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {
+    if (!scratch_.record_contacts) return;
+    scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position, surface.normal,
+                                velocity_before, particle_.state.velocity, particle_.state.mass, particle_.state.radius});
+}
+
+/// Bounces off every surface of the contact that is approached, until none is.
+void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebound) {
+    bool any_push = false;
+    for (int pass = 0; pass < kCornerPasses; ++pass) {
+        bool approached = false;
+        for (const ContactSurface& surface : surfaces) {
+            if (!(dot(particle_.state.velocity, surface.normal) < 0.0)) continue;
+            approached = true;
+            any_push = true;
+            const Vec3 before = particle_.state.velocity;
+            reflect_off(surface, material_of(surface.surface), rebound);
+            push(surface.surface, particle_.state.velocity - before, pass == 0);
+            record(surface, before);
+            if (outcome_.absorbed) return;
+        }
+        if (approached) continue;
+        if (!any_push) {  // a touch without approach still is an impact
+            push(surfaces.front().surface, Vec3{}, true);
+            record(surfaces.front(), particle_.state.velocity);
+        }
+        return;
+    }
+    push_out_of_corner(surfaces);
+}
+
+void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound) {
+    const double approach = -dot(particle_.state.velocity, surface.normal);
+    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
+    const Motion motion{particle_.state.velocity, particle_.spin};
+    const Motion after = material.is_random()
+                             ? random_reflection(surface, material, restitution)
+                             : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    particle_.state.velocity = after.velocity;
+    particle_.spin = after.spin;
+}
+
+/// Absorbs, or reflects by the cosine law or as a mirror, as this particle's own random numbers say (Maxwell's model:
+/// J. C. Maxwell, "On stresses in rarified gases", Phil. Trans. 170, 1879).
+Motion ImpactAnswer::random_reflection(const ContactSurface& surface, const Material& material, double restitution) {
+    RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
+    Motion motion{particle_.state.velocity, particle_.spin};
+    if (material.absorption > 0.0 && random.uniform() < material.absorption) {
+        outcome_.absorbed = true;
+        motion = {};
+    } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
+        motion.velocity =
+            material.wall_temperature
+                ? thermal_velocity(surface.normal, std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass),
+                                   random)
+                : length(motion.velocity) * cosine_direction(surface.normal, random);
+    } else {
+        motion = bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    }
+    particle_.draws = random.draws();
+    return motion;
+}
+
+void ImpactAnswer::push_out_of_corner(std::span<const ContactSurface> surfaces) {
+    std::array<Vec3, 3> normals;
+    std::size_t count = 0;
+    for (const ContactSurface& surface : surfaces) {
+        if (count < normals.size()) normals[count++] = surface.normal;
+    }
+    const Vec3 before = particle_.state.velocity;
+    particle_.state.velocity = project_off(before, {normals.data(), count});
+    push(surfaces.front().surface, particle_.state.velocity - before, false);
+    record(surfaces.front(), before);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,49 @@
+/// \file
+/// Private to the responses: how one particle answers an impact, with its surfaces' materials, and how that is booked.
+#pragma once
+
+#include <span>
+
+#include "ricochet/response/bounce.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// States beyond this cannot be followed: the predicates would leave the range of doubles.
+[[nodiscard]] bool can_be_followed(const Path& path);
+
+/// The impacts of one particle in one step.
+class ImpactAnswer {
+public:
+    ImpactAnswer(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome)
+        : rules_(rules), particle_(particle), scratch_(scratch), outcome_(outcome) {}
+
+    /// Bounces off every surface that is approached, until none is; a touch without approach still is an impact.
+    void reflect(std::span<const ContactSurface> surfaces);
+    /// The same without a rebound.
+    void land(std::span<const ContactSurface> surfaces);
+
+    /// Books an impulse, as the change of velocity that it made.
+    void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
+    /// Keeps an impact for the contact log; the velocity after it is the present one.
+    void record(const ContactSurface& surface, const Vec3& velocity_before);
+
+    [[nodiscard]] const Material& material_of(SurfaceId surface) const {
+        return rules_.materials[rules_.world.material_of(surface)];
+    }
+
+private:
+    enum class Rebound { by_material, none };
+
+    void answer(std::span<const ContactSurface> surfaces, Rebound rebound);
+    void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
+    [[nodiscard]] Motion random_reflection(const ContactSurface& surface, const Material& material, double restitution);
+    void push_out_of_corner(std::span<const ContactSurface> surfaces);
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    MoveScratch& scratch_;
+    MoveOutcome& outcome_;
+};
+
+}  // namespace ricochet

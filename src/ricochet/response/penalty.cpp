@@ -1,0 +1,234 @@
+#include "ricochet/response/penalty.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
+#include "ricochet/response/impact.h"
+#include "ricochet/response/penalty_contact.h"
+
+namespace ricochet {
+namespace {
+
+/// Position and motion.
+struct BodyState {
+    Vec3 position;
+    Motion motion;
+};
+
+/// Lists of one thread.
+struct PenaltyScratch {
+    SideScratch sides;
+    std::vector<Proximity> stage;
+};
+
+/// One particle in one step.
+class PenaltyMover {
+public:
+    PenaltyMover(const ResponseRules& rules, const SignedDistance& distance, std::span<const double> damping_ratios,
+                 MovingParticle& particle, MoveScratch& scratch, PenaltyScratch& lists)
+        : rules_(rules),
+          damping_ratios_(damping_ratios),
+          particle_(particle),
+          state_(particle.state),
+          scratch_(scratch),
+          impact_(rules, particle, scratch, outcome_),
+          watch_(distance, particle.sides, particle.state.radius, lists.sides),
+          seen_(lists.sides.seen),
+          stage_(lists.stage) {}
+
+    MoveOutcome run(double duration);
+
+private:
+    bool substep(double h);
+    std::optional<BodyState> stepped(const BodyState& now, double h);
+    std::optional<BodyState> verlet(const BodyState& now, double h);
+    std::optional<BodyState> midpoint(const BodyState& now, double h);
+    std::optional<BodyState> rk4(const BodyState& now, double h);
+    bool look(const Vec3& place, std::vector<Proximity>& out);
+    ContactPush push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts, double weight);
+    [[nodiscard]] PenaltyContact contact_of(const Proximity& view) const;
+    void begin_contacts();
+
+    const ResponseRules& rules_;
+    std::span<const double> damping_ratios_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    MoveScratch& scratch_;
+    MoveOutcome outcome_;
+    ImpactAnswer impact_;
+    SideWatch watch_;
+    std::vector<Proximity>& seen_;   // contacts where the particle is
+    std::vector<Proximity>& stage_;  // contacts where the integrator tries
+};
+
+/// The loop that moves one particle: sub-step after sub-step with whatever pushes it.
+MoveOutcome PenaltyMover::run(double duration) {
+    const double h = duration / rules_.settings.penalty.substeps;
+    seen_.clear();
+    if (watch_.in_contact()) watch_.look(state_.position, state_.position, 0.0, seen_);
+    for (std::uint32_t k = 0; k < rules_.settings.penalty.substeps; ++k) {
+        if (!substep(h)) {
+            outcome_.frozen = true;
+            return outcome_;
+        }
+        if (outcome_.absorbed) return outcome_;
+    }
+    outcome_.resting = !seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed;
+    return outcome_;
+}
+
+/// False when the state leaves what can be followed; it is left as it was then.
+bool PenaltyMover::substep(double h) {
+    const Vec3 from = state_.position;
+    auto next = stepped({from, {state_.velocity, particle_.spin}}, h);
+    if (!next || !is_finite(next->motion.velocity)) return false;
+    next->position = flush_tiny(next->position);
+    if (!look(next->position, seen_)) return false;
+    state_.position = next->position;
+    state_.velocity = next->motion.velocity;
+    particle_.spin = next->motion.spin;
+    if (scratch_.record_legs) scratch_.legs.push_back({from, state_.position, state_.time});
+    state_.time += h;
+    begin_contacts();
+    watch_.settle(seen_);
+    for (const Proximity& view : seen_) outcome_.depth = std::max(outcome_.depth, -view.gap);
+    return true;
+}
+
+std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
+    switch (rules_.settings.integrator) {
+        case IntegratorKind::ballistic:
+            return verlet(now, h);
+        case IntegratorKind::midpoint:
+            return midpoint(now, h);
+        case IntegratorKind::rk4:
+            return rk4(now, h);
+        case IntegratorKind::symplectic_euler:
+            break;
+    }
+    const ContactPush k = push_at(now, state_.time, seen_, h);
+    const Motion motion{now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration};
+    return BodyState{now.position + h * motion.velocity, motion};
+}
+
+/// Velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982); forces that depend on
+/// the velocity see the one predicted with the first force.
+std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
+    const ContactPush k0 = push_at(now, state_.time, seen_, 0.5 * h);
+    BodyState next;
+    next.position = flush_tiny(now.position + h * now.motion.velocity + (0.5 * h * h) * k0.acceleration);
+    next.motion = {now.motion.velocity + h * k0.acceleration, now.motion.spin + h * k0.spin_acceleration};
+    if (!look(next.position, stage_)) return std::nullopt;
+    const ContactPush k1 = push_at(next, state_.time + h, stage_, 0.5 * h);
+    next.motion = {now.motion.velocity + (0.5 * h) * (k0.acceleration + k1.acceleration),
+                   now.motion.spin + (0.5 * h) * (k0.spin_acceleration + k1.spin_acceleration)};
+    return next;
+}
+
+std::optional<BodyState> PenaltyMover::midpoint(const BodyState& now, double h) {
+    const ContactPush k0 = push_at(now, state_.time, seen_, 0.0);
+    const double half = 0.5 * h;
+    const BodyState middle{now.position + half * now.motion.velocity,
+                           {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
+    if (!look(middle.position, stage_)) return std::nullopt;
+    const ContactPush k = push_at(middle, state_.time + half, stage_, h);
+    return BodyState{now.position + h * middle.motion.velocity,
+                     {now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration}};
+}
+
+std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
+    constexpr std::array<double, 4> kAt{0.0, 0.5, 0.5, 1.0};
+    constexpr std::array<double, 4> kWeights{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+    BodyState sum = now;
+    ContactPush k;
+    Vec3 velocity = now.motion.velocity;
+    for (std::size_t i = 0; i < kAt.size(); ++i) {
+        const double s = kAt[i] * h;
+        const BodyState stage{now.position + s * velocity,
+                              {now.motion.velocity + s * k.acceleration, now.motion.spin + s * k.spin_acceleration}};
+        if (i > 0 && !look(stage.position, stage_)) return std::nullopt;
+        k = push_at(stage, state_.time + s, i > 0 ? stage_ : seen_, kWeights[i] * h);
+        velocity = stage.motion.velocity;
+        sum.position += (kWeights[i] * h) * velocity;
+        sum.motion.velocity += (kWeights[i] * h) * k.acceleration;
+        sum.motion.spin += (kWeights[i] * h) * k.spin_acceleration;
+    }
+    return sum;
+}
+
+bool PenaltyMover::look(const Vec3& place, std::vector<Proximity>& out) {
+    if (!is_finite(place) || max_abs(place) > kLargestCoordinate) return false;
+    ++outcome_.trials;
+    watch_.look(place, state_.position, 0.0, out);
+    return true;
+}
+
+PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
+    const std::uint32_t index = rules_.world.material_of(view.surface);
+    const Material& material = rules_.materials[index];
+    const double mass = state_.mass;
+    const double stiffness = contact_stiffness(rules_.settings, mass);
+    PenaltyContact contact;
+    contact.depth = -view.gap;
+    contact.normal = view.normal;
+    contact.stiffness = stiffness;
+    contact.damping = 2.0 * damping_ratios_[index] * std::sqrt(stiffness * mass);
+    contact.friction = material.friction;
+    contact.rolling_friction = material.rolling_friction;
+    return contact;
+}
+
+/// What the forces and the contacts do to a body. weight: s of it that the integrator takes, for the surfaces' totals.
+ContactPush PenaltyMover::push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts,
+                                  double weight) {
+    ForceInput input = state_;
+    input.position = body.position;
+    input.velocity = body.motion.velocity;
+    input.time = time;
+    ContactPush push{rules_.forces.acceleration(input), {}};
+    const double inertia = 0.4 * state_.mass * state_.radius * state_.radius;  // solid sphere
+    for (const Proximity& view : contacts) {
+        const ContactForce force =
+            force_of(contact_of(view), body.motion, state_.radius, rules_.settings.penalty.friction_speed);
+        const Vec3 acceleration = force.force / state_.mass;
+        push.acceleration += acceleration;
+        if (inertia > 0.0) push.spin_acceleration += force.torque / inertia;
+        if (weight > 0.0) impact_.push(view.surface, weight * acceleration, false);
+    }
+    return push;
+}
+
+/// Contacts that begin where the particle is now: counted, recorded, and answered at once by surfaces of chance.
+void PenaltyMover::begin_contacts() {
+    for (const Proximity& view : seen_) {
+        if (watch_.memory(view.collider).touching) continue;
+        ++outcome_.bounces;
+        const ContactSurface surface{view.surface, view.normal, true};
+        if (impact_.material_of(view.surface).is_random()) {
+            impact_.reflect({&surface, 1});
+            if (outcome_.absorbed) return;
+        } else {
+            impact_.push(view.surface, Vec3{}, true);
+            impact_.record(surface, state_.velocity);
+        }
+    }
+}
+
+}  // namespace
+
+PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {
+    for (const Material& material : rules.materials) damping_ratios_.push_back(damping_ratio(material.restitution));
+}
+
+MoveOutcome PenaltyResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    thread_local PenaltyScratch lists;
+    return PenaltyMover(rules_, distance_, damping_ratios_, particle, scratch, lists).run(duration);
+}
+
+void PenaltyResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
+    set_first_sides(distance_, position, sides);
+}
+
+}  // namespace ricochet

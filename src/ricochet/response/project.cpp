@@ -1,0 +1,124 @@
+#include "ricochet/response/project.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
+#include "ricochet/response/impact.h"
+#include "ricochet/response/side_watch.h"
+
+namespace ricochet {
+namespace {
+
+/// One particle in one step.
+class Projector {
+public:
+    Projector(const ResponseRules& rules, const SignedDistance& distance, MovingParticle& particle,
+              MoveScratch& scratch, SideScratch& lists)
+        : rules_(rules),
+          particle_(particle),
+          state_(particle.state),
+          scratch_(scratch),
+          impact_(rules, particle, scratch, outcome_),
+          watch_(distance, particle.sides, particle.state.radius, lists),
+          from_(particle.state.position),
+          seen_(lists.seen),
+          contacts_(lists.contacts) {
+        contacts_.clear();
+    }
+
+    MoveOutcome run(double duration) {
+        flight_ = begin_flight(rules_.settings.integrator, rules_.forces, state_, duration);
+        if (!can_be_followed(flight_.path)) {
+            outcome_.frozen = true;
+            return outcome_;
+        }
+        state_.velocity = flight_.end_velocity;
+        state_.time += duration;
+        state_.position = put_back(flush_tiny(flight_.path.end));
+        if (scratch_.record_legs) scratch_.legs.push_back({from_, state_.position, state_.time - duration});
+        if (!contacts_.empty()) answer(duration);
+        return outcome_;
+    }
+
+private:
+    [[nodiscard]] double offset() const {
+        return std::max(rules_.settings.project.offset, parking_gap(state_.position));
+    }
+
+    /// Out of what the place is behind, the deepest first, again and again; where that does not end, back to the start.
+    Vec3 put_back(Vec3 place) {
+        for (int pass = 0; pass < kMostProjections; ++pass) {
+            watch_.look(place, from_, offset(), seen_);
+            ++outcome_.trials;
+            for (const Proximity& view : seen_) touch(view);
+            const auto deepest = std::min_element(seen_.begin(), seen_.end(),
+                                                  [](const auto& a, const auto& b) { return a.gap < b.gap; });
+            if (deepest == seen_.end() || deepest->gap >= 0.0) {
+                watch_.settle(seen_);
+                return place;
+            }
+            if (pass == 0) outcome_.depth = -deepest->gap;
+            place = flush_tiny(deepest->point + (state_.radius + offset()) * deepest->normal);
+        }
+        ++outcome_.stayed;
+        return from_;
+    }
+
+    void touch(const Proximity& view) {
+        const auto known = std::any_of(contacts_.begin(), contacts_.end(),
+                                       [&](const ContactSurface& c) { return c.surface == view.surface; });
+        if (!known) contacts_.push_back({view.surface, view.normal, true});
+    }
+
+    /// The velocity check and the bounce.
+    void answer(double duration) {
+        const bool approaches = std::any_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
+            return dot(state_.velocity, contact.normal) < 0.0;
+        });
+        if (!approaches) return;
+        ++outcome_.bounces;
+        is_slow(duration) ? impact_.land(contacts_) : impact_.reflect(contacts_);
+        outcome_.resting = state_.velocity == Vec3{} && !outcome_.absorbed;
+    }
+
+    /// True when what would rebound is slower than the resting speed. What the forces have added in this step is not
+    /// the speed of an impact.
+    [[nodiscard]] bool is_slow(double duration) const {
+        return std::all_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
+            const double towards = -dot(state_.velocity, contact.normal);
+            if (towards <= 0.0) return true;
+            const Material& material = impact_.material_of(contact.surface);
+            const double pressed = std::max(0.0, -dot(flight_.acceleration, contact.normal)) * duration;
+            const double approach = std::max(0.0, towards - pressed);
+            return pressed > 0.0 && material.can_hold(rules_.settings.resting_speed) &&
+                   material.restitution_at(approach) * approach < rules_.settings.resting_speed;
+        });
+    }
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    MoveScratch& scratch_;
+    MoveOutcome outcome_;
+    ImpactAnswer impact_;
+    SideWatch watch_;
+    Vec3 from_;
+    Flight flight_;
+    std::vector<Proximity>& seen_;
+    std::vector<ContactSurface>& contacts_;
+};
+
+}  // namespace
+
+MoveOutcome ProjectResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    thread_local SideScratch lists;
+    return Projector(rules_, distance_, particle, scratch, lists).run(duration);
+}
+
+void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
+    set_first_sides(distance_, position, sides);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,80 @@
+#include "ricochet/response/response.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/response/exact.h"
+#include "ricochet/response/penalty.h"
+#include "ricochet/response/project.h"
+#include "ricochet/response/rollback.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::array<std::pair<ResponseKind, std::string_view>, 4> kNames{{
+    {ResponseKind::exact, "exact"},
+    {ResponseKind::rollback, "rollback"},
+    {ResponseKind::project, "project"},
+    {ResponseKind::penalty, "penalty"},
+}};
+constexpr std::array<ResponseKind, 4> kKinds{ResponseKind::exact, ResponseKind::rollback, ResponseKind::project,
+                                             ResponseKind::penalty};
+
+void require_positive(double value, std::string_view what, std::string_view unit) {
+    if (value > 0.0 && std::isfinite(value)) return;
+    throw InputError(fmt::format("{}: found {}, expected a finite number above 0 ({})", what, value, unit));
+}
+
+void check(const ResponseSettings& settings) {
+    require_positive(settings.time_step, "time_step", "s");
+    require_positive(settings.rollback.time_tolerance, "rollback.time_tolerance", "s");
+    require_positive(settings.project.offset, "project.offset", "m");
+    const PenaltySettings& penalty = settings.penalty;
+    if (penalty.stiffness) require_positive(*penalty.stiffness, "penalty.stiffness", "N/m");
+    require_positive(penalty.contact_steps, "penalty.contact_steps", "sub-steps");
+    require_positive(penalty.friction_speed, "penalty.friction_speed", "m/s");
+    if (penalty.substeps == 0) throw InputError("penalty.substeps: found 0, expected at least 1");
+}
+
+}  // namespace
+
+std::optional<ResponseKind> response_from_name(std::string_view name) {
+    for (const auto& [kind, known] : kNames) {
+        if (known == name) return kind;
+    }
+    return std::nullopt;
+}
+
+std::string_view name_of(ResponseKind kind) {
+    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; })->second;
+}
+
+std::span<const ResponseKind> response_kinds() { return kKinds; }
+
+void Response::add_weight(const MovingParticle& /*particle*/, double /*duration*/,
+                          std::vector<SurfaceHit>& /*hits*/) const {}
+
+void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides) const {
+    std::fill(sides.begin(), sides.end(), SideMemory{});
+}
+
+std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules) {
+    check(rules.settings);
+    switch (kind) {
+        case ResponseKind::rollback:
+            return std::make_unique<RollbackResponse>(rules);
+        case ResponseKind::project:
+            return std::make_unique<ProjectResponse>(rules);
+        case ResponseKind::penalty:
+            return std::make_unique<PenaltyResponse>(rules);
+        case ResponseKind::exact:
+            break;
+    }
+    return std::make_unique<ExactResponse>(rules);
+}
+
+}  // namespace ricochet

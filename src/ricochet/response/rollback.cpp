@@ -1,0 +1,112 @@
+#include "ricochet/response/rollback.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/response/rollback_mover.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// What a particle would do if the system were not in its way.
+struct Event {
+    double elapsed = 0.0;   ///< s it can go
+    double time = kNever;   ///< s, when it collides or its contact changes; kNever: not in this step
+    bool collides = false;
+};
+
+/// The classic variant, one step of the whole system.
+class SystemRollback {
+public:
+    SystemRollback(const ResponseRules& rules, std::span<SystemParticle> particles, std::span<MoveScratch> blocks,
+                   std::size_t block_size)
+        : rules_(rules), particles_(particles), blocks_(blocks), block_size_(block_size), events_(particles.size()) {}
+
+    void run(double from, double to) {
+        for (double now = from; now < to;) {
+            for_each([&](SystemParticle& p, Event& event, MoveScratch& scratch) { event = look(p, now, scratch); });
+            double next = to;
+            for (const Event& event : events_) next = std::min(next, event.time);
+            for_each([&](SystemParticle& p, const Event& event, MoveScratch& scratch) {
+                go(p, event, now, next, scratch);
+            });
+            now = next;
+        }
+    }
+
+private:
+    template <class Body>
+    void for_each(Body&& body) {
+        parallel_for_blocks(particles_.size(), block_size_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                SystemParticle& p = particles_[i];
+                MoveScratch& scratch = blocks_[block];
+                scratch.legs.clear();
+                body(p, events_[i], scratch);
+                p.legs.insert(p.legs.end(), scratch.legs.begin(), scratch.legs.end());
+            }
+        });
+    }
+
+    [[nodiscard]] static bool is_out(const SystemParticle& p) {
+        return p.is_out || p.outcome.frozen || p.outcome.absorbed;
+    }
+
+    /// How far the particle can go on from `now`, tried out on a copy.
+    [[nodiscard]] Event look(SystemParticle& p, double now, MoveScratch& scratch) const {
+        const double begin = std::max(now, p.start);
+        const double duration = p.stop - begin;
+        if (is_out(p) || !(duration > 0.0)) return {};
+        MovingParticle copy = p.particle;
+        RollbackMover mover(rules_, copy, scratch, p.outcome, RollbackMover::Trial::own_step);
+        if (!mover.begin(duration)) return {};
+        const CollisionBracket found = mover.bracket();
+        const bool changes = found.blocked || found.free < duration;
+        return {found.free, changes ? begin + found.free : kNever, found.blocked};
+    }
+
+    /// Goes with the system to `next`, and answers what it has met by then.
+    void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
+        const double begin = std::max(now, p.start);
+        const double end = std::min(next, p.stop);
+        const bool meets = event.collides && event.time <= next + rules_.settings.rollback.time_tolerance;
+        if (is_out(p) || (!(end > begin) && !meets)) return;
+        RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
+        if (!mover.begin(meets ? p.stop - begin : end - begin)) return;
+        const CollisionBracket found = mover.bracket();
+        mover.advance(found.free);
+        if (found.blocked && mover.has_budget()) {
+            mover.answer();
+        } else if (found.blocked) {
+            p.is_out = true;
+            p.outcome.unsimulated_time += p.stop - begin - found.free;
+        }
+        // A shorter step may be blocked where the longer one was not: what it loses then is counted.
+        if (found.blocked && !meets) p.outcome.unsimulated_time += p.is_out ? 0.0 : end - begin - found.free;
+        if (!p.outcome.absorbed) mover.remember_contact();
+    }
+
+    const ResponseRules& rules_;
+    std::span<SystemParticle> particles_;
+    std::span<MoveScratch> blocks_;
+    std::size_t block_size_;
+    std::vector<Event> events_;
+};
+
+}  // namespace
+
+MoveOutcome RollbackResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    MoveOutcome outcome;
+    RollbackMover(rules_, particle, scratch, outcome, RollbackMover::Trial::same_flight).run(duration);
+    return outcome;
+}
+
+void move_together(const ResponseRules& rules, std::span<SystemParticle> particles, double from, double to,
+                   std::span<MoveScratch> blocks, std::size_t block_size) {
+    SystemRollback(rules, particles, blocks, block_size).run(from, to);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,109 @@
+// Sliding, rolling and resting between two collisions.
+#include <algorithm>
+#include <utility>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/rollback_mover.h"
+
+namespace ricochet {
+
+/// The surface as the particle touches it now: nearer than it can move within the tolerance of a time of contact.
+std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
+    const CollisionWorld& world = rules_.world;
+    const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
+    const double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
+    const double reach = kTouchingGaps * parking_gap(state_.position) +
+                         kBracketsOfTouch * rules_.settings.rollback.time_tolerance * speed;
+    if (nearest.distance - state_.radius > reach) return std::nullopt;
+    if (dot(state_.velocity, nearest.normal) > rules_.settings.resting_speed) return std::nullopt;
+    if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
+    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
+    const double distance = world.signed_distance_from(surface, state_.position);
+    const Vec3 normal = world.unit_normal_of(surface, state_.position);
+    return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
+}
+
+/// Of what was touched before, what still is.
+void RollbackMover::find_touched() {
+    std::array<ContactSurface, 3> before = touched_;
+    const std::size_t count = std::exchange(count_, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+        if (const auto surface = touching(before[k].surface)) touch({&*surface, 1});
+    }
+}
+
+/// Adds surfaces that are touched; at most three of different normals matter.
+void RollbackMover::touch(std::span<const ContactSurface> surfaces) {
+    for (const ContactSurface& surface : surfaces) {
+        const auto known = std::any_of(normals_.begin(), normals_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                       [&](const Vec3& n) { return 1.0 - dot(n, surface.normal) <= kSameNormal; });
+        if (known || count_ == touched_.size()) continue;
+        touched_[count_] = surface;
+        normals_[count_++] = surface.normal;
+    }
+}
+
+/// Plans a stretch on what is touched; none when nothing presses the particle on, or the surface ends here.
+void RollbackMover::plan_contact(double duration) {
+    const bool kicked = kick_.has_value() && trial_ == Trial::same_flight;
+    pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
+    shares_ = normal_accelerations(pull_, normals());
+    const bool pressed = kicked || shares_[0] > 0.0 || shares_[1] > 0.0 || shares_[2] > 0.0;
+    if (!pressed || !is_finite(pull_)) {
+        count_ = 0;
+        return;
+    }
+    double friction = 0.0;
+    for (std::size_t k = 0; k < count_; ++k) {
+        friction += shares_[k] * impact_.material_of(touched_[k].surface).friction;
+    }
+    const double all = length(pull_ - project_off(pull_, normals()));
+    Grip grip;
+    grip.friction = all > 0.0 ? friction / all : 0.0;
+    grip.rolling_friction = impact_.material_of(touched_[0].surface).rolling_friction;
+    grip.pressure = kicked ? 0.0 : 1.0;
+    grip.shortest = duration / kShortestStretches;
+    grip.negligible_way = kTouchingGaps * parking_gap(state_.position);
+    stretch_ = plan_stretch({state_.velocity, particle_.spin}, state_.radius, pull_, normals(), grip, duration);
+    limit_stretch();
+}
+
+/// A stretch ends where its face does.
+void RollbackMover::limit_stretch() {
+    const Vec3& v = stretch_->motion.velocity;
+    const Vec3& a = stretch_->acceleration;
+    double duration = stretch_->duration;
+    if (!stretch_->at_rest) {
+        Path of_contact_point = parabola_path(state_.position - state_.radius * normals_[0], v, a, duration);
+        const double slack = kTouchingGaps * parking_gap(state_.position);
+        if (is_finite(of_contact_point.end) && touched_[0].flat) {
+            duration = rules_.world.time_over(touched_[0].surface, of_contact_point, slack);
+        }
+    }
+    if (!(duration > 0.0)) {
+        stretch_.reset();
+        count_ = 0;
+        return;
+    }
+    flight_ = {parabola_path(state_.position, v, a, duration), a, 0.0, state_, v + duration * a};
+}
+
+/// Books what contact has changed the velocity by: each surface its normal part, what is left (friction) on the first.
+void RollbackMover::book_contact(const Vec3& velocity_change, double elapsed) {
+    Vec3 left = velocity_change;
+    for (std::size_t k = 1; k < count_; ++k) {
+        if (shares_[k] == 0.0) continue;
+        const Vec3 part = (elapsed * shares_[k]) * normals_[k];
+        impact_.push(touched_[k].surface, part, false);
+        left -= part;
+    }
+    impact_.push(touched_[0].surface, left, false);
+}
+
+void RollbackMover::remember_contact() {
+    particle_.support = {};
+    for (std::size_t k = 0; k < count_; ++k) particle_.support.surfaces[k] = touched_[k].surface;
+    particle_.support.count = static_cast<std::uint8_t>(count_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,179 @@
+#include "ricochet/response/rollback_mover.h"
+
+#include <algorithm>
+
+#include "ricochet/collision/parking.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
+
+namespace ricochet {
+
+RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch,
+                             MoveOutcome& outcome, Trial trial)
+    : rules_(rules),
+      particle_(particle),
+      state_(particle.state),
+      scratch_(scratch),
+      outcome_(outcome),
+      impact_(rules, particle, scratch, outcome),
+      trial_(trial) {
+    for (std::size_t k = 0; k < particle.support.count; ++k) touched_[count_++].surface = particle.support.surfaces[k];
+    particle.support = {};
+}
+
+/// The loop that moves one particle: take all the time that is left, go back to what was in the way, answer, go on.
+void RollbackMover::run(double duration) {
+    double remaining = duration;
+    while (remaining > 0.0) {
+        if (!begin(remaining)) return;
+        const CollisionBracket found = bracket();
+        advance(found.free);
+        remaining = std::max(0.0, remaining - found.free);
+        if (!found.blocked) continue;
+        if (!has_budget()) {
+            outcome_.unsimulated_time = remaining;
+            break;
+        }
+        answer();
+        if (outcome_.absorbed) return;
+    }
+    remember_contact();
+}
+
+bool RollbackMover::begin(double duration) {
+    stretch_.reset();
+    from_ = state_.position;
+    outcome_.resting = false;
+    find_touched();
+    if (count_ > 0) plan_contact(duration);
+    if (!stretch_) flight_ = flight_for(duration);
+    if (can_be_followed(flight_.path)) return true;
+    outcome_.frozen = true;
+    return false;
+}
+
+Flight RollbackMover::flight_for(double duration) const {
+    const IntegratorKind kind = rules_.settings.integrator;
+    if (kick_ && trial_ == Trial::same_flight) return resume_flight(kind, rules_.forces, state_, *kick_, duration);
+    return begin_flight(kind, rules_.forces, state_, duration);
+}
+
+PhaseState RollbackMover::state_at(double elapsed) const {
+    if (!stretch_ && trial_ == Trial::own_step) {
+        const Flight flight = flight_for(elapsed);
+        return {flight.path.end, flight.end_velocity};
+    }
+    return ricochet::state_at(rules_.settings.integrator, rules_.forces, flight_, elapsed);
+}
+
+/// Bisection: free at one end, blocked at the other, until the bracket is as small as asked for.
+CollisionBracket RollbackMover::bracket() {
+    const double whole = flight_.path.duration;
+    if (stretch_ && stretch_->at_rest) return {whole, false};
+    const Obstacles obstacles(rules_.world, from_, state_.radius);
+    const auto is_blocked = [&](const Vec3& place) {
+        ++outcome_.trials;
+        return !is_finite(place) || obstacles.block(place);
+    };
+    blocked_place_ = flush_tiny(flight_.path.end);
+    if (!is_blocked(blocked_place_)) return {whole, false};
+    double free = 0.0;
+    double blocked = whole;
+    while (blocked - free > rules_.settings.rollback.time_tolerance) {
+        const double middle = 0.5 * (free + blocked);
+        if (middle <= free || middle >= blocked) break;
+        const Vec3 place = flush_tiny(state_at(middle).position);
+        if (is_blocked(place)) {
+            blocked = middle;
+            blocked_place_ = place;
+        } else {
+            free = middle;
+        }
+    }
+    return {free, true};
+}
+
+void RollbackMover::advance(double elapsed) {
+    stretch_ ? follow_stretch(elapsed) : fly(elapsed);
+    if (scratch_.record_legs && state_.position != from_) {
+        scratch_.legs.push_back({from_, state_.position, state_.time});
+    }
+    state_.time += elapsed;
+}
+
+void RollbackMover::fly(double elapsed) {
+    if (elapsed > 0.0) {
+        const PhaseState state = state_at(elapsed);
+        state_.position = flush_tiny(state.position);
+        state_.velocity = state.velocity;
+    } else {
+        state_.velocity = flight_.path.velocity(0.0);  // with the kick, if there is one
+    }
+    const bool own_step = trial_ == Trial::own_step;
+    kick_velocity_ = (flight_.kick_duration > 0.0 && own_step ? elapsed : flight_.kick_duration) * flight_.acceleration;
+    if (flight_.kick_duration > 0.0 && !own_step) kick_ = flight_;
+}
+
+void RollbackMover::follow_stretch(double elapsed) {
+    const Vec3 before = state_.velocity;
+    const bool rests = stretch_->at_rest;
+    if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
+    const Motion arriving{rests ? Vec3{} : flight_.path.velocity(elapsed), particle_.spin};
+    const Motion motion = end_of_stretch(*stretch_, elapsed, arriving, state_.radius, normals_[0]);
+    state_.velocity = motion.velocity;
+    particle_.spin = rests ? Vec3{} : motion.spin;
+    book_contact(state_.velocity - before - elapsed * pull_, elapsed);
+    outcome_.resting = rests;
+}
+
+/// Bounces, or stays on what it has met when all rebounds are slow and something presses it on.
+void RollbackMover::answer() {
+    ++outcome_.bounces;
+    outcome_.resting = false;
+    Obstacles(rules_.world, from_, state_.radius).gather(blocked_place_, state_.position, state_.velocity, met_);
+    const bool on_surface = std::any_of(met_.begin(), met_.end(), [&](const ContactSurface& met) {
+        return rules_.world.point_on(met.surface, state_.position);
+    });
+    if (on_surface) {
+        leave_surface();
+        return;
+    }
+    if (met_.empty()) return;
+    if (will_stay()) {
+        impact_.land(met_);
+        touch(met_);
+    } else {
+        impact_.reflect(met_);
+    }
+}
+
+/// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
+void RollbackMover::leave_surface() {
+    ContactSearch search(rules_.world, scratch_.contacts);
+    (void)search.search(line_path(state_.position, state_.velocity, flight_.path.duration), state_.radius);
+    const auto place = step_off(search, state_.position);
+    if (!place) {
+        ++outcome_.stayed;
+        return;
+    }
+    if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
+    state_.position = *place;
+}
+
+/// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
+bool RollbackMover::will_stay() const {
+    const Vec3 a = kick_ ? kick_->acceleration : rules_.forces.acceleration(state_);
+    bool pressed = false;
+    for (const ContactSurface& met : met_) {
+        const Material& material = impact_.material_of(met.surface);
+        // What the step's own kick put into the velocity is not the speed of an impact.
+        const double approach = -dot(state_.velocity, met.normal) - std::max(0.0, -dot(kick_velocity_, met.normal));
+        const bool can_rest = material.can_hold(rules_.settings.resting_speed);
+        const double rebound = approach > 0.0 ? material.restitution_at(approach) * approach : 0.0;
+        if (approach > 0.0 && (!can_rest || rebound >= rules_.settings.resting_speed)) return false;
+        pressed = pressed || (can_rest && dot(a, met.normal) < 0.0);
+    }
+    return pressed;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,84 @@
+/// \file
+/// Private to the rollback response: one particle between two collisions.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/obstacles.h"
+#include "ricochet/response/contact_mode.h"
+#include "ricochet/response/impact.h"
+
+namespace ricochet {
+
+/// A bracket around the time of a collision, s from where the piece began.
+struct CollisionBracket {
+    double free = 0.0;     ///< latest time tried at which nothing is in the way
+    bool blocked = false;  ///< something is in the way right after it; false: the whole piece is free
+};
+
+class RollbackMover {
+public:
+    /// What a trial of a shorter time is: the same flight looked at earlier, or a step of its own.
+    enum class Trial { same_flight, own_step };
+
+    RollbackMover(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome,
+                  Trial trial);
+
+    /// The whole step of one particle on its own.
+    void run(double duration);
+
+    /// Begins the next piece of way, of at most `duration` seconds: a flight, or a stretch of contact. False when the
+    /// state cannot be followed: the particle is frozen then.
+    bool begin(double duration);
+    /// How far the piece goes; a stretch of contact may end before the duration asked for.
+    [[nodiscard]] CollisionBracket bracket();
+    /// Goes along the piece for a time that the bracket has found free.
+    void advance(double elapsed);
+    /// Answers what is in the way at the bracket's blocked end. The particle has gone to its free end.
+    void answer();
+    /// Keeps the contact for the next step.
+    void remember_contact();
+    [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
+
+private:
+    [[nodiscard]] Flight flight_for(double duration) const;
+    [[nodiscard]] PhaseState state_at(double elapsed) const;
+    void fly(double elapsed);
+    void follow_stretch(double elapsed);
+    void leave_surface();
+    [[nodiscard]] bool will_stay() const;
+
+    // Contact (rollback_contact.cpp).
+    void find_touched();
+    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
+    void touch(std::span<const ContactSurface> surfaces);
+    void plan_contact(double duration);
+    void limit_stretch();
+    void book_contact(const Vec3& velocity_change, double elapsed);
+    [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    MoveScratch& scratch_;
+    MoveOutcome& outcome_;
+    ImpactAnswer impact_;
+    Trial trial_;
+    Vec3 from_;           // where the piece began
+    Vec3 blocked_place_;  // the bracket's blocked end
+    Flight flight_;
+    std::optional<Flight> kick_;  // the flight in which this step's force has acted already (symplectic Euler)
+    Vec3 kick_velocity_;          // what kicks have put into the velocity since the last piece began, m/s
+    std::optional<Stretch> stretch_;
+    Vec3 pull_;  // the forces' acceleration at the stretch's start
+    std::array<ContactSurface, 3> touched_;
+    std::array<Vec3, 3> normals_;
+    std::array<double, 3> shares_{};
+    std::size_t count_ = 0;
+    std::vector<ContactSurface> met_;
+};
+
+}  // namespace ricochet

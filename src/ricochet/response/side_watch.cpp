@@ -1,0 +1,64 @@
+#include "ricochet/response/side_watch.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ricochet {
+
+void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides) {
+    for (std::uint32_t collider = 0; collider < sides.size(); ++collider) {
+        sides[collider] = {};
+        const auto nearest = distance.closest(collider, position, std::numeric_limits<double>::infinity());
+        if (nearest && !nearest->on_rim) sides[collider].side = static_cast<std::int8_t>(nearest->side);
+    }
+}
+
+Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
+    const SideMemory& memory = sides_[point.collider];
+    Proximity seen{point.collider, point.surface, point.point, point.direction, 0.0, false, point.side};
+    const bool other_side = memory.side != 0 && point.side == -memory.side && !point.on_rim;
+    seen.behind = other_side && (memory.penetrating || distance_.segment_meets(point.collider, from, place));
+    if (point.on_rim) seen.side = 0;
+    if (seen.behind) seen.normal = -point.direction;
+    // On the surface itself the direction is the surface's normal, not the particle's.
+    if (point.side == 0 && memory.side < 0) seen.normal = -point.direction;
+    seen.gap = (seen.behind ? -point.distance : point.distance) - radius_;
+    return seen;
+}
+
+void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out) {
+    out.clear();
+    points_.clear();
+    const double within = radius_ + margin + length(place - from);
+    distance_.near(place, within, points_);
+    const auto near_end = static_cast<std::ptrdiff_t>(points_.size());
+    for (std::uint32_t collider = 0; collider < sides_.size(); ++collider) {
+        if (!sides_[collider].penetrating) continue;
+        const auto is_it = [&](const SurfacePoint& point) { return point.collider == collider; };
+        if (std::any_of(points_.begin(), points_.begin() + near_end, is_it)) continue;
+        const auto far = distance_.closest(collider, place, std::numeric_limits<double>::infinity());
+        if (far) points_.push_back(*far);
+    }
+    for (const SurfacePoint& point : points_) {
+        const Proximity seen = proximity(point, place, from);
+        if (seen.gap < margin) out.push_back(seen);
+    }
+    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.collider < b.collider; });
+}
+
+void SideWatch::settle(std::span<const Proximity> seen) {
+    for (SideMemory& memory : sides_) memory.penetrating = memory.touching = false;
+    for (const Proximity& view : seen) {
+        SideMemory& memory = sides_[view.collider];
+        memory.penetrating = view.behind;
+        memory.touching = view.gap < 0.0;
+        if (!view.behind && view.side != 0) memory.side = static_cast<std::int8_t>(view.side);
+    }
+}
+
+bool SideWatch::in_contact() const {
+    return std::any_of(sides_.begin(), sides_.end(),
+                       [](const SideMemory& memory) { return memory.touching || memory.penetrating; });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,60 @@
+/// \file
+/// Private to the responses that look at a particle at the end of a step: is it behind a surface, how deep, and which
+/// is the nearest way out?
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/signed_distance.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// A collider near a particle, seen from the side that the particle belongs to.
+struct Proximity {
+    std::uint32_t collider = 0;
+    SurfaceId surface = 0;
+    Vec3 point;           ///< the collider's place nearest to the centre
+    Vec3 normal;          ///< unit, from there to the particle's own side
+    double gap = 0.0;     ///< m from the sphere to the surface; negative: the particle penetrates
+    bool behind = false;  ///< the centre itself is on the wrong side
+    int side = 0;         ///< the side that the centre is on now; 0 where that has no meaning
+};
+
+/// Lists of one thread, kept between particles so that the loop over them allocates nothing.
+struct SideScratch {
+    std::vector<SurfacePoint> points;
+    std::vector<Proximity> seen;
+    std::vector<ContactSurface> contacts;
+};
+
+/// The sides of all colliders that a newborn particle is on; 0 next to an open rim, where there is none.
+void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides);
+
+/// Keeps the sides of one particle. A side is changed by going round an open rim only: a particle that is found on the
+/// other side is behind the surface when its way there meets the collider, or when it was behind it before.
+class SideWatch {
+public:
+    SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
+        : distance_(distance), sides_(sides), radius_(radius), points_(lists.points) {}
+
+    /// Every collider whose gap at `place` is below the margin, m, in ascending order. from: where the particle was when
+    /// its sides were settled last.
+    void look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out);
+    /// Takes what was seen at a place that the particle stays at.
+    void settle(std::span<const Proximity> seen);
+    /// True when the particle was in contact with something when its sides were settled last.
+    [[nodiscard]] bool in_contact() const;
+    [[nodiscard]] const SideMemory& memory(std::uint32_t collider) const { return sides_[collider]; }
+
+private:
+    [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
+
+    const SignedDistance& distance_;
+    std::span<SideMemory> sides_;
+    double radius_;
+    std::vector<SurfacePoint>& points_;
+};
+
+}  // namespace ricochet

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/predicates.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
@@ -219,6 +221,127 @@ TEST(TriangleBvh, LooksAtFewTrianglesOfALargeMesh) {
     }
     EXPECT_GE(met, kRays / 20);
     EXPECT_LT(seen, std::size_t{20} * kRays);
+}
+
+std::vector<std::uint32_t> visited_near(const TriangleBvh& bvh, const Vec3& p, double within) {
+    std::vector<std::uint32_t> triangles;
+    bvh.visit_near(p, within, [&](std::uint32_t triangle) {
+        triangles.push_back(triangle);
+        return within;
+    });
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+}
+
+double distance_of(const TriangleMesh& mesh, std::uint32_t t, const Vec3& p) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return std::sqrt(
+        closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
+}
+
+/// Points that are hard on boxes: corners, beside them, in the middle of nowhere, far away, very far away.
+Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSequence& random) {
+    const auto& t =
+        mesh.triangles[static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()))];
+    const Vec3& corner = mesh.vertices[t[0]];
+    const double size = box.diagonal();
+    const Vec3 heading = random.unit_vector();
+    constexpr std::array<double, 7> kBeside{0.0, 1e-14, 1e-7, 1e-3, 1e2, 1e5, 1e9};
+    if (kind < 7) return corner + kBeside[static_cast<std::size_t>(kind)] * size * heading;
+    return box.lower + Vec3{random.uniform() * box.size().x, random.uniform() * box.size().y, 0.5 * box.size().z};
+}
+
+TEST_P(TriangleBvhPlaces, VisitsEveryTriangleWithinADistanceOfAPoint) {
+    for (const TriangleMesh& original : {soup(300, 7), testing::sphere_mesh({}, 1.0, 2)}) {
+        TriangleMesh mesh = original;
+        const double size = bounds(mesh).diagonal();
+        for (Vec3& v : mesh.vertices)
+            v = flush_tiny(GetParam().scale * v + GetParam().scale * GetParam().offset * size * Vec3{1, -0.5, 0.3});
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+        const Box3 box = bounds(mesh);
+        RandomSequence random(8, 0, 0);
+        std::vector<double> distances(mesh.triangles.size());
+        for (int i = 0; i < test::scaled(400); ++i) {
+            const Vec3 p = flush_tiny(hard_point(mesh, box, i % 8, random));
+            for (std::uint32_t t = 0; t < distances.size(); ++t) distances[t] = distance_of(mesh, t, p);
+            // Just as far as one of them, so that the border itself is asked about; nothing; everything.
+            const double one = distances[static_cast<std::size_t>(random.uniform() * 100.0)];
+            for (const double within : {one, 0.0, 1e-3 * box.diagonal(), HUGE_VAL}) {
+                const auto seen = visited_near(bvh, p, within);
+                ASSERT_TRUE(std::adjacent_find(seen.begin(), seen.end()) == seen.end()) << "visited twice, " << i;
+                for (std::uint32_t t = 0; t < distances.size(); ++t) {
+                    if (distances[t] > within) continue;
+                    ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << i << ", within " << within;
+                }
+            }
+        }
+    }
+}
+
+// The ties at the smallest distance are all seen: the number of triangles that have it is that of brute force.
+TEST(TriangleBvh, NarrowingToTheNearestSoFarFindsTheNearestAndAllItsTies) {
+    const TriangleMesh mesh = testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({}, 0.5, 3));
+    const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+    RandomSequence random(9, 0, 0);
+    for (int i = 0; i < test::scaled(1000); ++i) {
+        const Vec3& corner = mesh.vertices[static_cast<std::size_t>(random.uniform() * 500.0)];
+        const Vec3 p = i % 2 == 0 ? (1.0 + 0.3 * random.uniform()) * corner : 2.0 * random.in_unit_ball();
+        std::vector<double> seen;
+        double nearest = HUGE_VAL;
+        bvh.visit_near(p, HUGE_VAL, [&](std::uint32_t t) {
+            seen.push_back(distance_of(mesh, t, p));
+            return nearest = std::min(nearest, seen.back());
+        });
+        std::vector<double> all;
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all.push_back(distance_of(mesh, t, p));
+        const double expected = *std::min_element(all.begin(), all.end());
+        ASSERT_EQ(nearest, expected) << i;
+        ASSERT_EQ(std::count(seen.begin(), seen.end(), expected), std::count(all.begin(), all.end(), expected)) << i;
+    }
+}
+
+TEST(TriangleBvh, NearnessCountsFromTheReachAndTheSlack) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
+    for (const double reach : {0.0, 0.01, 3.0}) {
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, reach);
+        RandomSequence random(10, 0, 0);
+        for (int i = 0; i < test::scaled(200); ++i) {
+            const Vec3 p = 3.0 * random.in_unit_ball();
+            const double within = random.uniform();
+            const auto seen = visited_near(bvh, p, within);
+            for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+                if (distance_of(mesh, t, p) > within + 0.999 * (reach + bvh.slack())) continue;
+                ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << i << ", reach " << reach;
+            }
+        }
+    }
+}
+
+TEST(TriangleBvh, LooksAtFewTrianglesAroundAPoint) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 5);  // 8192 triangles
+    const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+    EXPECT_TRUE(visited_near(bvh, {3, 0, 0}, 1.9).empty());
+    EXPECT_TRUE(visited_near(bvh, {1e30, 0, 0}, 1e29).empty());
+    EXPECT_EQ(visited_near(bvh, {1e30, 0, 0}, 1.1e30).size(), mesh.triangles.size());
+    RandomSequence random(11, 0, 0);
+    std::size_t within_reach = 0, narrowed = 0;
+    constexpr std::size_t kPoints = 100;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        const Vec3 p = 1.01 * random.unit_vector();
+        within_reach += visited_near(bvh, p, 0.02).size();
+        double nearest = HUGE_VAL;
+        bvh.visit_near(p, HUGE_VAL, [&](std::uint32_t t) {
+            ++narrowed;
+            return nearest = std::min(nearest, distance_of(mesh, t, p));
+        });
+    }
+    EXPECT_LT(within_reach, 40 * kPoints);
+    EXPECT_LT(narrowed, 60 * kPoints);
+}
+
+TEST(TriangleBvh, NothingIsNearWithoutTriangles) {
+    const TriangleBvh empty({}, {}, 0.0);
+    EXPECT_TRUE(visited_near(empty, {0, 0, 0}, HUGE_VAL).empty());
 }
 
 TEST(TriangleBvh, NamesTheRayLibrary) { EXPECT_EQ(ray_library_version().rfind("Embree ", 0), 0U); }

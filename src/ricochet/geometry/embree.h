@@ -65,6 +65,13 @@ inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #endif
 }
 
+/// Asks for everything within query.radius of a point; both releases of the library agree on how.
+inline void point_query1(RTCScene scene, RTCPointQuery& query, RTCPointQueryFunction function, void* user) {
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene, &query, &context, function, user);
+}
+
 /// Throws RunError when the device has recorded an error since the last call.
 inline void check_device(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);

@@ -88,6 +88,40 @@ struct Query {
     double fraction_limit;
 };
 
+/// A query for what is near a point, on its way through the callback.
+struct NearQuery {
+    void* context;
+    TriangleBvh::VisitNear visit;
+    double within;    ///< m, narrowed so far
+    double scale;     ///< of the float frame
+    double rounding;  ///< in the float frame: how far the point that the ray library sees may be off
+
+    [[nodiscard]] float radius() const;
+};
+
+/// Distances are compared as squares in single precision: some 8 roundings, for which 2^-20 is plenty. An infinite
+/// radius would also reach the empty boxes that the ray library keeps; from a point that is not far away, everything
+/// is nearer than the largest one.
+float NearQuery::radius() const {
+    constexpr double kEverything = 4.0 * kFarAway;
+    return round_up(std::min(scale * within * (1.0 + 0x1p-20) + rounding, kEverything));
+}
+
+bool visit_near_triangle(RTCPointQueryFunctionArguments* args) {
+    auto& query = *static_cast<NearQuery*>(args->userPtr);
+    const double limit = std::max(query.visit(query.context, args->primID), 0.0);
+    if (!(limit < query.within)) return false;
+    query.within = limit;
+    args->query->radius = std::min(args->query->radius, query.radius());
+    return true;
+}
+
+/// Largest distance of a point from a box along an axis, 0 inside: no more than its distance from the box.
+double gap_from(const Box3& box, const Vec3& p) {
+    const Vec3 outside = max(box.lower - p, p - box.upper);
+    return std::max({outside.x, outside.y, outside.z, 0.0});
+}
+
 /// Bytes that the ray library holds; its own threads count too.
 struct MemoryCount {
     std::atomic<std::ptrdiff_t> bytes{0};
@@ -132,6 +166,7 @@ struct TriangleBvh::Impl {
     void set_frame();
     void write_bounds(std::uint32_t triangle, RTCBounds& bounds) const;
     void visit_all(Query& query) const;
+    void ask_near(NearQuery& query, const Vec3& point) const;
     void cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const;
 };
 
@@ -257,6 +292,31 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
     const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
     const double ray_length = (range->end - range->begin) * query.ray_per_fraction;
     impl_->cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
+}
+
+void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
+    query.rounding = 0x1p-22 * max_abs(point);
+    RTCPointQuery around{};
+    around.x = static_cast<float>(point.x);
+    around.y = static_cast<float>(point.y);
+    around.z = static_cast<float>(point.z);
+    around.radius = query.radius();
+    embree::point_query1(scene.get(), around, visit_near_triangle, &query);
+}
+
+void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitNear visitor) const {
+    // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
+    // covered by the factor.
+    if (impl_->triangles.empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
+    const FloatFrame& frame = impl_->frame;
+    if (max_abs(p - frame.center) * frame.scale > kFarAway) {
+        for (std::uint32_t triangle = 0; triangle < impl_->triangles.size(); ++triangle) {
+            (void)visitor(context, triangle);
+        }
+        return;
+    }
+    NearQuery query{context, visitor, within, frame.scale, 0.0};
+    impl_->ask_near(query, frame.apply(p));
 }
 
 void set_ray_library_settings(std::string settings) { ray_library_settings() = std::move(settings); }

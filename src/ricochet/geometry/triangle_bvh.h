@@ -1,15 +1,17 @@
 /// \file
-/// Which triangles may a segment touch? A bounding volume hierarchy over padded boxes; the ray library lives behind it.
+/// Which triangles may a segment touch, which are near a point? A bounding volume hierarchy over padded boxes; the ray
+/// library lives behind it.
 ///
 /// The hierarchy works in single precision and only proposes: every triangle that comes within the reach
-/// of the segment (in exact arithmetic) is visited, and some that do not. Nothing that the ray library computes about
-/// triangles is used, so results do not depend on its version, instruction set or layout.
+/// of the segment or point (in exact arithmetic) is visited, and some that do not. Nothing that the ray library
+/// computes about triangles is used, so results do not depend on its version, instruction set or layout.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/triangle_mesh.h"
@@ -42,6 +44,23 @@ public:
         using Function = std::remove_reference_t<Callable>;
         visit(from, to, const_cast<void*>(static_cast<const void*>(&callable)),
               [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
+    }
+
+    /// Called for a proposed triangle. Returns the distance, m, beyond which triangles are no longer of interest. A
+    /// pure narrowing: the smallest value returned so far holds.
+    using VisitNear = double (*)(void* context, std::uint32_t triangle);
+
+    /// Visits every triangle whose distance from p is at most within + reach() + slack() (and possibly more), where
+    /// `within` (m, >= 0, may be infinite) is replaced by the narrowed distance; in unspecified order. Safe from any
+    /// number of threads. p must be finite.
+    void visit_near(const Vec3& p, double within, void* context, VisitNear visit) const;
+
+    /// The same with any callable `double(std::uint32_t triangle)`.
+    template <class Callable>
+    void visit_near(const Vec3& p, double within, Callable&& callable) const {
+        using Function = std::remove_reference_t<Callable>;
+        visit_near(p, within, const_cast<void*>(static_cast<const void*>(&callable)),
+                   [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
     /// m, as given.

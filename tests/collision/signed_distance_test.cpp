@@ -1,0 +1,1 @@
+#include "ricochet/collision/signed_distance.h"

@@ -196,6 +196,7 @@ struct Simulation::Impl {
     std::vector<ContactRecord> records;
     std::unique_ptr<RunCheck> check;  ///< with options.verify
     std::vector<Violation> violations;
+    std::vector<Violation> last_violations;
     std::uint64_t steps;
     std::uint64_t next_id = 0;
     bool may_sleep;
@@ -272,8 +273,10 @@ void Simulation::Impl::move_all(double from, double to) {
 }
 
 void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
+    last_violations.clear();
     for (const BlockCounts& block : blocks) {
         statistics.violations += block.violations.size();
+        last_violations.insert(last_violations.end(), block.violations.begin(), block.violations.end());
         const std::size_t kept = std::min(block.violations.size(), kMostViolations - violations.size());
         violations.insert(violations.end(), block.violations.begin(),
                           block.violations.begin() + static_cast<std::ptrdiff_t>(kept));
@@ -495,6 +498,13 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     }
     impl_->add_weights_of_sleepers(-1.0);
     return result;
+}
+
+const std::vector<Violation>& Simulation::last_violations() const { return impl_->last_violations; }
+
+bool Simulation::is_penetrating(std::size_t i) const {
+    const std::span<const SideMemory> sides = impl_->sides_of(i);
+    return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
 }
 
 const std::vector<std::string>& Simulation::warnings() const { return impl_->warnings; }

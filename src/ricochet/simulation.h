@@ -134,6 +134,10 @@ public:
     /// counted in statistics().violations.
     [[nodiscard]] const std::vector<Violation>& violations() const;
     static constexpr std::size_t kMostViolations = 1000;
+    /// All that options.verify found wrong in the last step, in the same order.
+    [[nodiscard]] const std::vector<Violation>& last_violations() const;
+    /// True when the response knows particle i (of particles()) to be behind a surface, and is about to push it back.
+    [[nodiscard]] bool is_penetrating(std::size_t i) const;
 
     /// Energies leave frozen particles out: what is known of them is where they were stopped, not how they would move.
     [[nodiscard]] double kinetic_energy() const;                   ///< J

@@ -41,6 +41,7 @@ public:
     MoveOutcome run(double duration);
 
 private:
+    void survey(double duration);
     bool substep(double h);
     std::optional<BodyState> stepped(const BodyState& now, double h);
     std::optional<BodyState> verlet(const BodyState& now, double h);
@@ -68,6 +69,7 @@ MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
     seen_.clear();
     if (watch_.in_contact()) watch_.look(state_.position, state_.position, 0.0, seen_);
+    if (rules_.settings.penalty.substeps > 1) survey(duration);
     for (std::uint32_t k = 0; k < rules_.settings.penalty.substeps; ++k) {
         if (!substep(h)) {
             outcome_.frozen = true;
@@ -77,6 +79,14 @@ MoveOutcome PenaltyMover::run(double duration) {
     }
     outcome_.resting = !seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed;
     return outcome_;
+}
+
+/// One wide look in place of one a sub-step, as long as nothing is near.
+void PenaltyMover::survey(double duration) {
+    const double pull = length(rules_.forces.acceleration(state_));
+    const double way = duration * (length(state_.velocity) + duration * pull);
+    const double substep_way = 2.0 * way / rules_.settings.penalty.substeps;
+    if (is_finite(state_.position) && std::isfinite(way)) watch_.survey(state_.position, way + substep_way + state_.radius);
 }
 
 /// False when the state leaves what can be followed; it is left as it was then.

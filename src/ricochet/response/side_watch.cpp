@@ -4,6 +4,12 @@
 #include <limits>
 
 namespace ricochet {
+namespace {
+
+/// Relative rounding of a distance, by far.
+constexpr double kClearRounding = 1e-9;
+
+}  // namespace
 
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides) {
     for (std::uint32_t collider = 0; collider < sides.size(); ++collider) {
@@ -26,11 +32,21 @@ Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& place, con
     return seen;
 }
 
+void SideWatch::survey(const Vec3& place, double reach) {
+    points_.clear();
+    distance_.near(place, reach, points_);
+    clear_center_ = place;
+    clear_radius_ = reach;
+    for (const SurfacePoint& point : points_) clear_radius_ = std::min(clear_radius_, point.distance);
+}
+
 void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out) {
     out.clear();
     points_.clear();
     const double within = radius_ + margin + length(place - from);
-    distance_.near(place, within, points_);
+    // A rounding less than the distances say: they are rounded too.
+    const bool clear = length(place - clear_center_) + within < (1.0 - kClearRounding) * clear_radius_;
+    if (!clear) distance_.near(place, within, points_);
     const auto near_end = static_cast<std::ptrdiff_t>(points_.size());
     for (std::uint32_t collider = 0; collider < sides_.size(); ++collider) {
         if (!sides_[collider].penetrating) continue;

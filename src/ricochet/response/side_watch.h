@@ -42,6 +42,8 @@ public:
     /// Every collider whose gap at `place` is below the margin, m, in ascending order. from: where the particle was when
     /// its sides were settled last.
     void look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out);
+    /// Looks as far as the particle may get in what comes, m: while it stays within, no look is needed where nothing is.
+    void survey(const Vec3& place, double reach);
     /// Takes what was seen at a place that the particle stays at.
     void settle(std::span<const Proximity> seen);
     /// True when the particle was in contact with something when its sides were settled last.
@@ -55,6 +57,8 @@ private:
     std::span<SideMemory> sides_;
     double radius_;
     std::vector<SurfacePoint>& points_;
+    Vec3 clear_center_;
+    double clear_radius_ = 0.0;  // m around it without any surface
 };
 
 }  // namespace ricochet

@@ -118,6 +118,12 @@ inline constexpr double kSeamSlack = 0x1p-48;
 /// not be stopped again and again. Larger: a sphere that overlaps at birth can sink in by that fraction of its path.
 inline constexpr double kSlowestApproach = 0x1p-48;
 
+/// Rounding of a pseudonormal, relative to the sum of the weights of the normals it is the mean of, and of its scalar
+/// product with a unit vector: a few roundings of 2^-50 and one of 2^-53 for each of some hundred triangles around a
+/// vertex. Below it normals count as cancelled and sides as undecided. Smaller: rounding tells sides apart at knife
+/// edges. Larger: edges sharper than that (rad) have no sides.
+inline constexpr double kPseudonormalRounding = 0x1p-44;
+
 /// Depth to which a path is halved while its chords are being certified. 2^-52 of the path is below the rounding of its
 /// points; a chord that still meets a triangle there is taken as an impact at that place.
 inline constexpr int kCertificateDepth = 52;

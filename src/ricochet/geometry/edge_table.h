@@ -1,5 +1,5 @@
 /// \file
-/// Private to mesh_topology: which faces use which edge.
+/// Private to mesh_topology and pseudonormals: which faces use which edge.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the mesh readers: one vertex for all corners of equal coordinates.
+/// Private to the mesh readers and to pseudonormals: one vertex for all corners of equal coordinates.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,253 @@
+#include "ricochet/collision/signed_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/geometry/predicates.h"
+
+namespace ricochet {
+namespace {
+
+/// True when no place of a box is so near to p that a triangle in it could replace one at that squared distance,
+/// however distances are rounded: they err by less than 2^-48 of the way to the box's far corner.
+bool is_farther(const Box3& box, const Vec3& p, double squared) {
+    const Vec3 below = box.lower - p;
+    const Vec3 above = p - box.upper;
+    const Vec3 gap = max(max(below, above), Vec3{});
+    const Vec3 farthest = max(abs(below), abs(above));
+    return length_squared(gap) > (1.0 + 0x1p-19) * squared + 0x1p-74 * length_squared(farthest);
+}
+
+/// The order that makes one of several triangles the nearest.
+bool comes_before(const ClosestPointOnTriangle& x, std::uint32_t x_triangle, const ClosestPointOnTriangle& y,
+                  std::uint32_t y_triangle) {
+    if (x.distance_squared != y.distance_squared) return x.distance_squared < y.distance_squared;
+    if (rank(x.feature) != rank(y.feature)) return rank(x.feature) < rank(y.feature);
+    return x_triangle < y_triangle;
+}
+
+std::optional<SurfacePoint> if_within(const SurfacePoint& found, double within) {
+    return found.distance <= within ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace
+
+SignedDistance::SignedDistance(const CollisionWorld& world) : world_(world) {
+    std::uint32_t planes = 0;
+    std::uint32_t shapes = 0;
+    for (std::uint32_t collider = 0; collider < world.colliders().size(); ++collider) {
+        const ColliderShape& shape = world.colliders()[collider].shape;
+        if (std::holds_alternative<PlaneShape>(shape)) {
+            parts_.push_back({Kind::plane, planes++});
+        } else if (std::holds_alternative<BallShape>(shape) || std::holds_alternative<CylinderShape>(shape)) {
+            parts_.push_back({Kind::shape, shapes++});
+        } else {
+            add_mesh(collider);
+        }
+    }
+}
+
+void SignedDistance::add_mesh(std::uint32_t collider) {
+    const std::uint32_t first = meshes_.empty() ? 0 : meshes_.back().end_triangle;
+    const std::size_t count = world_.surface_count_of(collider);
+    parts_.push_back({Kind::mesh, static_cast<std::uint32_t>(meshes_.size())});
+    meshes_.push_back({collider, first, first + static_cast<std::uint32_t>(count),
+                       Pseudonormals(world_.vertices(), world_.triangles().subspan(first, count))});
+}
+
+std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
+    const auto after = std::upper_bound(meshes_.begin(), meshes_.end(), triangle,
+                                        [](std::uint32_t t, const Mesh& mesh) { return t < mesh.first_triangle; });
+    return static_cast<std::uint32_t>(after - meshes_.begin() - 1);
+}
+
+/// Without culling every triangle is visited: the reference of tests.
+template <class Visit>
+void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) const {
+    if (world_.culls()) {
+        world_.bvh_for(0.0).visit_near(p, within, visit);
+        return;
+    }
+    for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) (void)visit(triangle);
+}
+
+/// The nearest triangles of all meshes, one traversal for all.
+class SignedDistance::NearSearch {
+public:
+    NearSearch(const SignedDistance& distance, const Vec3& p, double within, std::vector<Candidate>& found)
+        : distance_(distance), p_(p), within_(within), found_(found) {
+        found_.clear();
+    }
+
+    /// Returns what is left to look at: as far as the mesh whose nearest triangle is the farthest, once each has one.
+    double operator()(std::uint32_t triangle) {
+        if (distance_.world_.is_left_out(triangle)) return within_;
+        const std::uint32_t mesh = distance_.mesh_of_triangle(triangle);
+        const auto at = std::lower_bound(found_.begin(), found_.end(), mesh,
+                                         [](const Candidate& c, std::uint32_t m) { return c.mesh < m; });
+        Candidate candidate{mesh, triangle, {}};
+        if (at == found_.end() || at->mesh != mesh) {
+            candidate.nearest = distance_.nearest_on(triangle, p_);
+            found_.insert(at, candidate);
+        } else if (!distance_.improves(*at, candidate, p_)) {
+            return within_;
+        } else {
+            *at = candidate;
+        }
+        narrow();
+        return within_;
+    }
+
+private:
+    void narrow() {
+        if (found_.size() < distance_.meshes_.size()) return;
+        double farthest = 0.0;
+        for (const Candidate& c : found_) farthest = std::max(farthest, c.nearest.distance_squared);
+        within_ = std::min(within_, std::sqrt(farthest));
+    }
+
+    const SignedDistance& distance_;
+    const Vec3& p_;
+    double within_;
+    std::vector<Candidate>& found_;
+};
+
+ClosestPointOnTriangle SignedDistance::nearest_on(std::uint32_t triangle, const Vec3& p) const {
+    const auto [a, b, c] = world_.corners_of_triangle(triangle);
+    return closest_point_on_triangle(p, a, b, c);
+}
+
+bool SignedDistance::improves(const Candidate& best, Candidate& candidate, const Vec3& p) const {
+    const auto [a, b, c] = world_.corners_of_triangle(candidate.triangle);
+    Box3 box;
+    for (const Vec3* corner : {&a, &b, &c}) box.include(*corner);
+    if (is_farther(box, p, best.nearest.distance_squared)) return false;
+    candidate.nearest = closest_point_on_triangle(p, a, b, c);
+    return comes_before(candidate.nearest, candidate.triangle, best.nearest, best.triangle);
+}
+
+std::optional<SignedDistance::Candidate> SignedDistance::nearest_triangle(std::uint32_t mesh, const Vec3& p,
+                                                                          double within) const {
+    const Mesh& of = meshes_[mesh];
+    std::optional<Candidate> best;
+    visit_near(p, within, [&](std::uint32_t triangle) {
+        if (triangle < of.first_triangle || triangle >= of.end_triangle || world_.is_left_out(triangle)) return within;
+        Candidate candidate{mesh, triangle, {}};
+        if (!best) {
+            candidate.nearest = nearest_on(triangle, p);
+        } else if (!improves(*best, candidate, p)) {
+            return within;
+        }
+        best = candidate;
+        within = std::min(within, std::sqrt(candidate.nearest.distance_squared));
+        return within;
+    });
+    return best;
+}
+
+std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index, const Vec3& p, double within) const {
+    const auto& [plane, surface] = world_.planes()[index];
+    const double height = signed_distance(p, plane);
+    SurfacePoint found;
+    found.point = p - height * plane.normal;
+    found.direction = height < 0.0 ? -plane.normal : plane.normal;
+    found.distance = std::fabs(height);
+    found.side = side_of(plane, p);
+    found.surface = surface;
+    found.collider = world_.name_of(surface).collider;
+    return if_within(found, within);
+}
+
+std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const {
+    const auto& [shape, surface] = world_.shapes()[index];
+    if (is_farther(shape.bounds(), p, within * within)) return std::nullopt;
+    const ShapePoint nearest = shape.closest_point(p);
+    SurfacePoint found;
+    found.point = nearest.point;
+    found.direction = nearest.distance < 0.0 ? -nearest.normal : nearest.normal;
+    found.distance = std::fabs(nearest.distance);
+    found.side = shape.side(p);
+    found.surface = surface;
+    found.collider = world_.name_of(surface).collider;
+    return if_within(found, within);
+}
+
+/// Over a face the distance from its plane is the accurate one. On the surface itself the way to p has no direction:
+/// there the pseudonormal stands in, or the triangle's normal where that is zero.
+std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& candidate, const Vec3& p,
+                                                            double within) const {
+    const Mesh& mesh = meshes_[candidate.mesh];
+    const std::uint32_t triangle = candidate.triangle - mesh.first_triangle;
+    const ClosestPointOnTriangle& nearest = candidate.nearest;
+    const auto [a, b, c] = world_.corners_of_triangle(candidate.triangle);
+    SurfacePoint found;
+    found.point = nearest.point;
+    if (nearest.feature == TriangleFeature::kFace) {
+        const double height = signed_distance(p, a, b, c);
+        found.distance = std::fabs(height);
+        found.direction = height < 0.0 ? -unit_normal(a, b, c) : unit_normal(a, b, c);
+    } else {
+        found.distance = length(nearest.offset);
+        const Vec3 normal = mesh.normals.of(triangle, nearest.feature);
+        const Vec3 on_surface = normal == Vec3{} ? unit_normal(a, b, c) : normalized(normal);
+        found.direction = found.distance > 0.0 ? nearest.offset / found.distance : on_surface;
+    }
+    found.side = mesh.normals.side(triangle, nearest, p);
+    found.surface = world_.surface_of_triangle(candidate.triangle);
+    found.collider = mesh.collider;
+    found.on_rim = mesh.normals.is_on_rim(triangle, nearest.feature);
+    return if_within(found, within);
+}
+
+std::optional<SurfacePoint> SignedDistance::closest(std::uint32_t collider, const Vec3& p, double within) const {
+    const Part& part = parts_[collider];
+    if (part.kind == Kind::plane) return nearest_of_plane(part.index, p, within);
+    if (part.kind == Kind::shape) return nearest_of_shape(part.index, p, within);
+    const std::optional<Candidate> candidate = nearest_triangle(part.index, p, within);
+    return candidate ? nearest_of_mesh(*candidate, p, within) : std::nullopt;
+}
+
+void SignedDistance::near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const {
+    thread_local std::vector<Candidate> candidates;
+    visit_near(p, within, NearSearch(*this, p, within, candidates));
+    auto candidate = candidates.begin();
+    for (const Part& part : parts_) {
+        std::optional<SurfacePoint> found;
+        if (part.kind == Kind::plane) {
+            found = nearest_of_plane(part.index, p, within);
+        } else if (part.kind == Kind::shape) {
+            found = nearest_of_shape(part.index, p, within);
+        } else if (candidate != candidates.end() && candidate->mesh == part.index) {
+            found = nearest_of_mesh(*candidate++, p, within);
+        }
+        if (found) out.push_back(*found);
+    }
+}
+
+bool SignedDistance::segment_meets(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
+    const Part& part = parts_[collider];
+    const SurfaceId first = world_.first_surface_of(collider);
+    if (part.kind != Kind::mesh) return world_.segment_meets(first, p, q);
+    const Mesh& mesh = meshes_[part.index];
+    bool meets = false;
+    const auto visit = [&](std::uint32_t triangle) {
+        if (triangle >= mesh.first_triangle && triangle < mesh.end_triangle && !world_.is_left_out(triangle)) {
+            meets = meets || world_.segment_meets(first + (triangle - mesh.first_triangle), p, q);
+        }
+        return meets ? 0.0 : 1.0;
+    };
+    if (world_.culls()) {
+        world_.bvh_for(0.0).visit(p, q, visit);
+    } else {
+        for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle && !meets; ++t) (void)visit(t);
+    }
+    return meets;
+}
+
+std::size_t SignedDistance::memory_bytes() const {
+    std::size_t bytes = parts_.capacity() * sizeof(Part) + meshes_.capacity() * sizeof(Mesh);
+    for (const Mesh& mesh : meshes_) bytes += mesh.normals.memory_bytes();
+    return bytes;
+}
+
+}  // namespace ricochet

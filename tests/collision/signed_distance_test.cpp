@@ -20,6 +20,10 @@
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 
+#ifndef RICOCHET_CASE_FACTOR
+#define RICOCHET_CASE_FACTOR 1
+#endif
+
 namespace ricochet {
 namespace {
 
@@ -34,6 +38,9 @@ using testing::plane_collider;
 using testing::Side;
 using testing::sphere_mesh;
 using testing::world_of;
+
+/// Repetitions of a random test.
+constexpr int cases(int full) { return RICOCHET_CASE_FACTOR * test::scaled(full); }
 
 bool same(const SurfacePoint& x, const SurfacePoint& y) {
     return x.point == y.point && x.direction == y.direction && x.distance == y.distance && x.side == y.side &&
@@ -114,33 +121,33 @@ void expect_sides_of_parity(const TriangleMesh& mesh, int count, std::uint64_t s
 }
 
 TEST(SignedDistance, HasTheSideOfParityForRandomSpikyShells) {
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_sides_of_parity(star(seed), test::scaled(3000), seed);
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_sides_of_parity(star(seed), cases(3000), seed);
 }
 
 TEST(SignedDistance, HasTheSideOfParityInNestedShells) {
     const TriangleMesh shells = merged(merged(star(5), flipped(star(6, 0.3))), star(7, 0.09));
-    expect_sides_of_parity(shells, test::scaled(6000), 5);
+    expect_sides_of_parity(shells, cases(6000), 5);
 }
 
 TEST(SignedDistance, HasTheSideOfParityOnBoxesAndSpheres) {
-    expect_sides_of_parity(box_mesh({-1, -2, -3}, {1, 2, 3}), test::scaled(3000), 8);
-    expect_sides_of_parity(sphere_mesh({1, 2, 3}, 2.0, 3), test::scaled(3000), 9);
+    expect_sides_of_parity(box_mesh({-1, -2, -3}, {1, 2, 3}), cases(3000), 8);
+    expect_sides_of_parity(sphere_mesh({1, 2, 3}, 2.0, 3), cases(3000), 9);
     // Boxes that touch along an edge and at a vertex: edges of four triangles.
     const TriangleMesh touching =
         merged(merged(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 0}, {2, 2, 1})), box_mesh({2, 2, 1}, {3, 3, 2}));
-    expect_sides_of_parity(touching, test::scaled(3000), 10);
+    expect_sides_of_parity(touching, cases(3000), 10);
 }
 
 TEST(SignedDistance, HasTheSideOfParityAMillionMetresFromTheOrigin) {
-    expect_sides_of_parity(moved(star(11), {1e6, -1e6, 1e6}), test::scaled(3000), 11);
-    expect_sides_of_parity(moved(box_mesh({0, 0, 0}, {1, 1, 1}), {1e6, -1e6, 1e6}), test::scaled(3000), 12);
+    expect_sides_of_parity(moved(star(11), {1e6, -1e6, 1e6}), cases(3000), 11);
+    expect_sides_of_parity(moved(box_mesh({0, 0, 0}, {1, 1, 1}), {1e6, -1e6, 1e6}), cases(3000), 12);
 }
 
 class SignedDistanceOfRealMesh : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SignedDistanceOfRealMesh, HasTheSideOfParity) {
     RICOCHET_SHARED_MESH_OR_SKIP(path, GetParam());
-    expect_sides_of_parity(read_mesh(path).mesh, test::scaled(2000), 13);
+    expect_sides_of_parity(read_mesh(path).mesh, cases(2000), 13);
 }
 
 INSTANTIATE_TEST_SUITE_P(Closed, SignedDistanceOfRealMesh,
@@ -224,7 +231,7 @@ TEST(SignedDistance, FindsTheNearestTriangleOfBruteForce) {
     const auto world = mixed_world();
     const SignedDistance distance(world);
     RandomSequence random(22, 0, 0);
-    for (int i = 0; i < test::scaled(500); ++i) {
+    for (int i = 0; i < cases(500); ++i) {
         const Vec3 p = point_of(i, random);
         for (const std::uint32_t collider : {1U, 3U, 4U, 5U}) {
             const auto expected = by_brute_force(world, collider, p);
@@ -245,7 +252,7 @@ TEST(SignedDistance, NearListsWhatClosestFindsInTheOrderOfTheColliders) {
     const SignedDistance distance(world);
     RandomSequence random(23, 0, 0);
     std::size_t listed = 0;
-    for (int i = 0; i < test::scaled(500); ++i) {
+    for (int i = 0; i < cases(500); ++i) {
         const Vec3 p = point_of(i % 3, random);
         const double within = i % 7 == 0 ? HUGE_VAL : 2.0 * random.uniform();
         std::vector<SurfacePoint> expected{SurfacePoint{}};
@@ -371,7 +378,7 @@ TEST(SignedDistance, IsUndecidedOnSheetsBackToBack) {
     const auto world = world_of(mesh_collider(merged(sheet, flipped(sheet))));
     const SignedDistance distance(world);
     RandomSequence random(31, 0, 0);
-    for (int i = 0; i < test::scaled(300); ++i) {
+    for (int i = 0; i < cases(300); ++i) {
         const auto found = distance.closest(0, 2.0 * random.in_unit_ball(), HUGE_VAL);
         ASSERT_TRUE(found);
         EXPECT_EQ(found->side, 0);
@@ -411,7 +418,7 @@ TEST(SignedDistance, SegmentsMeetACollidersSurfacesExactly) {
     const SignedDistance distance(world), reference(unculled);
     RandomSequence random(41, 0, 0);
     int met = 0;
-    for (int i = 0; i < test::scaled(1000); ++i) {
+    for (int i = 0; i < cases(1000); ++i) {
         const Vec3 p = 3.0 * random.in_unit_ball();
         const Vec3 q = i % 3 == 0 ? world.vertices()[static_cast<std::size_t>(500.0 * random.uniform())]
                                   : p + std::pow(10.0, -6.0 * random.uniform()) * random.unit_vector();

@@ -144,8 +144,8 @@ TEST(Pseudonormals, WeighByTheAnglesOfTheCorners) {
         for (std::uint32_t k = 0; k < 5; ++k) {
             const Vec3 u = random.unit_vector();
             const double opening = k == 0 ? 1e-9 : (k == 1 ? -1.999 : random.uniform());
-            const Vec3 v = (k == 2 ? 1e-8 : 3.0) * (u + opening * (k == 1 ? u + 1e-3 * random.unit_vector()
-                                                                         : random.unit_vector()));
+            const Vec3 v = (k == 2 ? 1e-8 : 3.0) *
+                           (u + opening * (k == 1 ? u + 1e-3 * random.unit_vector() : random.unit_vector()));
             fan.vertices.push_back(fan.vertices[0] + u);
             fan.vertices.push_back(fan.vertices[0] + v);
             fan.triangles.push_back({0, 2 * k + 1, 2 * k + 2});
@@ -154,9 +154,8 @@ TEST(Pseudonormals, WeighByTheAnglesOfTheCorners) {
                 return static_cast<long double>(a[m]) * b[n] - static_cast<long double>(a[n]) * b[m];
             };
             const long double cx = x(p, q, 1, 2), cy = x(p, q, 2, 0), cz = x(p, q, 0, 1);
-            const long double along =
-                static_cast<long double>(p.x) * q.x + static_cast<long double>(p.y) * q.y +
-                static_cast<long double>(p.z) * q.z;
+            const long double along = static_cast<long double>(p.x) * q.x + static_cast<long double>(p.y) * q.y +
+                                      static_cast<long double>(p.z) * q.z;
             const long double angle = std::atan2(std::sqrt(cx * cx + cy * cy + cz * cz), along);
             const Vec3 normal = unit_normal(fan.vertices[0], fan.vertices[2 * k + 1], fan.vertices[2 * k + 2]);
             for (int axis = 0; axis < 3; ++axis) sum[static_cast<std::size_t>(axis)] += angle * normal[axis];
@@ -262,8 +261,7 @@ TEST(Pseudonormals, TellTheSideNextToEdgesHoweverSharp) {
             best.distance_squared = HUGE_VAL;
             for (std::uint32_t t = 0; t < 4; ++t) {
                 const auto& [a, b, c] = mesh.triangles[t];
-                const auto nearest =
-                    closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+                const auto nearest = closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
                 if (nearest.distance_squared >= best.distance_squared) continue;
                 best = nearest;
                 side = normals.side(t, nearest, p);

@@ -8,8 +8,8 @@
 namespace ricochet {
 namespace {
 
-/// True when no place of a box is so near to p that a triangle in it could replace one at that squared distance, however
-/// distances are rounded: they err by less than 2^-48 of the way to the box's far corner.
+/// True when no place of a box is so near to p that a triangle in it could replace one at that squared distance,
+/// however distances are rounded: they err by less than 2^-48 of the way to the box's far corner.
 bool is_farther(const Box3& box, const Vec3& p, double squared) {
     const Vec3 below = box.lower - p;
     const Vec3 above = p - box.upper;
@@ -145,8 +145,7 @@ std::optional<SignedDistance::Candidate> SignedDistance::nearest_triangle(std::u
     return best;
 }
 
-std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index, const Vec3& p,
-                                                             double within) const {
+std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index, const Vec3& p, double within) const {
     const auto& [plane, surface] = world_.planes()[index];
     const double height = signed_distance(p, plane);
     SurfacePoint found;
@@ -159,8 +158,7 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index
     return if_within(found, within);
 }
 
-std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index, const Vec3& p,
-                                                             double within) const {
+std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const {
     const auto& [shape, surface] = world_.shapes()[index];
     if (is_farther(shape.bounds(), p, within * within)) return std::nullopt;
     const ShapePoint nearest = shape.closest_point(p);

@@ -18,19 +18,19 @@ namespace ricochet {
 
 /// The place of a collider's surface that is nearest to a point p.
 struct SurfacePoint {
-    Vec3 point;              ///< on the surface, m
-    Vec3 direction;          ///< unit, from the surface to p; the surface's own normal where p lies on it
-    double distance = 0.0;   ///< m, >= 0
-    int side = 0;            ///< +1: where the surface's normal points to (outside of a ball, a cylinder, a closed mesh
-                             ///< wound outward); -1: behind; 0: on it, or undecided (sheets back to back)
-    SurfaceId surface = 0;   ///< a nearest one
+    Vec3 point;             ///< on the surface, m
+    Vec3 direction;         ///< unit, from the surface to p; the surface's own normal where p lies on it
+    double distance = 0.0;  ///< m, >= 0
+    int side = 0;           ///< +1: where the surface's normal points to (outside of a ball, a cylinder, a closed mesh
+                            ///< wound outward); -1: behind; 0: on it, or undecided (sheets back to back)
+    SurfaceId surface = 0;  ///< a nearest one
     std::uint32_t collider = 0;
     bool on_rim = false;  ///< nearest is an open edge or its end, where sides mean nothing
 };
 
 /// Immutable; safe from any number of threads. Results depend neither on the broad phase nor on the order in which it
 /// proposes triangles: nearest is the smallest under (squared distance in doubles, face before edge before vertex,
-/// surface).
+/// surface). A place on a face's rim that is as near as its face counts as the face's.
 class SignedDistance {
 public:
     /// The world must outlive it.
@@ -84,10 +84,8 @@ private:
     [[nodiscard]] ClosestPointOnTriangle nearest_on(std::uint32_t triangle, const Vec3& p) const;
     [[nodiscard]] bool improves(const Candidate& best, Candidate& candidate, const Vec3& p) const;
     [[nodiscard]] std::optional<Candidate> nearest_triangle(std::uint32_t mesh, const Vec3& p, double within) const;
-    [[nodiscard]] std::optional<SurfacePoint> nearest_of_plane(std::uint32_t index, const Vec3& p,
-                                                               double within) const;
-    [[nodiscard]] std::optional<SurfacePoint> nearest_of_shape(std::uint32_t index, const Vec3& p,
-                                                               double within) const;
+    [[nodiscard]] std::optional<SurfacePoint> nearest_of_plane(std::uint32_t index, const Vec3& p, double within) const;
+    [[nodiscard]] std::optional<SurfacePoint> nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const;
     [[nodiscard]] std::optional<SurfacePoint> nearest_of_mesh(const Candidate& candidate, const Vec3& p,
                                                               double within) const;
 

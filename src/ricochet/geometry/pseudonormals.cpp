@@ -37,8 +37,7 @@ double angle_between(const Vec3& u, const Vec3& v) {
     const Vec3 q = normalized(v / max_abs(v));
     const double across = length(p - q);
     const double along = length(p + q);
-    return across <= along ? 2.0 * arc_tangent(across / along)
-                           : std::numbers::pi - 2.0 * arc_tangent(along / across);
+    return across <= along ? 2.0 * arc_tangent(across / along) : std::numbers::pi - 2.0 * arc_tangent(along / across);
 }
 
 Vec3 zero_if_cancelled(const Vec3& mean) { return max_abs(mean) <= kPseudonormalRounding ? Vec3{} : mean; }
@@ -235,8 +234,7 @@ int Pseudonormals::side_of_edge(std::uint32_t triangle, std::size_t side, const 
     const Vec3 from_start = p - vertices_[triangles_[triangle][side]];
     const Vec3 from_end = p - vertices_[triangles_[triangle][(side + 1) % 3]];
     const Vec3& offset = length_squared(from_start) <= length_squared(from_end) ? from_start : from_end;
-    const int decided =
-        sign_beyond(dot(offset, of_edge(triangle, side)), kPseudonormalRounding * length(offset));
+    const int decided = sign_beyond(dot(offset, of_edge(triangle, side)), kPseudonormalRounding * length(offset));
     if (decided != 0) return decided;
     const Neighbour beyond = sides_[triangle][side];
     return beyond < kIrregularEdge ? side_of_two_faces(triangle, beyond, p) : 0;

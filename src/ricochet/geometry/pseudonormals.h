@@ -52,7 +52,8 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
-    /// What is beyond a side of a triangle: another triangle, or (with kIrregularEdge added) an entry of irregular_edges_.
+    /// What is beyond a side of a triangle: another triangle, or (with kIrregularEdge added) an entry of
+    /// irregular_edges_.
     using Neighbour = std::uint32_t;
 
     /// The side from corner `side` of a triangle to the next.
@@ -82,11 +83,11 @@ private:
 
     std::span<const Vec3> vertices_;
     std::span<const Triangle> triangles_;
-    std::uint32_t first_vertex_ = 0;                ///< the smallest that a triangle names
-    std::vector<std::uint32_t> welded_;             ///< per vertex from there on: its place among the different ones
-    std::vector<Vec3> at_vertex_;                   ///< pseudonormals of the different vertices
-    std::vector<std::uint8_t> vertex_is_open_;      ///< 1 for ends of open edges
-    std::vector<std::array<Neighbour, 3>> sides_;   ///< per triangle: beyond AB, BC and CA
+    std::uint32_t first_vertex_ = 0;               ///< the smallest that a triangle names
+    std::vector<std::uint32_t> welded_;            ///< per vertex from there on: its place among the different ones
+    std::vector<Vec3> at_vertex_;                  ///< pseudonormals of the different vertices
+    std::vector<std::uint8_t> vertex_is_open_;     ///< 1 for ends of open edges
+    std::vector<std::array<Neighbour, 3>> sides_;  ///< per triangle: beyond AB, BC and CA
     std::vector<IrregularEdge> irregular_edges_;
     /// Triangles that are there several times, ascending: 1 when more often this way round than the other, -1 when less
     /// often, 0 when as often.

@@ -92,19 +92,19 @@ struct Query {
 struct NearQuery {
     void* context;
     TriangleBvh::VisitNear visit;
-    double within;    ///< m, narrowed so far
-    double scale;     ///< of the float frame
-    double rounding;  ///< in the float frame: how far the point that the ray library sees may be off
+    double within;  ///< m, narrowed so far
+    double scale;   ///< of the float frame
 
     [[nodiscard]] float radius() const;
 };
 
-/// Distances are compared as squares in single precision: some 8 roundings, for which 2^-20 is plenty. An infinite
-/// radius would also reach the empty boxes that the ray library keeps; from a point that is not far away, everything
-/// is nearer than the largest one.
+/// Distances are compared as squares in single precision: some 8 roundings. The point itself is rounded to 2^-23 of its
+/// largest coordinate, which is within the boxes' padding plus as much of the distance. 2^-20 is plenty for both. An
+/// infinite radius would also reach the empty boxes that the ray library keeps; from a point that is not far away,
+/// everything is nearer than the largest one.
 float NearQuery::radius() const {
     constexpr double kEverything = 4.0 * kFarAway;
-    return round_up(std::min(scale * within * (1.0 + 0x1p-20) + rounding, kEverything));
+    return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
 }
 
 bool visit_near_triangle(RTCPointQueryFunctionArguments* args) {
@@ -295,7 +295,6 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
 }
 
 void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
-    query.rounding = 0x1p-22 * max_abs(point);
     RTCPointQuery around{};
     around.x = static_cast<float>(point.x);
     around.y = static_cast<float>(point.y);
@@ -315,7 +314,7 @@ void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitN
         }
         return;
     }
-    NearQuery query{context, visitor, within, frame.scale, 0.0};
+    NearQuery query{context, visitor, within, frame.scale};
     impl_->ask_near(query, frame.apply(p));
 }
 

@@ -143,11 +143,11 @@ std::vector<std::string> warnings_of(const SimulationSetup& setup) {
     const double bound = longest_stable_step(spring, mass);
     const double substep = options.time_step / options.penalty.substeps;
     if (substep <= bound) return {};
-    return {fmt::format("the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
-                        "lightest particle {:.3g} kg, restitution {}): contacts may explode; use at least {} substeps "
-                        "or a softer spring",
-                        substep, bound, spring.stiffness, mass, dampest->restitution,
-                        std::ceil(options.time_step / bound))};
+    return {fmt::format(
+        "the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
+        "lightest particle {:.3g} kg, restitution {}): contacts may explode; use at least {} substeps "
+        "or a softer spring",
+        substep, bound, spring.stiffness, mass, dampest->restitution, std::ceil(options.time_step / bound))};
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ struct SimulationOptions {
     bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
     /// Check every leg, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
     bool verify = false;
-    bool triangle_totals = true;         ///< keep hits and impulse per triangle (56 bytes each)
-    std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
+    bool triangle_totals = true;                  ///< keep hits and impulse per triangle (56 bytes each)
+    std::uint32_t bounce_budget = 1000;           ///< impacts per particle and step, >= 1
     ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
     RollbackSettings rollback = {};               ///< of the rollback response
     ProjectSettings project = {};                 ///< of the project response
@@ -71,10 +71,10 @@ struct SimulationStatistics {
     std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;        ///< what options.verify found wrong
-    std::uint64_t trials = 0;  ///< states that a response tested for collision or penetration; 0 for exact
-    std::uint64_t penetrations = 0;          ///< particle-steps in which a particle was seen behind a surface
-    double penetration_sum = 0.0;            ///< m, sum of their depths, before anything put them right
-    double penetration_deepest = 0.0;        ///< m
+    std::uint64_t trials = 0;            ///< states that a response tested for collision or penetration; 0 for exact
+    std::uint64_t penetrations = 0;      ///< particle-steps in which a particle was seen behind a surface
+    double penetration_sum = 0.0;        ///< m, sum of their depths, before anything put them right
+    double penetration_deepest = 0.0;    ///< m
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 

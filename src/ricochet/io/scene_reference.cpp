@@ -103,6 +103,17 @@ std::string variant_section(const Variant& variant) {
     return text + key_table(variant.keys);
 }
 
+// Objects within an object that only it has.
+std::string nested_sections(const std::string& heading, const std::vector<KeySpec>& keys) {
+    std::string text;
+    for (const KeySpec& key : keys) {
+        if (key.type != ValueType::object || key.content == nullptr) continue;
+        text += fmt::format("\n### `{}.{}`\n\n{}\n", heading, key.name, key.content->description);
+        text += key_table(key.content->keys);
+    }
+    return text;
+}
+
 std::string object_section(const std::string& heading, const ObjectSpec& spec) {
     std::string text = fmt::format("\n## {}\n\n{}\n", heading, spec.description);
     if (!spec.variants.empty()) {
@@ -110,6 +121,7 @@ std::string object_section(const std::string& heading, const ObjectSpec& spec) {
         if (!spec.keys.empty()) text += "\nKeys of every kind:\n";
     }
     if (!spec.keys.empty()) text += key_table(spec.keys);
+    text += nested_sections(heading, spec.keys);
     for (const Variant& variant : spec.variants) text += variant_section(variant);
     return text;
 }

@@ -37,8 +37,9 @@ void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool imp
 
 void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {
     if (!scratch_.record_contacts) return;
-    scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position, surface.normal,
-                                velocity_before, particle_.state.velocity, particle_.state.mass, particle_.state.radius});
+    scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position,
+                                surface.normal, velocity_before, particle_.state.velocity, particle_.state.mass,
+                                particle_.state.radius});
 }
 
 /// Bounces off every surface of the contact that is approached, until none is.
@@ -88,8 +89,8 @@ Motion ImpactAnswer::random_reflection(const ContactSurface& surface, const Mate
     } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
         motion.velocity =
             material.wall_temperature
-                ? thermal_velocity(surface.normal, std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass),
-                                   random)
+                ? thermal_velocity(surface.normal,
+                                   std::sqrt(kBoltzmann * *material.wall_temperature / particle_.state.mass), random)
                 : length(motion.velocity) * cosine_direction(surface.normal, random);
     } else {
         motion = bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);

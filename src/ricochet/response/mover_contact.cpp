@@ -179,8 +179,8 @@ std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, ContactSurf
 }
 
 void Mover::finish_stretch(const Stretch& stretch, double elapsed) {
-    const Motion motion = end_of_stretch(stretch, elapsed, {state_.velocity, particle_.spin}, state_.radius,
-                                         touched_normals_[0]);
+    const Motion motion =
+        end_of_stretch(stretch, elapsed, {state_.velocity, particle_.spin}, state_.radius, touched_normals_[0]);
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
 }

@@ -86,7 +86,8 @@ void PenaltyMover::survey(double duration) {
     const double pull = length(rules_.forces.acceleration(state_));
     const double way = duration * (length(state_.velocity) + duration * pull);
     const double substep_way = 2.0 * way / rules_.settings.penalty.substeps;
-    if (is_finite(state_.position) && std::isfinite(way)) watch_.survey(state_.position, way + substep_way + state_.radius);
+    if (is_finite(state_.position) && std::isfinite(way))
+        watch_.survey(state_.position, way + substep_way + state_.radius);
 }
 
 /// False when the state leaves what can be followed; it is left as it was then.
@@ -140,8 +141,9 @@ std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
 std::optional<BodyState> PenaltyMover::midpoint(const BodyState& now, double h) {
     const ContactPush k0 = push_at(now, state_.time, seen_, 0.0);
     const double half = 0.5 * h;
-    const BodyState middle{now.position + half * now.motion.velocity,
-                           {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
+    const BodyState middle{
+        now.position + half * now.motion.velocity,
+        {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
     if (!look(middle.position, stage_)) return std::nullopt;
     const ContactPush k = push_at(middle, state_.time + half, stage_, h);
     return BodyState{now.position + h * middle.motion.velocity,

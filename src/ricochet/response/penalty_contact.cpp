@@ -20,7 +20,8 @@ ContactForce force_of(const PenaltyContact& contact, const Motion& motion, doubl
     result.force = normal_force * n + friction;
     if (radius == 0.0) return result;
     const Vec3 tilt = motion.spin - dot(motion.spin, n) * n;
-    const Vec3 resistance = (-contact.rolling_friction * normal_force * radius) * saturated(radius * tilt, friction_speed);
+    const Vec3 resistance =
+        (-contact.rolling_friction * normal_force * radius) * saturated(radius * tilt, friction_speed);
     result.torque = cross(-radius * n, friction) + resistance;
     return result;
 }

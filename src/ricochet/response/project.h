@@ -1,6 +1,6 @@
 /// \file
-/// The project response: take the whole step, look where it has led to, put a particle that is behind a surface back onto
-/// it and turn its velocity ("pretend that we are in contact now").
+/// The project response: take the whole step, look where it has led to, put a particle that is behind a surface back
+/// onto it and turn its velocity ("pretend that we are in contact now").
 ///
 /// Source: A. Witkin, D. Baraff, "Physically Based Modeling", SIGGRAPH 2001 course notes, part C (a particle within an
 /// epsilon of a plane that moves towards it is in contact; velocity check); projection onto the surface as in T.
@@ -12,10 +12,10 @@
 /// speed, not counting what the forces have added in this step, is none.
 ///
 /// What it does not guarantee: that a wall is noticed at all that is thinner than a step is long (what ends on the far
-/// side of a plate is projected to the far side, what ends beyond it is not seen); that an impact happens where and when
-/// it does (both are of first order in the step); energy (an elastic bounce gains m g (depth + offset), the lift);
-/// rest without creep (a particle held by friction on a slope creeps by the forces' half step squared); that a corner of
-/// several colliders is solved (kMostProjections passes).
+/// side of a plate is projected to the far side, what ends beyond it is not seen); that an impact happens where and
+/// when it does (both are of first order in the step); energy (an elastic bounce gains m g (depth + offset), the lift);
+/// rest without creep (a particle held by friction on a slope creeps by the forces' half step squared); that a corner
+/// of several colliders is solved (kMostProjections passes).
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"

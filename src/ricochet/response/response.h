@@ -116,9 +116,9 @@ struct MovingParticle {
     ForceInput state;  ///< position, velocity, mass, radius, time
     Vec3 spin;         ///< rad/s
     std::uint64_t id = 0;
-    std::uint32_t draws = 0;            ///< random numbers drawn so far by this particle's impacts
-    Support support{};                  ///< what it is in contact with; contact goes on in the next step
-    std::span<SideMemory> sides = {};   ///< one a collider, for responses that keep sides; updated in place
+    std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
+    Support support{};                 ///< what it is in contact with; contact goes on in the next step
+    std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
 };
 
 /// What happened to one particle in one step.

@@ -13,8 +13,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// What a particle would do if the system were not in its way.
 struct Event {
-    double elapsed = 0.0;   ///< s it can go
-    double time = kNever;   ///< s, when it collides or its contact changes; kNever: not in this step
+    double elapsed = 0.0;  ///< s it can go
+    double time = kNever;  ///< s, when it collides or its contact changes; kNever: not in this step
     bool collides = false;
 };
 
@@ -30,9 +30,8 @@ public:
             for_each([&](SystemParticle& p, Event& event, MoveScratch& scratch) { event = look(p, now, scratch); });
             double next = to;
             for (const Event& event : events_) next = std::min(next, event.time);
-            for_each([&](SystemParticle& p, const Event& event, MoveScratch& scratch) {
-                go(p, event, now, next, scratch);
-            });
+            for_each(
+                [&](SystemParticle& p, const Event& event, MoveScratch& scratch) { go(p, event, now, next, scratch); });
             now = next;
         }
     }

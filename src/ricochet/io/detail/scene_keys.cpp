@@ -28,8 +28,9 @@ const ObjectSpec& rollback_spec() {
              .fallback = "1e-9"},
             {.name = "global",
              .type = ValueType::boolean,
-             .description = "The whole system goes back to the earliest contact, as in textbooks, and not each particle "
-                            "for itself. Costs grow with particles times contacts.",
+             .description =
+                 "The whole system goes back to the earliest contact, as in textbooks, and not each particle "
+                 "for itself. Costs grow with particles times contacts.",
              .fallback = "false"},
         }};
     return spec;

@@ -79,14 +79,14 @@ TEST(SceneSchema, TheExampleOfTheReferenceConformsAndIsRead) {
 
 TEST(SceneSchema, EverySceneOfTheRepositoryConforms) {
     int scenes = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/scenes")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(RICOCHET_SOURCE_DIR "/scenes")) {
         if (entry.path().extension() != ".json") continue;
         SCOPED_TRACE(entry.path().string());
         const Json scene = Json::parse(file_text(entry.path().string()), nullptr, true, true);
         EXPECT_EQ(schema_errors(schema(), scene), Lines{});
         ++scenes;
     }
-    EXPECT_GE(scenes, 6);
+    EXPECT_GE(scenes, 14);
 }
 
 TEST(SceneSchema, EveryDefaultConformsToItsOwnKey) {

@@ -312,10 +312,15 @@ const std::vector<Spoiled> kSpoiled = {
     {R"("particles": {"file": "a.csv"})", "s.json:1:39: particles.file: there is no file a.csv"},
     {R"("colliders": [{"type": "mesh", "file": "a\u0000b"}])",
      "s.json:1:56: colliders[0].file: \"a?b\" contains a control character, expected plain text"},
+    // responses
+    {R"("simulation": {"response": "rolback"})",
+     "s.json:1:44: simulation.response: found \"rolback\", expected one of \"exact\", \"rollback\", \"project\", "
+     "\"penalty\"; did you mean \"rollback\"?"},
+    {R"("simulation": {"penalty": {"stiffness": 0}})",
+     "s.json:1:57: simulation.penalty.stiffness: found 0, expected a number > 0 (N/m)"},
+    {R"("simulation": {"rollback": {"time_tolerance": -1e-9}})",
+     "s.json:1:63: simulation.rollback.time_tolerance: found -1e-09, expected a number > 0 (s)"},
     // part of the format, not built
-    {R"("simulation": {"response": "penalty"})",
-     "s.json:1:44: simulation.response: \"penalty\" is part of the scene format but not built in this version, "
-     "expected \"exact\""},
     {R"("colliders": [{"type": "mesh", "file": "rock.obj", "motion": []}])",
      "s.json:1:78: colliders[0].motion: \"motion\" is part of the scene format but not built in this version"},
     {R"("particles": {"file": "a.vtp"})",
@@ -679,7 +684,7 @@ bool is_about_a_generated_mesh(const std::string& line) {
 
 TEST(SceneFile, EverySceneOfTheRepositoryIsReadWithoutAWarning) {
     int scenes = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/scenes")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(RICOCHET_SOURCE_DIR "/scenes")) {
         if (entry.path().extension() != ".json") continue;
         SCOPED_TRACE(entry.path().string());
         try {
@@ -689,7 +694,7 @@ TEST(SceneFile, EverySceneOfTheRepositoryIsReadWithoutAWarning) {
         }
         ++scenes;
     }
-    EXPECT_GE(scenes, 6);
+    EXPECT_GE(scenes, 14);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ void RollbackMover::touch(std::span<const ContactSurface> surfaces) {
 
 /// Plans a stretch on what is touched; none when nothing presses the particle on, or the surface ends here.
 void RollbackMover::plan_contact(double duration) {
-    const bool kicked = kick_.has_value() && trial_ == Trial::same_flight;
+    const bool kicked = is_kicked();
     pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
     shares_ = normal_accelerations(pull_, normals());
     const bool pressed = kicked || shares_[0] > 0.0 || shares_[1] > 0.0 || shares_[2] > 0.0;

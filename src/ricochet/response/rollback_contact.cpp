@@ -68,7 +68,7 @@ void RollbackMover::plan_contact(double duration) {
     limit_stretch();
 }
 
-/// A stretch ends where its face does.
+/// A stretch ends where its face does. One that is too short for the clock would be planned again for ever.
 void RollbackMover::limit_stretch() {
     const Vec3& v = stretch_->motion.velocity;
     const Vec3& a = stretch_->acceleration;
@@ -80,7 +80,7 @@ void RollbackMover::limit_stretch() {
             duration = rules_.world.time_over(touched_[0].surface, of_contact_point, slack);
         }
     }
-    if (!(duration > 0.0)) {
+    if (!(state_.time + duration > state_.time)) {
         stretch_.reset();
         count_ = 0;
         return;

@@ -39,10 +39,11 @@ public:
     SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
         : distance_(distance), sides_(sides), radius_(radius), points_(lists.points) {}
 
-    /// Every collider whose gap at `place` is below the margin, m, in ascending order. from: where the particle was when
-    /// its sides were settled last.
+    /// Every collider whose gap at `place` is below the margin, m, in ascending order. from: where the particle was
+    /// when its sides were settled last.
     void look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out);
-    /// Looks as far as the particle may get in what comes, m: while it stays within, no look is needed where nothing is.
+    /// Looks as far as the particle may get in what comes, m: while it stays within, no look is needed where nothing
+    /// is.
     void survey(const Vec3& place, double reach);
     /// Takes what was seen at a place that the particle stays at.
     void settle(std::span<const Proximity> seen);
@@ -51,6 +52,7 @@ public:
     [[nodiscard]] const SideMemory& memory(std::uint32_t collider) const { return sides_[collider]; }
 
 private:
+    [[nodiscard]] bool is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
     [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
 
     const SignedDistance& distance_;

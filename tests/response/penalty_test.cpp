@@ -176,6 +176,31 @@ TEST_P(Penalty, HoldsAContactWithoutAStiffnessForTheGivenNumberOfSubsteps) {
     }
 }
 
+// Everything scales with the sub-step then: a smaller one does not help, more of them in a contact do.
+TEST_P(Penalty, WithoutAStiffnessMissesTheRestitutionByItsSubstepsAContactAlone) {
+    const auto largest_error = [&](double time_step, double contact_steps) {
+        double largest = 0.0;
+        for (int p = 0; p < 16; ++p) {
+            ResponseSettings settings = settings_with(GetParam(), time_step);
+            settings.penalty.stiffness.reset();
+            settings.penalty.contact_steps = contact_steps;
+            Course course = course_of({"", 0.6, 0.0}, {}, settings);
+            MovingParticle ball = particle_at({0, 0, (1.0 + (p + 0.5) / 16.0) * time_step}, {0, 0, -1});
+            for (int k = 0; k < 10.0 + 2.0 * contact_steps; ++k) (void)course.move(ball, time_step);
+            largest = std::max(largest, std::fabs(ball.state.velocity.z - 0.6));
+        }
+        return largest;
+    };
+    std::vector<double> contact_steps;
+    std::vector<double> errors;
+    for (const double n : {10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0}) {
+        contact_steps.push_back(n);
+        errors.push_back(largest_error(1e-3, n));
+        EXPECT_NEAR(largest_error(1e-6, n) / errors.back(), 1.0, 1e-6) << n;
+    }
+    EXPECT_NEAR(fitted_slope(contact_steps, errors), -1.0, 0.15);
+}
+
 TEST_P(Penalty, SinksInAnUndampedImpactBySpeedOverFrequency) {
     const double substep = 0.02 / kOmega;
     for (const double speed : {0.01, 1.0, 30.0}) {

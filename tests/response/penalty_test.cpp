@@ -244,6 +244,29 @@ TEST_P(Penalty, CreepsOnASlopeBelowTheAngleOfFrictionWithTheSpeedOfItsRegularisa
     }
 }
 
+// Where a sub-step's friction is more than what stops the slip, it shakes, by no more than what one sub-step adds.
+TEST_P(Penalty, CreepsNoFasterThanASubstepsFrictionWhereThatIsStifferThanTheSubstep) {
+    constexpr double kSubstep = 1.0 / 600.0;
+    for (const double part : {1.1, 2.0}) {
+        const double friction = part * std::tan(kAngle);
+        ResponseSettings settings = settings_with(GetParam(), kSubstep);
+        settings.penalty.friction_speed = 1e-3;
+        const double kick = friction * kG * std::cos(kAngle) * kSubstep;
+        const double fastest = settings.penalty.friction_speed + kick + kG * std::sin(kAngle) * kSubstep;
+        EXPECT_GT(kick, 2.0 * settings.penalty.friction_speed);
+        Course course({plane_collider({0, 0, 0}, kNormal)}, {"", 0.5, friction}, kGravity, ResponseKind::penalty,
+                      settings);
+        MovingParticle block = sunk(course, (-kG * std::cos(kAngle) / kStiffness) * kNormal);
+        for (int k = 0; k < 3000; ++k) {
+            (void)course.move(block, kSubstep);
+            ASSERT_LT(length(block.state.velocity), fastest) << k;
+        }
+        const double creep = dot(block.state.position, kDownhill) / (3000 * kSubstep);
+        EXPECT_GT(creep, 1.2 * settings.penalty.friction_speed / part);  // more than the regularisation says
+        EXPECT_LT(creep, fastest);
+    }
+}
+
 TEST_P(Penalty, SlidesDownASlopeAboveTheAngleOfFrictionAsCoulombSays) {
     for (const double part : {0.0, 0.5, 0.9}) {
         const double friction = part * std::tan(kAngle);

@@ -345,6 +345,23 @@ TEST(RollbackTogether, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hash(1), hash(2));
 }
 
+// A piece of a step is a step of its own there, which kicks anew: each impact costs a part of a kick. The particle that
+// goes back for itself is kicked once a step.
+TEST(RollbackTogether, LosesHeightUnderSymplecticEulerWhereGoingBackAloneKeepsIt) {
+    const auto height = [](bool global) {
+        SimulationSetup setup = rain(1, global, 1e-9);
+        setup.options.integrator = IntegratorKind::symplectic_euler;
+        setup.options.time_step = 0.01;
+        setup.options.duration = 40.0;
+        const double start = setup.particles[0].position.z;
+        const Simulation simulation = finished(std::move(setup));
+        const double speed = length(simulation.particles().velocity[0]);
+        return (simulation.particles().position[0].z + 0.5 * speed * speed / kG) / start;
+    };
+    EXPECT_NEAR(height(false), 1.0, 0.05);
+    EXPECT_LT(height(true), 0.1);
+}
+
 TEST(RollbackContact, ComesToRestAndStaysPut) {
     for (const double radius : {0.0, 0.05}) {
         for (const double tolerance : {1e-6, 1e-9}) {

@@ -450,10 +450,11 @@ TEST_P(EveryResponse, LeavesAParticleAsItIsWhenOthersAreRetired) {
     const auto end = [&](int others) {
         SimulationSetup setup = marbles({GetParam()});
         setup.emitters.clear();
+        setup.options.duration = 0.8;
         for (int i = 0; i < others; ++i) {
             setup.particles.emplace_back();
             setup.particles.back().position = {0.9, 0, 0.05 * (i % 7)};  // inside the ring: on its other side
-            setup.particles.back().lifetime = 0.01 * (i + 1);
+            setup.particles.back().lifetime = 0.2 + 0.02 * i;            // while the other one bounces on the ring
         }
         setup.particles.emplace_back();
         setup.particles.back().position = {0.8, 0.1, 1.0};

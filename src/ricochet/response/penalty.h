@@ -15,9 +15,11 @@
 ///
 /// What it does not guarantee: that particles stay out (the depth under weight is m g / k, in an impact v sqrt(m / k));
 /// that a wall is noticed that is thinner than a sub-step is long; restitution and friction to better than the first
-/// order in sub-steps per contact; stability beyond penalty_stability(); rest without creep on slopes (friction needs
-/// slip); restitution below kLeastPenaltyRestitution; that walls of one collider are felt together (each collider
-/// pushes from its nearest place only).
+/// order in sub-steps per contact, which without a stiffness do not grow as steps shrink; stability beyond
+/// longest_stable_step(), for `midpoint`, which feeds springs without damping, none at all; rest without creep on
+/// slopes (friction needs slip, and shakes where a sub-step's friction, mu g h, exceeds 2 friction_speed); restitution
+/// below kLeastPenaltyRestitution; that walls of one collider are felt together (each collider pushes from its nearest
+/// place only).
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"

@@ -71,10 +71,11 @@ private:
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double begin = std::max(now, p.start);
         const double end = std::min(next, p.stop);
-        const bool meets = event.collides && event.time <= next + rules_.settings.rollback.time_tolerance;
-        if (is_out(p) || (!(end > begin) && !meets)) return;
+        // What is due is done again as it was tried out, also when it takes less time than the clock can tell.
+        const bool is_due = event.time <= next + (event.collides ? rules_.settings.rollback.time_tolerance : 0.0);
+        if (is_out(p) || (!(end > begin) && !is_due)) return;
         RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
-        if (!mover.begin(meets ? p.stop - begin : end - begin)) return;
+        if (!mover.begin(is_due ? p.stop - begin : end - begin)) return;
         const CollisionBracket found = mover.bracket();
         mover.advance(found.free);
         if (found.blocked && mover.has_budget()) {
@@ -84,7 +85,7 @@ private:
             p.outcome.unsimulated_time += p.stop - begin - found.free;
         }
         // A shorter step may be blocked where the longer one was not: what it loses then is counted.
-        if (found.blocked && !meets) p.outcome.unsimulated_time += p.is_out ? 0.0 : end - begin - found.free;
+        if (found.blocked && !is_due) p.outcome.unsimulated_time += p.is_out ? 0.0 : end - begin - found.free;
         if (!p.outcome.absorbed) mover.remember_contact();
     }
 

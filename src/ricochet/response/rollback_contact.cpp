@@ -11,7 +11,11 @@ namespace ricochet {
 std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
     const CollisionWorld& world = rules_.world;
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
-    const double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
+    double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
+    // What rests under symplectic Euler has come down at the speed of a step's kick.
+    if (rules_.settings.integrator == IntegratorKind::symplectic_euler && trial_ == Trial::same_flight) {
+        speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
+    }
     const double reach = kTouchingGaps * parking_gap(state_.position) +
                          kBracketsOfTouch * rules_.settings.rollback.time_tolerance * speed;
     if (nearest.distance - state_.radius > reach) return std::nullopt;
@@ -68,7 +72,7 @@ void RollbackMover::plan_contact(double duration) {
     limit_stretch();
 }
 
-/// A stretch ends where its face does.
+/// A stretch ends where its face does. One that is too short for the clock would be planned again for ever.
 void RollbackMover::limit_stretch() {
     const Vec3& v = stretch_->motion.velocity;
     const Vec3& a = stretch_->acceleration;
@@ -80,7 +84,7 @@ void RollbackMover::limit_stretch() {
             duration = rules_.world.time_over(touched_[0].surface, of_contact_point, slack);
         }
     }
-    if (!(duration > 0.0)) {
+    if (!(state_.time + duration > state_.time)) {
         stretch_.reset();
         count_ = 0;
         return;

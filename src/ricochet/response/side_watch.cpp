@@ -19,11 +19,22 @@ void set_first_sides(const SignedDistance& distance, const Vec3& position, std::
     }
 }
 
+/// True when the place is on the wrong side. Which side is the right one is remembered while the particle is behind;
+/// else it is that of where it comes from: it may have gone round a rim unseen since it was near last.
+bool SideWatch::is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
+    if (point.on_rim || point.side == 0) return false;
+    const SideMemory& memory = sides_[point.collider];
+    if (memory.penetrating) return memory.side == -point.side;
+    if (!distance_.segment_meets(point.collider, from, place)) return false;
+    const auto before = distance_.closest(point.collider, from, std::numeric_limits<double>::infinity());
+    const bool is_known = before && !before->on_rim && before->side != 0;
+    return (is_known ? before->side : memory.side) == -point.side;
+}
+
 Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
     const SideMemory& memory = sides_[point.collider];
     Proximity seen{point.collider, point.surface, point.point, point.direction, 0.0, false, point.side};
-    const bool other_side = memory.side != 0 && point.side == -memory.side && !point.on_rim;
-    seen.behind = other_side && (memory.penetrating || distance_.segment_meets(point.collider, from, place));
+    seen.behind = is_behind(point, place, from);
     if (point.on_rim) seen.side = 0;
     if (seen.behind) seen.normal = -point.direction;
     // On the surface itself the direction is the surface's normal, not the particle's.
@@ -68,7 +79,7 @@ void SideWatch::settle(std::span<const Proximity> seen) {
         SideMemory& memory = sides_[view.collider];
         memory.penetrating = view.behind;
         memory.touching = view.gap < 0.0;
-        if (!view.behind && view.side != 0) memory.side = static_cast<std::int8_t>(view.side);
+        if (view.side != 0) memory.side = static_cast<std::int8_t>(view.behind ? -view.side : view.side);
     }
 }
 

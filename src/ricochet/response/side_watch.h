@@ -52,6 +52,7 @@ public:
     [[nodiscard]] const SideMemory& memory(std::uint32_t collider) const { return sides_[collider]; }
 
 private:
+    [[nodiscard]] bool is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
     [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
 
     const SignedDistance& distance_;

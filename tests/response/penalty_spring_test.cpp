@@ -126,15 +126,15 @@ TEST(PenaltySpring, TheLongestStableStepIsThatOfLaggingDamping) {
 PenaltyContact contact(double depth) { return {depth, {0, 0, 1}, 1000.0, 20.0, 0.3, 0.0}; }
 
 TEST(PenaltyContact, PushesBySpringAndDamperAndNeverPulls) {
-    EXPECT_EQ(force_of(contact(0.01), {}, 0.0, 1e-3).force, (Vec3{0, 0, 10}));
-    EXPECT_EQ(force_of(contact(0.01), {{0, 0, -2}, {}}, 0.0, 1e-3).force, (Vec3{0, 0, 50}));
-    EXPECT_EQ(force_of(contact(0.01), {{0, 0, 0.25}, {}}, 0.0, 1e-3).force, (Vec3{0, 0, 5}));
-    EXPECT_EQ(force_of(contact(0.01), {{0, 0, 2}, {}}, 0.0, 1e-3).force, Vec3{});
+    EXPECT_EQ(force_of(contact(0.01), {}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 10}));
+    EXPECT_EQ(force_of(contact(0.01), {{0, 0, -2}, {}}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 50}));
+    EXPECT_EQ(force_of(contact(0.01), {{0, 0, 0.25}, {}}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 5}));
+    EXPECT_EQ(force_of(contact(0.01), {{0, 0, 2}, {}}, 0.0, {1e-3, 1e-9}).force, Vec3{});
 }
 
 TEST(PenaltyContact, FrictionGrowsWithSlipUpToCoulombsLimit) {
     for (const double slip : {1e-5, 5e-4, 1e-3, 0.1, 10.0}) {
-        const Vec3 force = force_of(contact(0.01), {{slip, 0, 0}, {}}, 0.0, 1e-3).force;
+        const Vec3 force = force_of(contact(0.01), {{slip, 0, 0}, {}}, 0.0, {1e-3, 1e-9}).force;
         EXPECT_NEAR(force.x, -0.3 * 10.0 * std::min(1.0, slip / 1e-3), 1e-14);
         EXPECT_EQ(force.z, 10.0);
     }
@@ -142,10 +142,10 @@ TEST(PenaltyContact, FrictionGrowsWithSlipUpToCoulombsLimit) {
 
 TEST(PenaltyContact, TurnsASphereThatSlipsAndNotOneThatRolls) {
     const double radius = 0.1;
-    const ContactForce slips = force_of(contact(0.01), {{2, 0, 0}, {}}, radius, 1e-3);
+    const ContactForce slips = force_of(contact(0.01), {{2, 0, 0}, {}}, radius, {1e-3, 1e-9});
     EXPECT_NEAR(slips.force.x, -3.0, 1e-14);
     EXPECT_NEAR(slips.torque.y, 3.0 * radius, 1e-14);  // rolls towards +x about +y
-    const ContactForce rolls = force_of(contact(0.01), {{2, 0, 0}, {0, 20, 0}}, radius, 1e-3);
+    const ContactForce rolls = force_of(contact(0.01), {{2, 0, 0}, {0, 20, 0}}, radius, {1e-3, 1e-9});
     EXPECT_NEAR(length(rolls.force - Vec3{0, 0, 10}), 0.0, 1e-12);
     EXPECT_NEAR(length(rolls.torque), 0.0, 1e-12);
 }
@@ -153,8 +153,29 @@ TEST(PenaltyContact, TurnsASphereThatSlipsAndNotOneThatRolls) {
 TEST(PenaltyContact, ResistsRollingByItsCoefficient) {
     PenaltyContact soft = contact(0.01);
     soft.rolling_friction = 0.05;
-    const ContactForce rolls = force_of(soft, {{2, 0, 0}, {0, 20, 0}}, 0.1, 1e-3);
+    const ContactForce rolls = force_of(soft, {{2, 0, 0}, {0, 20, 0}}, 0.1, {1e-3, 1e-9});
     EXPECT_NEAR(rolls.torque.y, -0.05 * 10.0 * 0.1, 1e-12);
+}
+
+TEST(PenaltyContact, BrakesAtMostToAStopWithinTheStep) {
+    PenaltyContact rough = contact(0.01);
+    rough.friction = 10.0;
+    rough.rolling_friction = 10.0;
+    rough.damping = 1e6;
+    rough.mass = 0.5;
+    const double h = 0.01;
+    // A point: its slip ends exactly, and the damper takes its approach and no more.
+    const Vec3 v{0.3, 0, -0.2};
+    const ContactForce point = force_of(rough, {v, {}}, 0.0, {1e-3, h});
+    EXPECT_NEAR(v.x + h * point.force.x / rough.mass, 0.0, 1e-15);
+    EXPECT_NEAR(v.z + h * (point.force.z - rough.stiffness * 0.01) / rough.mass, 0.0, 1e-15);
+    // A sphere: friction changes velocity and spin so that its slip ends.
+    const double radius = 0.1;
+    rough.rolling_friction = 0.0;
+    const ContactForce sphere = force_of(rough, {{0.3, 0, 0}, {}}, radius, {1e-3, h});
+    const double velocity = 0.3 + h * sphere.force.x / rough.mass;
+    const double spin = h * sphere.torque.y / (0.4 * rough.mass * radius * radius);
+    EXPECT_NEAR(velocity - radius * spin, 0.0, 1e-15);
 }
 
 }  // namespace

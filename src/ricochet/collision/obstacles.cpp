@@ -8,8 +8,9 @@
 namespace ricochet {
 namespace {
 
-/// A sphere in overlap comes nearer when the distance shrinks by more than this part of it: less is rounding.
-constexpr double kNearerStill = 1.0 - 0x1p-40;
+/// A sphere in overlap comes nearer when the distance shrinks by more than this part of it: less is rounding. A larger
+/// part adds up over many steps.
+constexpr double kNearerStill = 1.0 - 0x1p-49;
 
 bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 2.0 * kSeamTurn; }
 

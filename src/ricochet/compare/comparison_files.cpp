@@ -94,7 +94,7 @@ std::string text_of(const Cell& cell, const char* none) {
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
     if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
     const double number = std::get<double>(cell);
-    return std::isfinite(number) ? fmt::format("{:.17g}", number) : none;
+    return std::isfinite(number) ? fmt::format("{}", number) : none;
 }
 
 std::string line_of(const ComparisonRow& row, const Comparison& comparison, char separator, const char* none) {

@@ -20,7 +20,7 @@ struct ComparisonSource {
 
 /// The text of compare.json: settings, reference and rows. Numbers that are not finite become null.
 [[nodiscard]] std::string comparison_json(const Comparison& comparison, const ComparisonSource& source);
-/// The text of compare.csv (RFC 4180): a header and one line a row; numbers with 17 significant digits, empty where not
+/// The text of compare.csv (RFC 4180): a header and one line a row; numbers read back to the same bits, empty where not
 /// finite.
 [[nodiscard]] std::string comparison_csv(const Comparison& comparison);
 

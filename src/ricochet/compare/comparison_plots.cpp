@@ -64,9 +64,9 @@ std::string script_start(const Comparison& comparison) {
         "}\n"
         "set encoding utf8\n"
         "set datafile missing 'nan'\n"
-        "set grid linecolor '#d0d0d0'\n"
+        "set grid linetype 1 linecolor '#c8c8c8' linewidth 1\n"
         "set border linecolor '#404040'\n"
-        "set key outside right top noenhanced\n"
+        "set key outside right top Left reverse noenhanced\n"
         "set tics nomirror\n"
         "set format y '%g'\n";
     for (std::size_t i = 0; i < comparison.plan.responses.size(); ++i) {

@@ -77,7 +77,7 @@ std::vector<std::string> what_was_run(const Comparison& comparison, const Compar
 
 /// The counts behind the first table.
 Table details(const Comparison& comparison) {
-    Table table{{"response", "step (s)", "wrong side", "pushed back", "jumped", "behind a surface (share)",
+    Table table{{"response", "step (s)", "wrong side", "pushed back", "jumped", "passed", "behind a surface (share)",
                  "mean depth (m)", "impacts missed", "extra", "contacts", "most a step", "unsimulated (s)", "resting",
                  "trials", "alive", "state"}};
     for (const ComparisonRow* row : comparison.listed_rows()) {
@@ -85,12 +85,12 @@ Table details(const Comparison& comparison) {
         const SimulationStatistics& s = f.statistics;
         table.push_back({name_of(row->response), fmt::format("{:.4g}", row->time_step),
                          fmt::format("{}", f.tunnel.wrong_side), fmt::format("{}", f.tunnel.penetrating),
-                         fmt::format("{}", f.tunnel.jumped), short_text(f.penetration_share()),
-                         short_text(f.penetration_mean()), fmt::format("{}", row->errors.impacts_missed),
-                         fmt::format("{}", row->errors.impacts_extra), fmt::format("{}", s.contacts),
-                         fmt::format("{}", s.bounces_per_step_max), short_text(s.unsimulated_time),
-                         fmt::format("{}", s.resting), fmt::format("{}", s.trials), fmt::format("{}", f.alive),
-                         detail::hash_text(f.state_hash)});
+                         fmt::format("{}", f.tunnel.jumped), fmt::format("{}", f.tunnel.passed),
+                         short_text(f.penetration_share()), short_text(f.penetration_mean()),
+                         fmt::format("{}", row->errors.impacts_missed), fmt::format("{}", row->errors.impacts_extra),
+                         fmt::format("{}", s.contacts), fmt::format("{}", s.bounces_per_step_max),
+                         short_text(s.unsimulated_time), fmt::format("{}", s.resting), fmt::format("{}", s.trials),
+                         fmt::format("{}", f.alive), detail::hash_text(f.state_hash)});
     }
     return table;
 }
@@ -141,14 +141,15 @@ std::string escaped(const std::string& text, const std::vector<std::pair<char, c
 }
 
 std::string markdown(const std::string& text) {
-    return escaped(text, {{'|', "\\|"},
-                          {'*', "\\*"},
-                          {'_', "\\_"},
-                          {'<', "&lt;"},
-                          {'\n', " "},
-                          {'`', "\\`"},
-                          {'[', "\\["},
-                          {'^', "\\^"}});
+    return escaped(text, {
+                             {'|', "\\|"},
+                             {'*', "\\*"},
+                             {'_', "\\_"},
+                             {'<', "&lt;"},
+                             {'\n', " "},
+                             {'`', "\\`"},
+                             {'[', "\\["},
+                         });
 }
 
 std::string html(const std::string& text) {

@@ -17,12 +17,15 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// Particles that went through a surface. Each particle counts once in every number.
 struct TunnelCounts {
-    /// On the wrong side at the end of its life or of the run and not being pushed back, or jumped.
+    /// On the wrong side at the end of its life or of the run and not being pushed back, or jumped, or passed.
     std::uint64_t tunnelled = 0;
     /// On the other side of a closed collider than at birth, or with an odd number of crossings of an open mesh.
     std::uint64_t wrong_side = 0;
     std::uint64_t penetrating = 0;  ///< of those on the wrong side: the response knows and is pushing them back
-    std::uint64_t jumped = 0;       ///< passed right through a closed collider within one leg
+    std::uint64_t jumped = 0;       ///< went right through a closed collider within one leg
+    /// Went into a closed collider and came out of it where the surface faces the other way: through it in several
+    /// legs.
+    std::uint64_t passed = 0;
 };
 
 /// How large a set of errors is. Without any (count 0) the numbers are kNoNumber.

@@ -31,6 +31,7 @@ const std::vector<Column>& make_columns() {
         RICOCHET_COUNT("wrong_side", row.figures.tunnel.wrong_side),
         RICOCHET_COUNT("penetrating", row.figures.tunnel.penetrating),
         RICOCHET_COUNT("jumped", row.figures.tunnel.jumped),
+        RICOCHET_COUNT("passed", row.figures.tunnel.passed),
         RICOCHET_COUNT("penetrations", row.figures.statistics.penetrations),
         RICOCHET_COLUMN("penetration_share", row.figures.penetration_share()),
         RICOCHET_COLUMN("penetration_mean", row.figures.penetration_mean()),

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "ricochet/compare/detail/surface_normals.h"
 #include "ricochet/compare/detail/tunnel_judge.h"
 
 namespace ricochet::detail {
@@ -12,7 +13,14 @@ namespace {
 /// Watches a run from step to step.
 class Measurement {
 public:
-    explicit Measurement(const Simulation& simulation) : judge_(collider_kinds(simulation)) { note_energy(simulation); }
+    explicit Measurement(const Simulation& simulation)
+        : normals_(simulation),
+          judge_(collider_kinds(simulation), [this](const Violation& crossing) { return normals_.at(crossing); }) {
+        note_energy(simulation);
+    }
+    Measurement(const Measurement&) = delete;  // the judge asks the normals of this one
+    Measurement& operator=(const Measurement&) = delete;
+    ~Measurement() = default;
 
     void note_step(const Simulation& simulation) {
         judge_.add_step(simulation.last_violations());
@@ -72,6 +80,7 @@ private:
         }
     }
 
+    SurfaceNormals normals_;
     TunnelJudge judge_;
     RunTrace trace_;
     std::vector<std::uint8_t> penetrating_;

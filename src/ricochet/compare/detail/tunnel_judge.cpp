@@ -15,12 +15,12 @@ bool same_place(const Vec3& a, const Vec3& b) {
 }
 
 /// Neighbouring triangles that a leg meets in their common edge are one crossing.
-std::size_t count_crossings(const std::vector<Vec3>& places) {
+std::size_t count_crossings(const std::vector<const Violation*>& meetings) {
     std::vector<Vec3> different;
-    for (const Vec3& place : places) {
+    for (const Violation* meeting : meetings) {
         const bool known = std::any_of(different.begin(), different.end(),
-                                       [&](const Vec3& other) { return same_place(place, other); });
-        if (!known) different.push_back(place);
+                                       [&](const Vec3& other) { return same_place(meeting->place, other); });
+        if (!known) different.push_back(meeting->place);
     }
     return different.size();
 }
@@ -48,41 +48,64 @@ std::vector<ColliderKind> collider_kinds(const Simulation& simulation) {
 }
 
 void TunnelJudge::add_step(std::span<const Violation> violations) {
-    std::map<Pair, std::map<double, std::vector<Vec3>>> meetings;  // by leg, named by the time of its beginning
+    std::map<Pair, Legs> meetings;
     std::set<Pair> flipped;
     for (const Violation& violation : violations) {
         if (!violation.collider) continue;
         const Pair pair{violation.particle, *violation.collider};
-        if (violation.kind == ViolationKind::crossing) meetings[pair][violation.time].push_back(violation.place);
+        if (violation.kind == ViolationKind::crossing) meetings[pair][violation.time].push_back(&violation);
         if (violation.kind == ViolationKind::wrong_side) toggle(flipped, pair);
     }
     for (const auto& [pair, legs] : meetings) {
         const ColliderKind kind = colliders_[pair.second];
-        if (kind != ColliderKind::shape) {
-            judge_meetings(pair, kind, legs);
-            continue;
-        }
-        // A leg that met a shape has gone in, come out, or passed through it. Ins and outs change the side, so where
-        // the number of legs and the change of side do not agree, one has passed through.
-        std::size_t met = flipped.contains(pair) ? 1 : 0;
-        for (const auto& [time, places] : legs) met += places.size();
-        if (met % 2 == 1) jumped_.insert(pair.first);
+        if (kind == ColliderKind::shape) judge_shape(pair, legs, flipped.contains(pair));
+        if (kind == ColliderKind::closed_mesh || kind == ColliderKind::open_mesh) judge_mesh(pair, kind, legs);
     }
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-void TunnelJudge::judge_meetings(const Pair& pair, ColliderKind kind, const std::map<double, std::vector<Vec3>>& legs) {
-    for (const auto& [time, places] : legs) {
-        const std::size_t crossings = count_crossings(places);
-        if (kind == ColliderKind::open_mesh && crossings % 2 == 1) toggle(odd_, pair);
-        if (kind == ColliderKind::closed_mesh && crossings % 2 == 0) jumped_.insert(pair.first);
+// A leg that met a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the number
+// of legs and the change of side do not agree, one has passed through.
+void TunnelJudge::judge_shape(const Pair& pair, const Legs& legs, bool flipped) {
+    std::size_t met = 0;
+    for (const auto& [time, crossings] : legs) met += crossings.size();
+    const bool agrees = (met % 2 == 1) == flipped;
+    if (!agrees) jumped_.insert(pair.first);
+    if (!agrees && flipped) change_side(pair, *legs.rbegin()->second.back());
+    if (!agrees) return;
+    for (const auto& [time, crossings] : legs) {
+        for (const Violation* crossing : crossings) change_side(pair, *crossing);
     }
+}
+
+void TunnelJudge::judge_mesh(const Pair& pair, ColliderKind kind, const Legs& legs) {
+    for (const auto& [time, meetings] : legs) {
+        const bool is_odd = count_crossings(meetings) % 2 == 1;
+        if (kind == ColliderKind::open_mesh) {
+            if (is_odd) toggle(odd_, pair);
+        } else if (is_odd) {
+            change_side(pair, *meetings.front());
+        } else {
+            jumped_.insert(pair.first);
+        }
+    }
+}
+
+// A particle that a surface pushes back comes out where the surface faces the way it faced where it went in. One that
+// comes out where it faces the other way has passed through.
+void TunnelJudge::change_side(const Pair& pair, const Violation& crossing) {
+    const Vec3 normal = normal_at_(crossing);
+    const auto [entry, is_entry] = went_in_.try_emplace(pair, normal);
+    if (is_entry) return;
+    if (dot(entry->second, normal) < 0.0) passed_.insert(pair.first);
+    went_in_.erase(entry);
 }
 
 TunnelCounts TunnelJudge::verdict(const std::function<bool(std::uint64_t)>& is_penetrating) const {
     std::set<std::uint64_t> wrong;
     for (const Pair& pair : odd_) wrong.insert(pair.first);
     std::set<std::uint64_t> tunnelled = jumped_;
+    tunnelled.insert(passed_.begin(), passed_.end());
     TunnelCounts counts;
     for (const std::uint64_t particle : wrong) {
         if (is_penetrating(particle)) {
@@ -93,6 +116,7 @@ TunnelCounts TunnelJudge::verdict(const std::function<bool(std::uint64_t)>& is_p
     }
     counts.wrong_side = wrong.size();
     counts.jumped = jumped_.size();
+    counts.passed = passed_.size();
     counts.tunnelled = tunnelled.size();
     return counts;
 }

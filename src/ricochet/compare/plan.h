@@ -27,10 +27,12 @@ struct ResponseChoice {
 
 /// What is asked for, as it stands on the command line.
 struct ComparisonRequest {
-    std::optional<std::string> responses;       ///< names with commas between them; nothing: all response_kinds()
-    std::optional<std::string> time_steps;      ///< s, with commas; nothing: the scene's step times 2, 1, 1/2 and 1/4
-    std::optional<std::string> reference_step;  ///< s; nothing: half of the smallest time step
-    std::optional<std::string> repeats;         ///< timed runs of each row, 1 to kMostRepeats; nothing: 3
+    std::optional<std::string> responses =
+        std::nullopt;  ///< names with commas between them; nothing: all response_kinds()
+    std::optional<std::string> time_steps =
+        std::nullopt;  ///< s, with commas; nothing: the scene's step times 2, 1, 1/2 and 1/4
+    std::optional<std::string> reference_step = std::nullopt;  ///< s; nothing: half of the smallest time step
+    std::optional<std::string> repeats = std::nullopt;  ///< timed runs of each row, 1 to kMostRepeats; nothing: 3
 };
 
 inline constexpr std::uint32_t kMostRepeats = 1000;

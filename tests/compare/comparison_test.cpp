@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "ricochet/compare/comparison_files.h"
@@ -138,6 +140,14 @@ TEST(Comparison, GivesTheSameNumbersTwice) {
     const std::string first = numbers_of(compared(responses));
     EXPECT_EQ(first, numbers_of(compared(responses)));
     EXPECT_NE(first.find("rollback:global"), std::string::npos);
+}
+
+TEST(Comparison, EveryColumnIsInTheDocument) {
+    std::ifstream file(RICOCHET_SOURCE_DIR "/docs/compare.md");
+    const std::string document{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    for (const detail::Column& column : detail::comparison_columns()) {
+        EXPECT_NE(document.find("`" + std::string(column.name) + "`"), std::string::npos) << column.name;
+    }
 }
 
 TEST(Comparison, EndsWhenTheHookSaysSo) {

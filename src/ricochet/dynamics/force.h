@@ -43,7 +43,7 @@ public:
 
 /// What is known of a callable force. Pure like the force itself.
 struct CallableTraits {
-    std::function<double(const ForceInput&)> potential;  ///< J; empty: it has none
+    std::function<double(const ForceInput&)> potential = {};  ///< J; empty: it has none
     bool is_uniform = false;  ///< its acceleration depends on neither position, velocity nor time
     bool is_steady = false;   ///< its acceleration does not depend on time
 };

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/force_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
 #include "ricochet/core/random.h"
@@ -66,7 +67,26 @@ TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
         << "ricochet schema --markdown > docs/scene-format.md brings it up to date";
 }
 
-TEST(SceneSchema, TheSampleConforms) { EXPECT_EQ(schema_errors(schema(), Json::parse(test::kSampleScene)), Lines{}); }
+// Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema looks at
+// all of a scene for every value that is spoiled in it.
+std::vector<Json> samples() {
+    std::vector<Json> scenes = {Json::parse(test::kSampleScene)};
+    const Json all = Json::parse(test::kForceScene);
+    for (const Json& force : all["forces"]) scenes.push_back({{"ricochet", 1}, {"forces", {force}}});
+    for (const auto& [name, flow] : all["flows"].items()) {
+        Json alone = flow;
+        if (flow.contains("parts")) alone["parts"] = Json::array();
+        scenes.push_back({{"ricochet", 1}, {"flows", {{name, alone}}}});
+        if (!flow.contains("parts")) continue;
+        for (const Json& part : flow["parts"]) scenes.push_back({{"ricochet", 1}, {"flows", {{name, part}}}});
+    }
+    return scenes;
+}
+
+TEST(SceneSchema, TheSamplesConform) {
+    EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
+    for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
+}
 
 TEST(SceneSchema, TheExampleOfTheReferenceConformsAndIsRead) {
     const std::string page = scene_reference();
@@ -121,8 +141,23 @@ std::vector<Json::json_pointer> places_in(const Json& document) {
     return places;
 }
 
+void expect_agreement_on_replaced_values(const Json& sample, const std::vector<Json>& values) {
+    // All of them, or every so many where each one costs more.
+    const auto stride = static_cast<std::size_t>(50 / scaled(50));
+    std::size_t tried = 0;
+    for (const Json::json_pointer& place : places_in(sample)) {
+        for (const Json& value : values) {
+            if (tried++ % stride != 0) continue;
+            Json spoiled = sample;
+            spoiled[place] = value;
+            SCOPED_TRACE(place.to_string() + " = " + value.dump());
+            expect_agreement(spoiled);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
 TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
-    const Json sample = Json::parse(test::kSampleScene);
     const std::vector<Json> values = {nullptr,
                                       true,
                                       false,
@@ -159,23 +194,10 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
                                       Json{{"file", 3}},
                                       Json{{"", Json::object()}},
                                       Json{{"axis", {1, 0, 0}}, {"degrees", 3}}};
-    // All of them, or every so many where each one costs more.
-    const auto stride = static_cast<std::size_t>(50 / scaled(50));
-    std::size_t tried = 0;
-    for (const Json::json_pointer& place : places_in(sample)) {
-        for (const Json& value : values) {
-            if (tried++ % stride != 0) continue;
-            Json spoiled = sample;
-            spoiled[place] = value;
-            SCOPED_TRACE(place.to_string() + " = " + value.dump());
-            expect_agreement(spoiled);
-            if (HasFatalFailure()) return;
-        }
-    }
+    for (const Json& sample : samples()) expect_agreement_on_replaced_values(sample, values);
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
-    const Json sample = Json::parse(test::kSampleScene);
+void expect_agreement_on_changed_keys(const Json& sample) {
     for (const Json::json_pointer& place : places_in(sample)) {
         const Json::json_pointer parent = place.parent_pointer();
         if (!sample.at(parent).is_object()) continue;
@@ -186,17 +208,21 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
         Json renamed = removed;
         renamed.at(parent)["other"] = sample.at(place);
         expect_agreement(renamed);
-        for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius"}) {
+        for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius",
+                                "flow", "coefficient", "parts"}) {
             Json added = sample;
             added.at(parent)[key] = 1;
             expect_agreement(added);
         }
-        if (HasFatalFailure()) return;
+        if (testing::Test::HasFatalFailure()) return;
     }
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
-    const Json sample = Json::parse(test::kSampleScene);
+TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
+    for (const Json& sample : samples()) expect_agreement_on_changed_keys(sample);
+}
+
+void expect_agreement_on_random_changes(const Json& sample) {
     const auto places = places_in(sample);
     RandomSequence random(8, 0, 0);
     const auto below = [&](std::size_t n) {
@@ -211,7 +237,13 @@ TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
             if (spoiled.contains(to) && sample.contains(from)) spoiled[to] = sample[from];
         }
         expect_agreement(spoiled);
-        if (HasFatalFailure()) return;
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
+    for (const char* sample : {test::kSampleScene, test::kForceScene}) {
+        expect_agreement_on_random_changes(Json::parse(sample));
     }
 }
 

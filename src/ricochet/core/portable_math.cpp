@@ -22,6 +22,32 @@ constexpr std::array<double, 14> kInverseFactorials = [] {
     return terms;
 }();
 
+// 1 / (2 n + 1): log m = 2 artanh(s) with s = (m - 1) / (m + 1) below 0.172.
+constexpr std::array<double, 13> kOddReciprocals = [] {
+    std::array<double, 13> terms{};
+    for (std::size_t n = 0; n < terms.size(); ++n) terms[n] = 1.0 / (2.0 * static_cast<double>(n) + 1.0);
+    return terms;
+}();
+
+// (-1)^n / (2 n + 1)!: on |x| <= pi / 2 the first term left out is below 2^-70.
+constexpr std::array<double, 13> kSineTerms = [] {
+    std::array<double, 13> terms{1.0};
+    double factorial = 1.0;
+    for (std::size_t n = 1; n < terms.size(); ++n) {
+        const double last = 2.0 * static_cast<double>(n) + 1.0;
+        factorial *= -last * (last - 1.0);
+        terms[n] = 1.0 / factorial;
+    }
+    return terms;
+}();
+
+template <std::size_t N>
+double polynomial(const std::array<double, N>& terms, double x) {
+    double sum = 0.0;
+    for (std::size_t n = N; n > 0; --n) sum = sum * x + terms[n - 1];
+    return sum;
+}
+
 }  // namespace
 
 double portable_exp(double x) {
@@ -29,9 +55,7 @@ double portable_exp(double x) {
     if (x > kLargestExponent) return std::numeric_limits<double>::infinity();
     const double k = std::floor(x * std::numbers::log2e + 0.5);
     const double rest = (x - k * kLn2High) - k * kLn2Low;
-    double sum = 0.0;
-    for (auto term = kInverseFactorials.rbegin(); term != kInverseFactorials.rend(); ++term) sum = sum * rest + *term;
-    return std::ldexp(sum, static_cast<int>(k));
+    return std::ldexp(polynomial(kInverseFactorials, rest), static_cast<int>(k));
 }
 
 double portable_log(double x) {
@@ -44,14 +68,9 @@ double portable_log(double x) {
         mantissa *= 2.0;
         --exponent;
     }
-    // log m = 2 artanh((m - 1) / (m + 1)), whose argument stays below 0.172.
-    constexpr int kTerms = 12;
     const double ratio = (mantissa - 1.0) / (mantissa + 1.0);
-    const double square = ratio * ratio;
-    double sum = 0.0;
-    for (int n = kTerms; n >= 1; --n) sum = square * (sum + 1.0 / (2 * n + 1));
     const double power = exponent;
-    return power * kLn2High + (power * kLn2Low + 2.0 * (ratio * sum) + 2.0 * ratio);
+    return power * kLn2High + (power * kLn2Low + 2.0 * ratio * polynomial(kOddReciprocals, ratio * ratio));
 }
 
 double portable_pow(double x, double y) { return portable_exp(y * portable_log(x)); }
@@ -61,11 +80,7 @@ double sine_of_turns(double turns) {
     if (part > 0.25) part = 0.5 - part;
     if (part < -0.25) part = -0.5 - part;
     const double angle = 2.0 * std::numbers::pi * part;
-    const double square = angle * angle;
-    constexpr int kTerms = 11;  // (pi / 2)^23 / 23! < 2^-59
-    double sum = 1.0;
-    for (int n = kTerms; n >= 1; --n) sum = 1.0 - sum * square / ((2.0 * n) * (2.0 * n + 1.0));
-    return angle * sum;
+    return angle * polynomial(kSineTerms, angle * angle);
 }
 
 }  // namespace ricochet

@@ -133,10 +133,10 @@ private:
         whole_ = extent_of(tag, "WholeExtent");
         if (tag.attributes.contains("Origin")) grid_.origin = vector_of(tag, "Origin");
         if (tag.attributes.contains("Spacing")) grid_.spacing = vector_of(tag, "Spacing");
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(grid_.spacing[axis] > 0.0)) refuse(tag, "Spacing is not three numbers > 0");
-            grid_.origin[axis] += static_cast<double>(whole_[static_cast<std::size_t>(2 * axis)]) * grid_.spacing[axis];
-        }
+        const Vec3& spacing = grid_.spacing;
+        if (!(std::min({spacing.x, spacing.y, spacing.z}) > 0.0)) refuse(tag, "Spacing is not three numbers > 0");
+        grid_.origin += Vec3(static_cast<double>(whole_[0]) * spacing.x, static_cast<double>(whole_[2]) * spacing.y,
+                             static_cast<double>(whole_[4]) * spacing.z);
         if (!tag.attributes.contains("Direction")) return;
         if (numbers_of<double>(tag, "Direction", 9) != std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}) {
             refuse(tag, "the axes are turned (Direction)");

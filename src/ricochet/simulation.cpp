@@ -194,7 +194,8 @@ struct Simulation::Impl {
         return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
     }
     [[nodiscard]] ForceInput input(std::size_t i, double now) const {
-        return {particles.position[i], particles.velocity[i], particles.mass[i], particles.radius[i], now};
+        return {particles.position[i], particles.velocity[i], particles.mass[i], particles.radius[i], now,
+                particles.id[i]};
     }
 
     SimulationOptions options;

@@ -54,7 +54,7 @@ MovingParticle particle_at(const Vec3& position, const Vec3& velocity = {}, doub
 MovingParticle sunk(Course& course, const Vec3& position, const Vec3& velocity = {}, double radius = 0.0) {
     MovingParticle particle = particle_at(position, velocity, radius);
     course.enrol(particle);
-    particle.sides[0] = {1, radius == 0.0, true};
+    particle.sides[0] = {1, radius == 0.0, true, 1e3F};
     return particle;
 }
 

@@ -40,14 +40,43 @@ struct Watched {
     SideWatch watch;
 };
 
-TEST(SideWatch, KnowsTheSidesOfBirthOfAllColliders) {
-    const CollisionWorld world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), plane_collider({0, 0, 2}, {0, 0, 1}),
-                                          mesh_collider(testing::solid("sphere")));
+TEST(SideWatch, ABirthOnASurfaceIsOnTheSideOfItsNormal) {
+    const CollisionWorld world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), plane_collider({0, 0, 2}, {0, 0, 1}));
     const SignedDistance distance(world);
-    const Watched watched(distance, 3, {0, 0, 0.5});
+    Watched watched(distance, 2, {0, 0, 0});
     EXPECT_EQ(watched.sides[0].side, 1);
-    EXPECT_EQ(watched.sides[1].side, -1);
-    EXPECT_EQ(watched.sides[2].side, -1);
+    EXPECT_EQ(watched.sides[1].side, 0);
+    const auto seen = watched.go({0, 0, -0.1});
+    ASSERT_EQ(seen.size(), 1U);
+    EXPECT_TRUE(seen[0].behind);
+    Watched above(distance, 2, {0, 0, 0});
+    EXPECT_TRUE(above.go({0, 0, 0.1}).empty());
+}
+
+TEST(SideWatch, TellsBehindByTheNumberOfSurfacesOnTheWay) {
+    // Two sheets of one mesh, both facing up, and a ball: between the sheets the nearest place says "above" or "below".
+    TriangleMesh sheets = floor_mesh(4.0, 1);
+    const auto count = static_cast<std::uint32_t>(sheets.vertices.size());
+    const std::size_t triangles = sheets.triangles.size();
+    for (std::uint32_t k = 0; k < count; ++k) sheets.vertices.push_back(sheets.vertices[k] + Vec3{0, 0, 1});
+    for (std::size_t k = 0; k < triangles; ++k) {
+        const Triangle t = sheets.triangles[k];
+        sheets.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+    }
+    const CollisionWorld world = world_of(mesh_collider(sheets));
+    const SignedDistance distance(world);
+    Watched between(distance, 1, {0.1, 0.2, 0.3});
+    const auto seen = between.go({0.1, 0.2, 1.1});
+    ASSERT_EQ(seen.size(), 1U);
+    EXPECT_TRUE(seen[0].behind);
+    EXPECT_EQ(seen[0].normal, (Vec3{0, 0, -1}));
+    // Right through a ball it is on its own side again.
+    const CollisionWorld with_ball = world_of(ColliderDescription{"ball", BallShape{0.1, {}}, 0});
+    const SignedDistance of_ball(with_ball);
+    Watched through(of_ball, 1, {-0.5, 0, 0});
+    for (const Proximity& view : through.go({0.15, 0, 0}, 0.1)) EXPECT_FALSE(view.behind);
+    Watched into(of_ball, 1, {-0.5, 0, 0});
+    EXPECT_TRUE(into.go({0.05, 0, 0}).at(0).behind);
 }
 
 TEST(SideWatch, SeesHowDeepWhatHasCrossedAPlaneIsAndWhereItCameFrom) {
@@ -87,7 +116,6 @@ TEST(SideWatch, ChangesSidesRoundAnOpenRimOnly) {
     const CollisionWorld world = world_of(mesh_collider(floor_mesh(1.0, 4)));
     const SignedDistance distance(world);
     Watched around(distance, 1, {0.5, 0.1, 0.2});
-    EXPECT_EQ(around.sides[0].side, 1);
     for (const Vec3& place : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}})
         EXPECT_TRUE(around.go(place, 0.4).empty() || !around.watch.in_contact());
     (void)around.go({0.5, 0.1, -0.2}, 0.4);

@@ -306,12 +306,14 @@ double swing(IntegratorKind integrator, double restitution, double part_of_bound
 }
 
 // The bound is that of central differences with lagging damping, which symplectic Euler is. Beyond it what has no
-// damping is thrown off; with strong damping the force, which never pulls, only shakes it for ever.
+// damping is thrown off; with damping the force, which never pulls, only shakes it for ever.
 TEST(PenaltyStability, IsLostExactlyAtTheBoundUnderSymplecticEuler) {
     EXPECT_LT(swing(IntegratorKind::symplectic_euler, 1.0, 1.0 / 1.02), 0.1);
     EXPECT_GT(swing(IntegratorKind::symplectic_euler, 1.0, 1.02), 1e3);
     for (const double restitution : {0.9, 0.6, 0.2, 0.05}) {
         EXPECT_LT(swing(IntegratorKind::symplectic_euler, restitution, 1.0 / 1.02), 1e-9) << restitution;
+    }
+    for (const double restitution : {0.9, 0.6}) {  // dampers that are stronger are held to what a step can take
         EXPECT_GT(swing(IntegratorKind::symplectic_euler, restitution, 1.02), 0.02) << restitution;
     }
 }

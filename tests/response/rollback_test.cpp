@@ -1,4 +1,5 @@
 #include "ricochet/response/rollback.h"
+#include "ricochet/dynamics/drag.h"
 
 #include <gtest/gtest.h>
 

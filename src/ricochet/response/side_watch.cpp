@@ -60,7 +60,8 @@ void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::ve
     if (!clear) distance_.near(place, within, points_);
     for (const SurfacePoint& point : points_) {
         const Proximity seen = proximity(point, place, from);
-        if (seen.gap < margin) out.push_back(seen);
+        // Just behind, the distance may be rounded to 0.
+        if (seen.behind || seen.gap < margin) out.push_back(seen);
     }
 }
 
@@ -69,7 +70,7 @@ void SideWatch::settle(std::span<const Proximity> seen) {
     for (const Proximity& view : seen) {
         SideMemory& memory = sides_[view.collider];
         memory.penetrating = view.behind;
-        memory.touching = view.gap < 0.0;
+        memory.touching = view.behind || view.gap < 0.0;
         memory.depth = view.behind ? std::nextafter(static_cast<float>(-view.gap), INFINITY) : 0.0F;
         if (view.side != 0) memory.side = static_cast<std::int8_t>(view.behind ? -view.side : view.side);
     }

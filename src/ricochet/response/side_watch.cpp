@@ -7,7 +7,7 @@ namespace ricochet {
 namespace {
 
 /// Relative rounding of a distance, by far.
-constexpr double kClearRounding = 1e-9;
+constexpr double kDistanceRounding = 1e-9;
 
 }  // namespace
 
@@ -54,9 +54,9 @@ void SideWatch::survey(const Vec3& place, double reach) {
 void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out) {
     out.clear();
     points_.clear();
-    const double within = std::max(radius_ + margin, deepest()) + length(place - from);
-    // A rounding less than the distances say: they are rounded too.
-    const bool clear = length(place - clear_center_) + within < (1.0 - kClearRounding) * clear_radius_;
+    // Distances are rounded: what is as far off as it may be must not be lost for that.
+    const double within = (1.0 + kDistanceRounding) * (std::max(radius_ + margin, deepest()) + length(place - from));
+    const bool clear = length(place - clear_center_) + within < (1.0 - kDistanceRounding) * clear_radius_;
     if (!clear) distance_.near(place, within, points_);
     for (const SurfacePoint& point : points_) {
         const Proximity seen = proximity(point, place, from);

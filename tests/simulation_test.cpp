@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/drag.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/check_command.h"
+#include "cli/compare_command.h"
 #include "cli/info_command.h"
 #include "cli/render_command.h"
 #include "cli/run_command.h"
@@ -34,7 +35,8 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 // One line a command.
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
-        add_check_command, add_info_command, add_render_command, add_run_command, add_schema_command,
+        add_check_command,  add_compare_command, add_info_command,
+        add_render_command, add_run_command,     add_schema_command,
     };
     return list;
 }

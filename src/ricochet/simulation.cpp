@@ -131,23 +131,39 @@ double lightest_particle(const SimulationSetup& setup) {
     return lightest;
 }
 
-/// The sub-step against the stability bound of the lightest particle on the most damping of the surfaces used.
+/// Smallest restitution among the materials that surfaces use.
+double least_restitution(const SimulationSetup& setup) {
+    double least = 1.0;
+    const auto use = [&](std::uint32_t material) {
+        if (material < setup.materials.size()) least = std::min(least, setup.materials[material].restitution);
+    };
+    for (const ColliderDescription& collider : setup.colliders) {
+        use(collider.material);
+        const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
+        if (mesh != nullptr) std::for_each(mesh->triangle_materials.begin(), mesh->triangle_materials.end(), use);
+    }
+    return least;
+}
+
+/// The sub-step against the stability bound of the lightest particle on the dampest of the surfaces.
 std::vector<std::string> warnings_of(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);
     if (options.response != ResponseKind::penalty || setup.colliders.empty() || !std::isfinite(mass)) return {};
-    const auto dampest = std::min_element(setup.materials.begin(), setup.materials.end(),
-                                          [](const auto& a, const auto& b) { return a.restitution < b.restitution; });
-    const ResponseSettings settings = response_settings(options);
-    const ContactSpring spring = contact_spring(settings, mass, dampest->restitution);
+    const double restitution = least_restitution(setup);
+    const ContactSpring spring = contact_spring(response_settings(options), mass, restitution);
     const double bound = longest_stable_step(spring, mass);
     const double substep = options.time_step / options.penalty.substeps;
     if (substep <= bound) return {};
-    return {fmt::format(
-        "the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
-        "lightest particle {:.3g} kg, restitution {}): contacts may explode; use at least {} substeps "
-        "or a softer spring",
-        substep, bound, spring.stiffness, mass, dampest->restitution, std::ceil(options.time_step / bound))};
+    const std::string advice =
+        options.penalty.stiffness
+            ? fmt::format("use at least {} substeps or a softer spring", std::ceil(options.time_step / bound))
+            : fmt::format("use contact_steps of at least {}",
+                          std::ceil(options.penalty.contact_steps * substep / bound));
+    return {
+        fmt::format("the penalty sub-step of {:.3g} s exceeds the stability bound of {:.3g} s (stiffness {:.3g} N/m, "
+                    "lightest particle {:.3g} kg, restitution {}): contacts may explode; {}",
+                    substep, bound, spring.stiffness, mass, restitution, advice)};
 }
 
 }  // namespace
@@ -178,7 +194,8 @@ struct Simulation::Impl {
         return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
     }
     [[nodiscard]] ForceInput input(std::size_t i, double now) const {
-        return {particles.position[i], particles.velocity[i], particles.mass[i], particles.radius[i], now};
+        return {particles.position[i], particles.velocity[i], particles.mass[i], particles.radius[i], now,
+                particles.id[i]};
     }
 
     SimulationOptions options;

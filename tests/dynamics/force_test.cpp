@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/drag.h"
 
 namespace ricochet {
 namespace {
@@ -34,29 +35,39 @@ TEST(Gravity, IsMinusTheGradientOfItsPotential) {
     }
 }
 
-TEST(LinearDrag, PullsAgainstTheVelocityInProportion) {
-    // F = -c v with c = 0.5 kg/s on 2 kg.
-    EXPECT_EQ(make_linear_drag(0.5)->acceleration(kState), (Vec3{-1, 1.25, -1.5}));
-    EXPECT_FALSE(make_linear_drag(0.5)->is_uniform());
-}
-
-TEST(LinearDrag, StoresNoEnergyAndOnlyTakesIt) {
-    const auto drag = make_linear_drag(0.5);
-    EXPECT_EQ(*drag->potential_energy(kState), 0.0);
-    EXPECT_LT(dot(drag->acceleration(kState), kState.velocity), 0.0);
-}
-
-TEST(LinearDrag, RefusesANegativeOrUndefinedCoefficient) {
-    EXPECT_THROW((void)make_linear_drag(-0.1), InputError);
-    EXPECT_THROW((void)make_linear_drag(std::numeric_limits<double>::quiet_NaN()), InputError);
-    EXPECT_THROW((void)make_linear_drag(std::numeric_limits<double>::infinity()), InputError);
-}
-
 TEST(CallableForce, IsDividedByTheMassAndHasNoPotential) {
     const auto spring = make_force([](const ForceInput& input) { return -4.0 * input.position; });
     EXPECT_EQ(spring->acceleration(kState), (Vec3{-2, -4, -6}));
     EXPECT_FALSE(spring->potential_energy(kState).has_value());
+    EXPECT_FALSE(spring->is_uniform());
+    EXPECT_FALSE(spring->is_steady());
     EXPECT_THROW((void)make_force(nullptr), InputError);
+}
+
+TEST(CallableForce, AsAnAccelerationIsNotDivided) {
+    const auto pull = make_acceleration([](const ForceInput& input) { return -4.0 * input.position; });
+    EXPECT_EQ(pull->acceleration(kState), (Vec3{-4, -8, -12}));
+    EXPECT_THROW((void)make_acceleration(nullptr), InputError);
+}
+
+TEST(CallableForce, KnowsOfItselfWhatItIsTold) {
+    const auto spring = make_force(
+        [](const ForceInput& input) { return -4.0 * input.position; },
+        {.potential = [](const ForceInput& input) { return 2.0 * length_squared(input.position); }, .is_steady = true});
+    EXPECT_DOUBLE_EQ(*spring->potential_energy(kState), 28.0);
+    EXPECT_TRUE(spring->is_steady());
+    EXPECT_FALSE(spring->is_uniform());
+    const auto constant = make_acceleration([](const ForceInput&) { return Vec3{1, 0, 0}; }, {.is_uniform = true});
+    EXPECT_TRUE(constant->is_uniform());
+    EXPECT_TRUE(constant->is_steady());
+}
+
+TEST(CallableForce, IsToldWhichParticleItActsOn) {
+    const auto by_id = make_force([](const ForceInput& input) { return Vec3(static_cast<double>(input.id), 0, 0); });
+    ForceInput state = kState;
+    EXPECT_EQ(by_id->acceleration(state).x, 0.0);
+    state.id = 6;
+    EXPECT_EQ(by_id->acceleration(state).x, 3.0);
 }
 
 TEST(ForceField, AddsInTheOrderGiven) {

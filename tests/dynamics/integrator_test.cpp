@@ -64,20 +64,22 @@ KnownMotion oscillator() {
             {-w * std::sin(w * t), 1.5 * std::cos(w * t), 0}};
 }
 
-/// A whole ellipse of eccentricity 0.4 round a centre of strength 1, from the pericentre.
+/// Part of an ellipse of eccentricity 0.4 round a centre of strength 1, from the pericentre to the eccentric
+/// anomaly 2.5. Not a whole one: after that the errors of the symplectic Euler step's two half kicks cancel.
 KnownMotion kepler() {
     const double e = 0.4;
-    const Vec3 x{1.0 - e, 0, 0};
-    const Vec3 v{0, std::sqrt((1.0 + e) / (1.0 - e)), 0};
+    const double anomaly = 2.5;
+    const double b = std::sqrt(1.0 - e * e);
+    const double rate = 1.0 / (1.0 - e * std::cos(anomaly));
     return {"kepler",
             [](const ForceInput& p) {
                 const double r = length(p.position);
                 return (-p.mass / (r * r * r)) * p.position;
             },
-            {x, v, 1.0, 0.0, 0.0},
-            2.0 * kPi,
-            x,
-            v};
+            {{1.0 - e, 0, 0}, {0, std::sqrt((1.0 + e) / (1.0 - e)), 0}, 1.0, 0.0, 0.0},
+            anomaly - e * std::sin(anomaly),
+            {std::cos(anomaly) - e, b * std::sin(anomaly), 0},
+            {-rate * std::sin(anomaly), rate * b * std::cos(anomaly), 0}};
 }
 
 /// Linear drag with gravity: the speed approaches the terminal one.
@@ -175,7 +177,7 @@ TEST(DormandPrince, IsOfOrderFiveWhereItDoesNotCutTheStep) {
     const ErrorTolerance generous{1e6, 1e6};
     for (const KnownMotion& motion : {oscillator(), kepler(), drag(), vortex()}) {
         SCOPED_TRACE(motion.name);
-        const int n = motion.name == "kepler" ? 100 : 16;
+        const int n = motion.name == "kepler" ? 40 : 16;
         const double coarse = error_of({IntegratorKind::dormand_prince, generous}, motion, n);
         const double fine = error_of({IntegratorKind::dormand_prince, generous}, motion, 4 * n);
         EXPECT_NEAR(std::log2(coarse / fine) / 2.0, 5.0, 0.5);

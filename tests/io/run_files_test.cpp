@@ -42,7 +42,8 @@ TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
     for (const char* own :
          {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp", "collider_00_a.vtp",
           "contacts.pvd", "contacts_000001.vtp", "particles_000001.vtp.123-4.partial",
-          "contacts_000001.vtp.123-4.partial", "summary.json.9-0.partial"}) {
+          "contacts_000001.vtp.123-4.partial", "summary.json.9-0.partial", "compare.json", "report.html", "cost.png",
+          "tunnelled.png.7-0.partial"}) {
         EXPECT_TRUE(is_run_file(own)) << own;
     }
     for (const char* other :

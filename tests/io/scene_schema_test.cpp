@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/force_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
 #include "ricochet/core/random.h"
@@ -66,7 +67,26 @@ TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
         << "ricochet schema --markdown > docs/scene-format.md brings it up to date";
 }
 
-TEST(SceneSchema, TheSampleConforms) { EXPECT_EQ(schema_errors(schema(), Json::parse(test::kSampleScene)), Lines{}); }
+// Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema looks at
+// all of a scene for every value that is spoiled in it.
+std::vector<Json> samples() {
+    std::vector<Json> scenes = {Json::parse(test::kSampleScene)};
+    const Json all = Json::parse(test::kForceScene);
+    for (const Json& force : all["forces"]) scenes.push_back({{"ricochet", 1}, {"forces", {force}}});
+    for (const auto& [name, flow] : all["flows"].items()) {
+        Json alone = flow;
+        if (flow.contains("parts")) alone["parts"] = Json::array();
+        scenes.push_back({{"ricochet", 1}, {"flows", {{name, alone}}}});
+        if (!flow.contains("parts")) continue;
+        for (const Json& part : flow["parts"]) scenes.push_back({{"ricochet", 1}, {"flows", {{name, part}}}});
+    }
+    return scenes;
+}
+
+TEST(SceneSchema, TheSamplesConform) {
+    EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
+    for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
+}
 
 TEST(SceneSchema, TheExampleOfTheReferenceConformsAndIsRead) {
     const std::string page = scene_reference();
@@ -121,44 +141,7 @@ std::vector<Json::json_pointer> places_in(const Json& document) {
     return places;
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
-    const Json sample = Json::parse(test::kSampleScene);
-    const std::vector<Json> values = {nullptr,
-                                      true,
-                                      false,
-                                      0,
-                                      1,
-                                      2,
-                                      -1,
-                                      0.5,
-                                      1.5,
-                                      180.5,
-                                      1e80,
-                                      -1e80,
-                                      4294967295U,
-                                      4294967296U,
-                                      18446744073709551615U,
-                                      1e20,
-                                      "",
-                                      "exact",
-                                      "mesh",
-                                      "plane",
-                                      "midpoint",
-                                      "a\nb",
-                                      Json::array(),
-                                      Json::object(),
-                                      Json::array({1, 2}),
-                                      Json::array({1, -2}),
-                                      Json::array({1, 2, 3}),
-                                      Json::array({0, 0, 0}),
-                                      Json::array({0.0, 0, -0.0}),
-                                      Json::array({1, 2, "x"}),
-                                      Json::array({1, 2, 3, 4}),
-                                      Json::array({Json::object()}),
-                                      Json{{"file", "x.csv"}},
-                                      Json{{"file", 3}},
-                                      Json{{"", Json::object()}},
-                                      Json{{"axis", {1, 0, 0}}, {"degrees", 3}}};
+void expect_agreement_on_replaced_values(const Json& sample, const std::vector<Json>& values) {
     // All of them, or every so many where each one costs more.
     const auto stride = static_cast<std::size_t>(50 / scaled(50));
     std::size_t tried = 0;
@@ -169,13 +152,61 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
             spoiled[place] = value;
             SCOPED_TRACE(place.to_string() + " = " + value.dump());
             expect_agreement(spoiled);
-            if (HasFatalFailure()) return;
+            if (testing::Test::HasFatalFailure()) return;
         }
     }
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
-    const Json sample = Json::parse(test::kSampleScene);
+const std::vector<Json>& spoiling_values() {
+    static const std::vector<Json> values = {nullptr,
+                                             true,
+                                             false,
+                                             0,
+                                             1,
+                                             2,
+                                             -1,
+                                             0.5,
+                                             1.5,
+                                             180.5,
+                                             1e80,
+                                             -1e80,
+                                             4294967295U,
+                                             4294967296U,
+                                             18446744073709551615U,
+                                             1e20,
+                                             "",
+                                             "exact",
+                                             "mesh",
+                                             "plane",
+                                             "midpoint",
+                                             "a\nb",
+                                             Json::array(),
+                                             Json::object(),
+                                             Json::array({1, 2}),
+                                             Json::array({1, -2}),
+                                             Json::array({1, 2, 3}),
+                                             Json::array({0, 0, 0}),
+                                             Json::array({0.0, 0, -0.0}),
+                                             Json::array({1, 2, "x"}),
+                                             Json::array({1, 2, 3, 4}),
+                                             Json::array({Json::object()}),
+                                             Json{{"file", "x.csv"}},
+                                             Json{{"file", 3}},
+                                             Json{{"", Json::object()}},
+                                             Json{{"axis", {1, 0, 0}}, {"degrees", 3}}};
+    return values;
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
+    expect_agreement_on_replaced_values(samples().front(), spoiling_values());
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValueOfForcesAndFlows) {
+    const std::vector<Json> scenes = samples();
+    for (std::size_t i = 1; i < scenes.size(); ++i) expect_agreement_on_replaced_values(scenes[i], spoiling_values());
+}
+
+void expect_agreement_on_changed_keys(const Json& sample) {
     for (const Json::json_pointer& place : places_in(sample)) {
         const Json::json_pointer parent = place.parent_pointer();
         if (!sample.at(parent).is_object()) continue;
@@ -186,17 +217,21 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
         Json renamed = removed;
         renamed.at(parent)["other"] = sample.at(place);
         expect_agreement(renamed);
-        for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius"}) {
+        for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius",
+                                "flow", "coefficient", "parts"}) {
             Json added = sample;
             added.at(parent)[key] = 1;
             expect_agreement(added);
         }
-        if (HasFatalFailure()) return;
+        if (testing::Test::HasFatalFailure()) return;
     }
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
-    const Json sample = Json::parse(test::kSampleScene);
+TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
+    for (const Json& sample : samples()) expect_agreement_on_changed_keys(sample);
+}
+
+void expect_agreement_on_random_changes(const Json& sample) {
     const auto places = places_in(sample);
     RandomSequence random(8, 0, 0);
     const auto below = [&](std::size_t n) {
@@ -211,7 +246,13 @@ TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
             if (spoiled.contains(to) && sample.contains(from)) spoiled[to] = sample[from];
         }
         expect_agreement(spoiled);
-        if (HasFatalFailure()) return;
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
+    for (const char* sample : {test::kSampleScene, test::kForceScene}) {
+        expect_agreement_on_random_changes(Json::parse(sample));
     }
 }
 

@@ -27,7 +27,9 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
-        {"cli", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render"}},
+        {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
+        {"cli",
+         {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare"}},
     };
     return table;
 }
@@ -53,7 +55,7 @@ constexpr std::array kDoors = {
          "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|bench/.*\\.cpp"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
-    Door{"nlohmann/", "src/(ricochet/io|cli)/.*\\.cpp|tests/.*"},
+    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},

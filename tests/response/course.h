@@ -2,23 +2,37 @@
 /// A course for single particles: colliders, forces and materials ready to move one through.
 #pragma once
 
+#include <list>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "ricochet/response/exact.h"
+#include "ricochet/response/response.h"
 
 namespace ricochet::testing {
 
 /// One particle among colliders of one material.
 struct Course {
+    /// With the exact response.
     Course(std::vector<ColliderDescription> colliders, Material material, const Vec3& gravity,
            IntegratorKind integrator = IntegratorKind::ballistic, std::uint32_t budget = 1000)
+        : Course(std::move(colliders), std::move(material), gravity, ResponseKind::exact,
+                 settings_of(integrator, budget)) {}
+
+    /// With any response.
+    Course(std::vector<ColliderDescription> colliders, Material material, const Vec3& gravity, ResponseKind kind,
+           const ResponseSettings& settings)
         : world(std::move(colliders)),
           forces(field(gravity)),
           materials{std::move(material)},
-          response(world, forces, materials, {integrator, 1e-3, budget}) {}
+          response(make_response(kind, {world, forces, materials, settings})) {}
 
+    static ResponseSettings settings_of(IntegratorKind integrator, std::uint32_t budget) {
+        ResponseSettings settings;
+        settings.integrator = integrator;
+        settings.bounce_budget = budget;
+        return settings;
+    }
     static ForceField field(const Vec3& gravity) {
         std::vector<std::unique_ptr<Force>> list;
         if (gravity != Vec3{}) list.push_back(make_gravity(gravity));
@@ -29,19 +43,30 @@ struct Course {
     MoveOutcome move(ForceInput& state, double duration) {
         const bool goes_on = state.position == last_position && state.velocity == last_velocity;
         MovingParticle particle{state, {}, 0, 0, goes_on ? last_support : Support{}};
+        if (goes_on) particle.sides = last_sides;
         const MoveOutcome outcome = move(particle, duration);
         state = particle.state;
         last_position = state.position;
         last_velocity = state.velocity;
         last_support = particle.support;
+        last_sides = particle.sides;
         return outcome;
     }
+    /// Moves any particle; one that is not known yet is on the sides where it is now.
     MoveOutcome move(MovingParticle& particle, double duration) {
         scratch.hits.clear();
         scratch.records.clear();
+        scratch.legs.clear();
         scratch.record_contacts = true;
         world.prepare_radius(particle.state.radius);
-        return response.move(particle, duration, scratch);
+        if (particle.sides.empty()) enrol(particle);
+        return response->move(particle, duration, scratch);
+    }
+    /// Gives the particle its memory of sides, where the response keeps them.
+    void enrol(MovingParticle& particle) {
+        if (!response->keeps_sides()) return;
+        particle.sides = sides.emplace_back(world.colliders().size());
+        response->first_sides(particle.state.position, particle.sides);
     }
     /// Times of the impacts of the last move.
     [[nodiscard]] std::vector<double> impact_times() const {
@@ -53,11 +78,13 @@ struct Course {
     CollisionWorld world;
     ForceField forces;
     std::vector<Material> materials;
-    ExactResponse response;
+    std::unique_ptr<Response> response;
     MoveScratch scratch;
     Vec3 last_position;
     Vec3 last_velocity;
     Support last_support;
+    std::span<SideMemory> last_sides;
+    std::list<std::vector<SideMemory>> sides;  ///< one list a particle
 };
 
 }  // namespace ricochet::testing

@@ -90,6 +90,8 @@ public:
     [[nodiscard]] std::vector<Vec3>& chain() const { return scratch_.chain; }
     [[nodiscard]] const CollisionWorld& world() const { return world_; }
     [[nodiscard]] double radius() const { return radius_; }
+    /// m, how far beside the searched path places may lie: what is gathered says nothing about places further off.
+    [[nodiscard]] double slack() const { return slack_; }
 
 private:
     void search_planes(const Path& path);

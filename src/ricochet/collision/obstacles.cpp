@@ -8,8 +8,13 @@
 namespace ricochet {
 namespace {
 
-/// A sphere in overlap comes nearer when the distance shrinks by more than this part of it: less is rounding.
-constexpr double kNearerStill = 1.0 - 0x1p-40;
+/// A sphere in overlap comes nearer when the distance shrinks by more than this part of it: less is rounding. A larger
+/// part adds up over many steps.
+constexpr double kNearerStill = 1.0 - 0x1p-49;
+
+/// Part of sphere_tolerance() that is used: a slow sphere comes to stand right at the limit, and what it loses to
+/// rounding from there on must stay within the whole.
+constexpr double kPartOfTolerance = 0.5;
 
 bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 2.0 * kSeamTurn; }
 
@@ -18,7 +23,7 @@ bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 
 bool Obstacles::blocks(SurfaceId surface, const Vec3& to) const {
     if (world_.segment_meets(surface, from_, to)) return true;
     if (radius_ == 0.0) return false;
-    const double tolerance = sphere_tolerance(radius_, std::max(max_abs(from_), max_abs(to)));
+    const double tolerance = kPartOfTolerance * sphere_tolerance(radius_, std::max(max_abs(from_), max_abs(to)));
     const double distance = world_.nearest(surface, to).distance;
     if (distance >= radius_ - tolerance) return false;
     return distance < kNearerStill * world_.nearest(surface, from_).distance;

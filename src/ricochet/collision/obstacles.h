@@ -10,9 +10,9 @@ namespace ricochet {
 
 /// Tests one particle's tried places, always against the same place that it comes from. Blocked means: the closed
 /// segment between the two places meets a surface (decided exactly for planes and triangles), or at the tried place the
-/// sphere comes nearer to a surface than its radius less sphere_tolerance(). What it overlaps already where it comes
-/// from blocks only when it comes nearer still. A sphere that brushes past something between the two places is not
-/// noticed: only the way of the centre is.
+/// sphere comes nearer to a surface than its radius less half of sphere_tolerance(). What it overlaps already where it
+/// comes from blocks only when it comes nearer still. A sphere that brushes past something between the two places is
+/// not noticed: only the way of the centre is.
 class Obstacles {
 public:
     /// The radius must have been prepared (CollisionWorld::prepare_radius).

@@ -65,18 +65,27 @@ Vec3 escape_direction(const Normals& normals) {
     return kParkingGapUlps * length(direction) <= kLongestParkingUlps ? direction : sum;
 }
 
-/// The place on the path at the contact, moved along the normal until it is exactly `radius` from the surface met first
-/// (for a sphere that overlaps it: left as it is).
-Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Contact& contact) {
-    const Vec3 place = path.position(contact.time);
+/// What moves a place on the path at the contact along the normal until it is exactly `radius` from the surface met
+/// first.
+Vec3 correction_at(const ContactSearch& search, const Vec3& place, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
     if (search.radius() == 0.0) {
         const CollisionWorld& world = search.world();
-        return flush_tiny(place - world.signed_distance_from(surface, place) * world.unit_normal_of(surface, place));
+        return -world.signed_distance_from(surface, place) * world.unit_normal_of(surface, place);
     }
     const double distance = search.world().nearest(surface, place).distance;
-    if (distance < search.radius() * (1.0 - kContactMismatch)) return place;
-    return flush_tiny(place + (search.radius() - distance) * contact.first().normal);
+    return (search.radius() - distance) * contact.first().normal;
+}
+
+/// The place on the path at the contact, put right. A sphere that overlaps is left as it is, and so is a place next to
+/// the origin whose distance from a large triangle has a rounding error beyond all that the path's search has covered.
+Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Contact& contact) {
+    const Vec3 place = path.position(contact.time);
+    const Vec3 correction = correction_at(search, place, contact);
+    const bool overlaps = search.radius() > 0.0 && dot(correction, contact.first().normal) >
+                                                       search.radius() * kContactMismatch;
+    if (overlaps || length(correction) > 0.5 * search.slack()) return place;
+    return flush_tiny(place + correction);
 }
 
 /// Normal of a blocking surface at p, facing p; zero when p lies in its plane.
@@ -100,6 +109,7 @@ Travel travel(const ContactSearch& search, const Path& path, double until, const
 }
 
 Parking park(const ContactSearch& search, const Path& path, const Contact& contact) {
+    const Vec3 on_path = path.position(contact.time);
     const Vec3 place = place_of_contact(search, path, contact);
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
@@ -109,6 +119,7 @@ Parking park(const ContactSearch& search, const Path& path, const Contact& conta
         const Vec3 way = gap * escape_direction(normals);
         if (!(length(way) <= longest)) break;
         const Vec3 parked = flush_tiny(place + way);
+        if (length(parked - on_path) > search.slack()) break;
         const Travel travelled = travel(search, path, contact.time, parked);
         if (!travelled.blocker) return {parked, false};
         const Vec3 normal = facing_surface(search, *travelled.blocker, travelled.reached).normal;
@@ -128,6 +139,7 @@ std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
     double gap = parking_gap(p);
     for (int attempt = 0; attempt < kParkingAttempts; ++attempt, gap *= kParkingWidening) {
         const Vec3 place = flush_tiny(p + gap * escape_direction(normals));
+        if (length(place - p) > search.slack()) break;
         if (search.is_free_after(p, place)) return place;
     }
     return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ricochet/geometry/predicates.h"
 
@@ -225,23 +226,51 @@ void SignedDistance::near(const Vec3& p, double within, std::vector<SurfacePoint
 }
 
 bool SignedDistance::segment_meets(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
+    bool meets = false;
+    visit_met(collider, p, q, [&](SurfaceId) {
+        meets = true;
+        return false;
+    });
+    return meets;
+}
+
+std::size_t SignedDistance::count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
+    if (parts_[collider].kind == Kind::shape) {
+        if (!segment_meets(collider, p, q)) return 0;
+        const auto before = nearest_of_shape(parts_[collider].index, p, std::numeric_limits<double>::infinity());
+        const auto after = nearest_of_shape(parts_[collider].index, q, std::numeric_limits<double>::infinity());
+        return before && after && before->side == after->side ? 2 : 1;
+    }
+    std::vector<SurfaceId> met;  // the hierarchy may propose a triangle twice
+    visit_met(collider, p, q, [&](SurfaceId surface) {
+        if (std::find(met.begin(), met.end(), surface) == met.end()) met.push_back(surface);
+        return true;
+    });
+    return met.size();
+}
+
+/// Calls found(surface), which returns whether to go on, for the surfaces of the collider that [p, q] meets.
+template <class Found>
+void SignedDistance::visit_met(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const {
     const Part& part = parts_[collider];
     const SurfaceId first = world_.first_surface_of(collider);
-    if (part.kind != Kind::mesh) return world_.segment_meets(first, p, q);
+    if (part.kind != Kind::mesh) {
+        if (world_.segment_meets(first, p, q)) found(first);
+        return;
+    }
     const Mesh& mesh = meshes_[part.index];
-    bool meets = false;
+    bool goes_on = true;
     const auto visit = [&](std::uint32_t triangle) {
-        if (triangle >= mesh.first_triangle && triangle < mesh.end_triangle && !world_.is_left_out(triangle)) {
-            meets = meets || world_.segment_meets(first + (triangle - mesh.first_triangle), p, q);
-        }
-        return meets ? 0.0 : 1.0;
+        if (!goes_on || triangle < mesh.first_triangle || triangle >= mesh.end_triangle) return goes_on ? 1.0 : 0.0;
+        const SurfaceId surface = first + (triangle - mesh.first_triangle);
+        if (!world_.is_left_out(triangle) && world_.segment_meets(surface, p, q)) goes_on = found(surface);
+        return goes_on ? 1.0 : 0.0;
     };
     if (world_.culls()) {
         world_.bvh_for(0.0).visit(p, q, visit);
     } else {
-        for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle && !meets; ++t) (void)visit(t);
+        for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle && goes_on; ++t) (void)visit(t);
     }
-    return meets;
 }
 
 std::size_t SignedDistance::memory_bytes() const {

@@ -48,6 +48,10 @@ public:
     /// of true for shapes with a formula, by some 2^-90. Both ends must be finite.
     [[nodiscard]] bool segment_meets(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
+    /// How many surfaces of the collider the closed segment [p, q] meets; a way through an edge meets both its
+    /// triangles. Of a shape with a formula 1 when the ends are on different sides, 2 when it goes in and out.
+    [[nodiscard]] std::size_t count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
+
     /// Bytes held besides the world.
     [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -78,6 +82,8 @@ private:
     class NearSearch;
 
     void add_mesh(std::uint32_t collider);
+    template <class Found>
+    void visit_met(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const;
     [[nodiscard]] std::uint32_t mesh_of_triangle(std::uint32_t triangle) const;
     template <class Visit>
     void visit_near(const Vec3& p, double within, Visit&& visit) const;

@@ -1,12 +1,10 @@
 #include "ricochet/dynamics/force.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/detail/checks.h"
 
 namespace ricochet {
 namespace {
@@ -25,47 +23,43 @@ private:
     Vec3 acceleration_;
 };
 
-class LinearDrag final : public Force {
-public:
-    explicit LinearDrag(double coefficient) : coefficient_(coefficient) {}
-    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
-        return input.velocity * (-coefficient_ / input.mass);
-    }
-    [[nodiscard]] std::optional<double> potential_energy(const ForceInput&) const override { return 0.0; }
-    [[nodiscard]] bool is_steady() const override { return true; }
-
-private:
-    double coefficient_;
-};
+enum class Returns { force, acceleration };
 
 class CallableForce final : public Force {
 public:
-    explicit CallableForce(std::function<Vec3(const ForceInput&)> force) : force_(std::move(force)) {}
-    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override { return force_(input) / input.mass; }
-    [[nodiscard]] std::optional<double> potential_energy(const ForceInput&) const override { return std::nullopt; }
+    CallableForce(std::function<Vec3(const ForceInput&)> call, Returns returns, CallableTraits traits)
+        : call_(std::move(call)), returns_(returns), traits_(std::move(traits)) {}
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
+        return returns_ == Returns::force ? call_(input) / input.mass : call_(input);
+    }
+    [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
+        if (!traits_.potential) return std::nullopt;
+        return traits_.potential(input);
+    }
+    [[nodiscard]] bool is_uniform() const override { return traits_.is_uniform; }
+    [[nodiscard]] bool is_steady() const override { return traits_.is_uniform || traits_.is_steady; }
 
 private:
-    std::function<Vec3(const ForceInput&)> force_;
+    std::function<Vec3(const ForceInput&)> call_;
+    Returns returns_;
+    CallableTraits traits_;
 };
 
 }  // namespace
 
 std::unique_ptr<Force> make_gravity(const Vec3& acceleration) {
-    if (!is_finite(acceleration)) throw InputError("gravity: the acceleration must be finite (m/s^2)");
+    detail::require_finite(acceleration, "gravity: the acceleration", "m/s^2");
     return std::make_unique<Gravity>(acceleration);
 }
 
-std::unique_ptr<Force> make_linear_drag(double coefficient) {
-    if (!(coefficient >= 0.0) || !std::isfinite(coefficient)) {
-        throw InputError(
-            fmt::format("drag: the coefficient must be a finite number >= 0 (kg/s), found {}", coefficient));
-    }
-    return std::make_unique<LinearDrag>(coefficient);
+std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force, CallableTraits traits) {
+    if (!force) throw InputError("force: an empty function cannot be called");
+    return std::make_unique<CallableForce>(std::move(force), Returns::force, std::move(traits));
 }
 
-std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force) {
-    if (!force) throw InputError("force: an empty function cannot be called");
-    return std::make_unique<CallableForce>(std::move(force));
+std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> acceleration, CallableTraits traits) {
+    if (!acceleration) throw InputError("acceleration: an empty function cannot be called");
+    return std::make_unique<CallableForce>(std::move(acceleration), Returns::acceleration, std::move(traits));
 }
 
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)

@@ -1,7 +1,8 @@
 /// \file
-/// Forces as composable objects.
+/// Forces as composable objects: what one is, sums of them, uniform gravity and any callable.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,6 +19,8 @@ struct ForceInput {
     double mass;    ///< kg
     double radius;  ///< m
     double time;    ///< s
+    /// Which particle it is, for forces that act on some only.
+    std::uint64_t id = 0;
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.
@@ -37,10 +40,19 @@ public:
 
 /// Uniform gravity: the given acceleration, m/s^2.
 [[nodiscard]] std::unique_ptr<Force> make_gravity(const Vec3& acceleration);
-/// Linear (viscous) drag F = -coefficient v; coefficient in kg/s, >= 0.
-[[nodiscard]] std::unique_ptr<Force> make_linear_drag(double coefficient);
-/// Any callable as a force: returns the force in newton. It must be pure; it has no potential.
-[[nodiscard]] std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force);
+
+/// What is known of a callable force. Pure like the force itself.
+struct CallableTraits {
+    std::function<double(const ForceInput&)> potential = {};  ///< J; empty: it has none
+    bool is_uniform = false;  ///< its acceleration depends on neither position, velocity nor time
+    bool is_steady = false;   ///< its acceleration does not depend on time
+};
+/// Any callable as a force: returns the force in newton. It must be pure.
+[[nodiscard]] std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force,
+                                                CallableTraits traits = {});
+/// Any callable as an acceleration, m/s^2. It must be pure.
+[[nodiscard]] std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> acceleration,
+                                                       CallableTraits traits = {});
 
 /// A sum of forces, added in the order given.
 class ForceField {

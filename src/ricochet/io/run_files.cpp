@@ -44,6 +44,14 @@ std::string_view without_partial_ending(std::string_view name) {
     return number(digits.substr(0, dash)) && number(digits.substr(dash + 1)) ? rest.substr(0, dot) : name;
 }
 
+bool is_comparison_file(std::string_view name) {
+    constexpr std::array kFiles{kComparisonJsonFile,   kComparisonTableFile,  kComparisonScriptFile,
+                                kComparisonPointsFile, kComparisonEnergyFile, kComparisonMarkdownFile,
+                                kComparisonHtmlFile};
+    return std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end() ||
+           std::find(kComparisonPictures.begin(), kComparisonPictures.end(), name) != kComparisonPictures.end();
+}
+
 std::string file_of_step(std::string_view prefix, std::uint64_t step) {
     return fmt::format("{}{:06}{}", prefix, step, kExtension);
 }
@@ -80,6 +88,7 @@ std::optional<std::size_t> index_of_collider_file(std::string_view name) {
 
 bool is_run_file(std::string_view name) {
     const std::string_view finished = without_partial_ending(name);
+    if (is_comparison_file(finished)) return true;
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kParticleSeriesFile ||
            finished == kColliderSeriesFile || finished == kContactSeriesFile || step_of_frame_file(finished) ||
            step_of_contact_file(finished) || index_of_collider_file(finished);

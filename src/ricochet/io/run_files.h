@@ -1,7 +1,8 @@
 /// \file
-/// The names of the files that a run writes into its output folder.
+/// The names of the files that a run or a comparison writes into its output folder.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,6 +16,17 @@ inline constexpr const char* kSummaryFile = "summary.json";     ///< what came o
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";
+
+inline constexpr const char* kComparisonJsonFile = "compare.json";          ///< everything that a comparison found
+inline constexpr const char* kComparisonTableFile = "compare.csv";          ///< one line a response and time step
+inline constexpr const char* kComparisonScriptFile = "compare.gp";          ///< draws the pictures with gnuplot
+inline constexpr const char* kComparisonPointsFile = "compare.dat";         ///< the rows for the script
+inline constexpr const char* kComparisonEnergyFile = "compare_energy.dat";  ///< energy errors over time for the script
+inline constexpr const char* kComparisonMarkdownFile = "report.md";
+inline constexpr const char* kComparisonHtmlFile = "report.html";
+/// The pictures that the script draws.
+inline constexpr std::array<const char*, 6> kComparisonPictures{
+    "cost.png", "error_position.png", "error_impact.png", "energy_time.png", "penetration.png", "tunnelled.png"};
 
 /// particles_NNNNNN.vtp; the number is the step.
 [[nodiscard]] std::string frame_file_name(std::uint64_t step);
@@ -39,7 +51,8 @@ inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFil
 /// The index in a collider file's name; nothing when it is not one.
 [[nodiscard]] std::optional<std::size_t> index_of_collider_file(std::string_view name);
 
-/// True for every name that a run may give to a file in its folder, unfinished ones included; not for the marker.
+/// True for every name that a run or a comparison may give to a file in its folder, unfinished ones included; not for
+/// the marker.
 [[nodiscard]] bool is_run_file(std::string_view name);
 
 }  // namespace ricochet

@@ -91,6 +91,10 @@ Json value_schema(const KeySpec& key) {
             return text_schema();
         case ValueType::choice:
             return choice_schema(key);
+        case ValueType::integers:
+            return {{"type", "array"},
+                    {"items", number_schema({.lower = 0.0, .upper = 0x1p64}, Built::yes, "integer")},
+                    {"minItems", 1}};
         case ValueType::vector:
             return vector_schema(key);
         case ValueType::scale:
@@ -99,6 +103,8 @@ Json value_schema(const KeySpec& key) {
             return pair_schema(key);
         case ValueType::object:
             return reference_to(*key.content);
+        case ValueType::named_object:
+            return {{"oneOf", Json::array({reference_to(*key.content), text_schema()})}};
         case ValueType::list:
             return list_schema(*key.content);
         case ValueType::list_or_file:

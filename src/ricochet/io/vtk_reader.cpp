@@ -7,12 +7,11 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "ricochet/core/error.h"
+#include "ricochet/io/detail/vtk_xml.h"
 
 namespace ricochet {
 namespace {
@@ -21,9 +20,11 @@ constexpr std::size_t kLargestHeader = 1 << 20;
 constexpr std::string_view kFileEnd = "\n</AppendedData>\n</VTKFile>\n";
 constexpr std::string_view kDataStart = "<AppendedData encoding=\"raw\">\n_";
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
-    throw InputError(fmt::format("{}: {}; expected a .vtp file as ricochet writes it", path.string(), what));
+detail::VtkSource source_of(const std::filesystem::path& path) {
+    return {path, "expected a .vtp file as ricochet writes it"};
 }
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) { source_of(path).refuse(what); }
 
 // The bytes of a regular file, by position.
 class FileBytes {
@@ -56,66 +57,6 @@ private:
     std::unique_ptr<std::FILE, Close> file_;
 };
 
-struct Tag {
-    std::string name;  // with a leading slash when it closes
-    std::map<std::string, std::string, std::less<>> attributes;
-    bool closed = false;    // <name/>
-    std::string_view text;  // between this tag and the next
-};
-
-std::string unescaped(std::string_view text) {
-    constexpr std::pair<std::string_view, char> kEntities[] = {
-        {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}};
-    std::string out;
-    while (!text.empty()) {
-        const auto entity = std::find_if(std::begin(kEntities), std::end(kEntities),
-                                         [&](const auto& e) { return text.substr(0, e.first.size()) == e.first; });
-        out += entity == std::end(kEntities) ? text.front() : entity->second;
-        text.remove_prefix(entity == std::end(kEntities) ? 1 : entity->first.size());
-    }
-    return out;
-}
-
-// Cuts the header into tags.
-class Tags {
-public:
-    Tags(std::filesystem::path path, std::string_view text) : path_(std::move(path)), rest_(text) {}
-
-    std::optional<Tag> next() {
-        const std::size_t open = rest_.find('<');
-        if (open == std::string_view::npos) return std::nullopt;
-        const std::size_t close = rest_.find('>', open);
-        if (close == std::string_view::npos) refuse(path_, "a tag of the header is not closed");
-        Tag tag = parse(rest_.substr(open + 1, close - open - 1));
-        rest_.remove_prefix(close + 1);
-        tag.text = rest_.substr(0, rest_.find('<'));
-        return tag;
-    }
-
-private:
-    Tag parse(std::string_view inside) const {
-        Tag tag;
-        if (!inside.empty() && inside.back() == '/') {
-            tag.closed = true;
-            inside.remove_suffix(1);
-        }
-        tag.name = inside.substr(0, inside.find(' '));
-        inside.remove_prefix(std::min(inside.size(), tag.name.size() + 1));
-        while (!inside.empty() && inside != "?") {
-            const std::size_t equals = inside.find("=\"");
-            const std::size_t end = equals == std::string_view::npos ? equals : inside.find('"', equals + 2);
-            if (end == std::string_view::npos) refuse(path_, fmt::format("bad attribute in the tag <{}>", tag.name));
-            tag.attributes[std::string(inside.substr(0, equals))] =
-                unescaped(inside.substr(equals + 2, end - equals - 2));
-            inside.remove_prefix(std::min(inside.size(), end + 2));
-        }
-        return tag;
-    }
-
-    std::filesystem::path path_;
-    std::string_view rest_;
-};
-
 // One array's place in the file, as the header says it.
 struct ArrayHeader {
     std::string section;
@@ -135,16 +76,17 @@ struct Header {
 
 class HeaderParser {
 public:
-    HeaderParser(const std::filesystem::path& path, std::string_view text) : path_(path), tags_(path, text) {}
+    HeaderParser(const std::filesystem::path& path, std::string_view text)
+        : path_(path), tags_(source_of(path), text) {}
 
     Header parse() {
-        while (const std::optional<Tag> tag = tags_.next()) take(*tag);
+        while (const std::optional<detail::XmlTag> tag = tags_.next()) take(*tag);
         if (!has_piece_) refuse(path_, "no <Piece> in the header");
         return std::move(header_);
     }
 
 private:
-    void take(const Tag& tag) {
+    void take(const detail::XmlTag& tag) {
         static constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData",
                                                          "Points",    "Verts",     "Polys"};
         if (tag.name.starts_with('/') || tag.name.starts_with('?') || tag.name == "PolyData") return;
@@ -163,7 +105,7 @@ private:
         }
     }
 
-    void take_piece(const Tag& tag) {
+    void take_piece(const detail::XmlTag& tag) {
         if (std::exchange(has_piece_, true)) refuse(path_, "more than one <Piece>");
         header_.points = number(tag, "NumberOfPoints");
         header_.verts = number(tag, "NumberOfVerts");
@@ -173,7 +115,7 @@ private:
         }
     }
 
-    void take_field(const Tag& tag) {
+    void take_field(const detail::XmlTag& tag) {
         VtkField field{attribute(tag, "Name"), {}};
         const char* at = tag.text.data();
         const char* end = at + tag.text.size();
@@ -197,36 +139,28 @@ private:
         }
     }
 
-    void take_array(const Tag& tag) {
+    void take_array(const detail::XmlTag& tag) {
         expect(tag, "format", "appended");
         header_.arrays.push_back({section_, attribute(tag, "type"), attribute(tag, "Name"),
                                   number(tag, "NumberOfComponents"), number(tag, "offset")});
     }
 
-    const std::string& attribute(const Tag& tag, const char* name) const {
-        const auto found = tag.attributes.find(name);
-        if (found == tag.attributes.end()) refuse(path_, fmt::format("no {} in the tag <{}>", name, tag.name));
-        return found->second;
+    const std::string& attribute(const detail::XmlTag& tag, const char* name) const {
+        return detail::attribute_of(source_of(path_), tag, name);
     }
 
-    void expect(const Tag& tag, const char* name, std::string_view value) const {
+    void expect(const detail::XmlTag& tag, const char* name, std::string_view value) const {
         if (attribute(tag, name) != value) {
             refuse(path_, fmt::format("{}=\"{}\" instead of \"{}\"", name, attribute(tag, name), value));
         }
     }
 
-    std::uint64_t number(const Tag& tag, const char* name) const {
-        const std::string& text = attribute(tag, name);
-        std::uint64_t value = 0;
-        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || stop != text.data() + text.size()) {
-            refuse(path_, fmt::format("{}=\"{}\" is not a count", name, text));
-        }
-        return value;
+    std::uint64_t number(const detail::XmlTag& tag, const char* name) const {
+        return detail::count_of(source_of(path_), tag, name);
     }
 
     std::filesystem::path path_;
-    Tags tags_;
+    detail::XmlTags tags_;
     Header header_;
     std::string section_;
     bool has_piece_ = false;

@@ -83,7 +83,11 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
         const CollisionWorld& world = rules_.world;
         const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
-        path.end = flush_tiny(path.end + (parking_gap(path.end) - height) * support.normal);
+        const double lift = parking_gap(path.end) - height;
+        // Next to the origin a height above a large triangle can be all rounding.
+        if (std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end)) {
+            path.end = flush_tiny(path.end + lift * support.normal);
+        }
     } else if (bend < 0.0) {
         const CollisionWorld::Nearest there = rules_.world.nearest(support.surface, path.end);
         const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;

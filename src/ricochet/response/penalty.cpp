@@ -60,6 +60,7 @@ private:
     MoveOutcome outcome_;
     ImpactAnswer impact_;
     SideWatch watch_;
+    double substep_ = 0.0;           // s
     std::vector<Proximity>& seen_;   // contacts where the particle is
     std::vector<Proximity>& stage_;  // contacts where the integrator tries
 };
@@ -67,6 +68,7 @@ private:
 /// The loop that moves one particle: sub-step after sub-step with whatever pushes it.
 MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
+    substep_ = h;
     seen_.clear();
     if (watch_.in_contact()) watch_.look(state_.position, state_.position, 0.0, seen_);
     if (rules_.settings.penalty.substeps > 1) survey(duration);
@@ -193,6 +195,7 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
     contact.damping = 2.0 * damping_ratios_[index] * std::sqrt(stiffness * mass);
     contact.friction = material.friction;
     contact.rolling_friction = material.rolling_friction;
+    contact.mass = mass;
     return contact;
 }
 
@@ -207,7 +210,7 @@ ContactPush PenaltyMover::push_at(const BodyState& body, double time, const std:
     const double inertia = 0.4 * state_.mass * state_.radius * state_.radius;  // solid sphere
     for (const Proximity& view : contacts) {
         const ContactForce force =
-            force_of(contact_of(view), body.motion, state_.radius, rules_.settings.penalty.friction_speed);
+            force_of(contact_of(view), body.motion, state_.radius, {rules_.settings.penalty.friction_speed, substep_});
         const Vec3 acceleration = force.force / state_.mass;
         push.acceleration += acceleration;
         if (inertia > 0.0) push.spin_acceleration += force.torque / inertia;

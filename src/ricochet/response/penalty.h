@@ -9,15 +9,19 @@
 /// Structures", section 6.2 (central differences with lagging damping).
 ///
 /// The force on a particle at depth d: max(0, k d + c d') along the normal, and friction mu N against the slip, which
-/// grows linearly up to PenaltySettings::friction_speed. It is part of the acceleration that the scene's integrator
-/// steps with, in sub-steps; `ballistic`, which holds forces over a step, becomes velocity Verlet, the same parabola
-/// wherever the force is constant. Surfaces that absorb or reflect diffusely answer the beginning of a contact at once.
+/// grows linearly up to PenaltySettings::friction_speed. What brakes is at most what stops its motion in one sub-step.
+/// It is part of the acceleration that the scene's integrator steps with, in sub-steps; `ballistic`, which holds forces
+/// over a step, becomes velocity Verlet, the same parabola wherever the force is constant. Surfaces that absorb or
+/// reflect diffusely answer the beginning of a contact at once.
 ///
 /// What it does not guarantee: that particles stay out (the depth under weight is m g / k, in an impact v sqrt(m / k));
-/// that a wall is noticed that is thinner than a sub-step is long; restitution and friction to better than the first
-/// order in sub-steps per contact; stability beyond penalty_stability(); rest without creep on slopes (friction needs
-/// slip); restitution below kLeastPenaltyRestitution; that walls of one collider are felt together (each collider
-/// pushes from its nearest place only).
+/// that a wall holds that is thinner than twice that (what is deeper than its middle is pushed out on the far side) or
+/// than a sub-step is long; that restitution falls below a threshold (Material::restitution_threshold is not used);
+/// restitution and friction to better than the first order in sub-steps per contact, which without a stiffness do not
+/// grow as steps shrink; stability beyond longest_stable_step(), for `midpoint`, which feeds springs without damping,
+/// none at all; rest without creep on slopes (friction needs slip, and shakes where a sub-step's friction, mu g h,
+/// exceeds 2 friction_speed); restitution below kLeastPenaltyRestitution; that walls of one collider are felt together
+/// (each collider pushes from its nearest place only).
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"

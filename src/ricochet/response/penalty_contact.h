@@ -24,6 +24,7 @@ struct PenaltyContact {
     double damping = 0.0;
     double friction = 0.0;
     double rolling_friction = 0.0;
+    double mass = 1.0;  ///< kg, of the particle
 };
 
 /// Force of one contact, N, on the particle.
@@ -32,9 +33,16 @@ struct ContactForce {
     Vec3 torque;  ///< N m
 };
 
-/// max(0, k d + c d') along the normal, friction against the slip, a moment against rolling; both grow linearly with
-/// their speeds up to friction_speed, m/s.
+/// Where the laws are cut off.
+struct ContactLimits {
+    double friction_speed = 1e-3;  ///< m/s, up to which friction grows linearly
+    double step = 0.0;             ///< s that the integrator takes the force for
+};
+
+/// max(0, k d + c d') along the normal, friction against the slip, a moment against rolling. What brakes (the damper,
+/// friction, the moment) is at most what stops its motion within the step: an explicit step would turn it round, and
+/// make energy.
 [[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
-                                    double friction_speed);
+                                    const ContactLimits& limits);
 
 }  // namespace ricochet

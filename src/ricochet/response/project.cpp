@@ -72,7 +72,7 @@ private:
             for (const Proximity& view : seen_) touch(view);
             const auto deepest = std::min_element(seen_.begin(), seen_.end(),
                                                   [](const auto& a, const auto& b) { return a.gap < b.gap; });
-            if (deepest == seen_.end() || deepest->gap >= 0.0) {
+            if (deepest == seen_.end() || (deepest->gap >= 0.0 && !deepest->behind)) {
                 watch_.settle(seen_);
                 return place;
             }

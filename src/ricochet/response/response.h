@@ -103,12 +103,12 @@ struct Support {
     double cascade_left = 0.0;  ///< s of a bounce cascade that the end of the step has cut in two
 };
 
-/// The side of a collider that a particle belongs to, as the responses remember it that look at the end of a step only:
-/// the sign of the side (SurfacePoint::side); 0: not known yet, it becomes the first that is seen.
+/// What the responses that look at the end of a step only remember of a particle and a collider.
 struct SideMemory {
-    std::int8_t side = 0;
+    std::int8_t side = 0;      ///< the sign of the side that it belongs to (SurfacePoint::side); 0: not seen yet
     bool penetrating = false;  ///< it was behind the surface when it was last looked at
     bool touching = false;     ///< it was in contact then
+    float depth = 0.0F;        ///< m, at least how far behind it was, if it was
 };
 
 /// One particle as the response moves it.

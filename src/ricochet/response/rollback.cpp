@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback_mover.h"
 
 namespace ricochet {
@@ -54,9 +55,14 @@ private:
         return p.is_out || p.outcome.frozen || p.outcome.absorbed;
     }
 
+    /// Where the particle stands in time: a tolerance ahead of the system when it has met something.
+    [[nodiscard]] static double begin_of(const SystemParticle& p, double now) {
+        return std::max({now, p.start, p.particle.state.time});
+    }
+
     /// How far the particle can go on from `now`, tried out on a copy.
     [[nodiscard]] Event look(SystemParticle& p, double now, MoveScratch& scratch) const {
-        const double begin = std::max(now, p.start);
+        const double begin = begin_of(p, now);
         const double duration = p.stop - begin;
         if (is_out(p) || !(duration > 0.0)) return {};
         MovingParticle copy = p.particle;
@@ -67,25 +73,37 @@ private:
         return {found.free, changes ? begin + found.free : kNever, found.blocked};
     }
 
-    /// Goes with the system to `next`, and answers what it has met by then.
+    /// Goes with the system to `next`, and answers what it has met by then. A shorter step may be blocked, or a stretch
+    /// of contact may end, where the longer one did not: then it goes on in pieces.
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
-        const double begin = std::max(now, p.start);
         const double end = std::min(next, p.stop);
-        const bool meets = event.collides && event.time <= next + rules_.settings.rollback.time_tolerance;
-        if (is_out(p) || (!(end > begin) && !meets)) return;
-        RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
-        if (!mover.begin(meets ? p.stop - begin : end - begin)) return;
-        const CollisionBracket found = mover.bracket();
-        mover.advance(found.free);
-        if (found.blocked && mover.has_budget()) {
-            mover.answer();
-        } else if (found.blocked) {
-            p.is_out = true;
-            p.outcome.unsimulated_time += p.stop - begin - found.free;
+        // What is due is done again as it was tried out, also when it takes less time than the clock can tell.
+        bool is_due = event.time <= next + (event.collides ? rules_.settings.rollback.time_tolerance : 0.0);
+        for (double at = begin_of(p, now); !is_out(p) && (is_due || at < end); is_due = false) {
+            RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
+            if (!mover.begin(is_due ? p.stop - at : end - at)) return;
+            const CollisionBracket found = mover.bracket();
+            mover.advance(found.free);
+            at += found.free;
+            if (found.blocked && !mover.has_budget()) {
+                p.is_out = true;
+                p.outcome.unsimulated_time += p.stop - at;
+            } else if (found.blocked) {
+                mover.answer();
+            }
+            if (p.outcome.absorbed) return;
+            rest_in_pit(p, mover, found.free, at);
+            mover.remember_contact();
         }
-        // A shorter step may be blocked where the longer one was not: what it loses then is counted.
-        if (found.blocked && !meets) p.outcome.unsimulated_time += p.is_out ? 0.0 : end - begin - found.free;
-        if (!p.outcome.absorbed) mover.remember_contact();
+    }
+
+    /// As in RollbackMover::run(): contact without progress is rest.
+    static void rest_in_pit(SystemParticle& p, RollbackMover& mover, double elapsed, double at) {
+        const bool idles = mover.in_contact() && elapsed < kLeastProgress * (p.stop - p.start);
+        p.idle = idles ? p.idle + 1 : 0;
+        if (p.idle <= kMostSlowContacts) return;
+        mover.rest(p.stop - at);
+        p.is_out = true;
     }
 
     const ResponseRules& rules_;

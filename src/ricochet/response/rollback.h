@@ -10,9 +10,11 @@
 ///
 /// What it guarantees: the chord of every accepted step crosses no surface, exactly (obstacles.h).
 /// What it does not guarantee: that a collision is noticed whose traces are gone at the end of the step (an arc that
-/// dips through a surface and comes back, a sphere that brushes past an edge); that the first of several collisions is
-/// the one found (bisection finds one at which free turns into blocked); the time of impact to better than the
-/// tolerance; that sliding along a surface that bends away or ends within a step follows it.
+/// dips through a surface and comes back, a sphere that brushes past an edge), nor that one which is noticed is real (a
+/// chord that cuts a corner which the arc passes over, by a sag of up to a h^2 / 8); that the first of several
+/// collisions is the one found (bisection finds one at which free turns into blocked); the time of impact to better
+/// than the tolerance; that sliding along a surface that bends away follows it, nor that friction feels a bowl's
+/// curvature; with the symplectic Euler step, that `global` keeps the energy, since every part of a step kicks anew.
 #pragma once
 
 #include <span>
@@ -37,7 +39,8 @@ struct SystemParticle {
     double stop = 0.0;   ///< s, and ends
     MoveOutcome outcome = {};
     std::vector<Leg> legs = {};  ///< filled when the scratch records legs
-    bool is_out = false;         ///< its budget is spent
+    bool is_out = false;         ///< it is done with the step: its budget is spent, or it rests in a pit
+    int idle = 0;                ///< pieces of contact in a row without progress
 };
 
 /// The global variant, as the lectures teach it for the whole system's state vector: when any particle collides within

@@ -1,5 +1,6 @@
 // Sliding, rolling and resting between two collisions.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
@@ -11,7 +12,11 @@ namespace ricochet {
 std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
     const CollisionWorld& world = rules_.world;
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
-    const double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
+    double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
+    // What rests under symplectic Euler has come down at the speed of a step's kick.
+    if (rules_.settings.integrator == IntegratorKind::symplectic_euler && trial_ == Trial::same_flight) {
+        speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
+    }
     const double reach = kTouchingGaps * parking_gap(state_.position) +
                          kBracketsOfTouch * rules_.settings.rollback.time_tolerance * speed;
     if (nearest.distance - state_.radius > reach) return std::nullopt;
@@ -68,24 +73,66 @@ void RollbackMover::plan_contact(double duration) {
     limit_stretch();
 }
 
-/// A stretch ends where its face does.
+/// A stretch ends where its face does. One that is too short for the clock would be planned again for ever.
 void RollbackMover::limit_stretch() {
-    const Vec3& v = stretch_->motion.velocity;
-    const Vec3& a = stretch_->acceleration;
-    double duration = stretch_->duration;
-    if (!stretch_->at_rest) {
-        Path of_contact_point = parabola_path(state_.position - state_.radius * normals_[0], v, a, duration);
-        const double slack = kTouchingGaps * parking_gap(state_.position);
-        if (is_finite(of_contact_point.end) && touched_[0].flat) {
-            duration = rules_.world.time_over(touched_[0].surface, of_contact_point, slack);
-        }
-    }
-    if (!(duration > 0.0)) {
+    const double duration = stretch_->at_rest ? stretch_->duration : time_on_support();
+    turns_ = false;
+    if (!(state_.time + duration > state_.time)) {
         stretch_.reset();
         count_ = 0;
         return;
     }
+    const Vec3& v = stretch_->motion.velocity;
+    const Vec3& a = stretch_->acceleration;
     flight_ = {parabola_path(state_.position, v, a, duration), a, 0.0, state_, v + duration * a};
+    if (!stretch_->at_rest && !touched_[0].flat) bend_stretch(duration);
+}
+
+/// How long the stretch stays over its face; on curved surfaces as long as it takes to turn by a small angle.
+double RollbackMover::time_on_support() const {
+    const Vec3& v = stretch_->motion.velocity;
+    const Vec3& a = stretch_->acceleration;
+    const double duration = stretch_->duration;
+    const ContactSurface& support = touched_[0];
+    if (support.flat) {
+        const Path way = parabola_path(state_.position - state_.radius * support.normal, v, a, duration);
+        const double slack = kTouchingGaps * parking_gap(state_.position);
+        return is_finite(way.end) ? rules_.world.time_over(support.surface, way, slack) : duration;
+    }
+    const double longest = kStretchAngle * 0.25 * rules_.world.size_of(support.surface);
+    const double speed = length(v);
+    const double pull = 2.0 * length(a);
+    return std::min(
+        {duration, speed > 0.0 ? longest / speed : duration, pull > 0.0 ? std::sqrt(2.0 * longest / pull) : duration});
+}
+
+/// On a surface that bends towards the particle a stretch is a chord, whose end is as far off as its beginning.
+void RollbackMover::bend_stretch(double duration) {
+    const CollisionWorld& world = rules_.world;
+    const SurfaceId surface = touched_[0].surface;
+    const Vec3 end = flight_.path.end;
+    if (!is_finite(end)) return;
+    const CollisionWorld::Nearest here = world.nearest(surface, state_.position);
+    const CollisionWorld::Nearest there = world.nearest(surface, end);
+    const double side = dot(there.normal, touched_[0].normal) < 0.0 ? -1.0 : 1.0;
+    const double lift = here.distance - side * there.distance;
+    if (!(lift > 0.0)) return;
+    turns_ = true;
+    const Vec3 lifted = end + (side * lift) * there.normal;
+    const Vec3 v = stretch_->motion.velocity + (lifted - end) / duration;
+    flight_.path = parabola_path(state_.position, v, stretch_->acceleration, duration);
+    flight_.path.end = lifted;
+}
+
+/// After a chord the velocity is turned along the surface. Its speed is kept.
+void RollbackMover::turn_along() {
+    const Vec3 before = state_.velocity;
+    find_touched();
+    const Vec3 along = project_off(before, normals());
+    const double left = length(along);
+    if (count_ == 0 || left == 0.0) return;
+    state_.velocity = (length(before) / left) * along;
+    impact_.push(touched_[0].surface, state_.velocity - before, false);
 }
 
 /// Books what contact has changed the velocity by: each surface its normal part, what is left (friction) on the first.

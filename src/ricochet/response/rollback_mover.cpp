@@ -24,20 +24,35 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
 /// The loop that moves one particle: take all the time that is left, go back to what was in the way, answer, go on.
 void RollbackMover::run(double duration) {
     double remaining = duration;
+    int idle = 0;
     while (remaining > 0.0) {
         if (!begin(remaining)) return;
         const CollisionBracket found = bracket();
         advance(found.free);
         remaining = std::max(0.0, remaining - found.free);
-        if (!found.blocked) continue;
-        if (!has_budget()) {
+        if (found.blocked && !has_budget()) {
             outcome_.unsimulated_time = remaining;
             break;
         }
-        answer();
+        if (found.blocked) answer();
         if (outcome_.absorbed) return;
+        idle = in_contact() && found.free < kLeastProgress * duration ? idle + 1 : 0;
+        if (idle > kMostSlowContacts) {
+            rest(remaining);
+            break;
+        }
     }
     remember_contact();
+}
+
+/// Rests for the time given: what circles into a pit gets there in infinitely many ever shorter stretches.
+void RollbackMover::rest(double duration) {
+    pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
+    shares_ = normal_accelerations(pull_, normals());
+    book_contact(-state_.velocity - duration * pull_, duration);
+    state_.velocity = particle_.spin = Vec3{};
+    state_.time += duration;
+    outcome_.resting = true;
 }
 
 bool RollbackMover::begin(double duration) {
@@ -108,7 +123,7 @@ void RollbackMover::fly(double elapsed) {
         const PhaseState state = state_at(elapsed);
         state_.position = flush_tiny(state.position);
         state_.velocity = state.velocity;
-    } else {
+    } else if (trial_ == Trial::same_flight) {
         state_.velocity = flight_.path.velocity(0.0);  // with the kick, if there is one
     }
     const bool own_step = trial_ == Trial::own_step;
@@ -126,6 +141,8 @@ void RollbackMover::follow_stretch(double elapsed) {
     particle_.spin = rests ? Vec3{} : motion.spin;
     book_contact(state_.velocity - before - elapsed * pull_, elapsed);
     outcome_.resting = rests;
+    kick_velocity_ = Vec3{};
+    if (turns_) turn_along();
 }
 
 /// Bounces, or stays on what it has met when all rebounds are slow and something presses it on.
@@ -165,6 +182,8 @@ void RollbackMover::leave_surface() {
 /// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
+    // What is touched already holds its part; what is left may press onto the next surface.
+    const Vec3 pull = project_off(a, normals());
     bool pressed = false;
     for (const ContactSurface& met : met_) {
         const Material& material = impact_.material_of(met.surface);
@@ -173,7 +192,7 @@ bool RollbackMover::will_stay() const {
         const bool can_rest = material.can_hold(rules_.settings.resting_speed);
         const double rebound = approach > 0.0 ? material.restitution_at(approach) * approach : 0.0;
         if (approach > 0.0 && (!can_rest || rebound >= rules_.settings.resting_speed)) return false;
-        pressed = pressed || (can_rest && dot(a, met.normal) < 0.0);
+        pressed = pressed || (can_rest && std::min(dot(a, met.normal), dot(pull, met.normal)) < 0.0);
     }
     return pressed;
 }

@@ -19,6 +19,9 @@ struct CollisionBracket {
     bool blocked = false;  ///< something is in the way right after it; false: the whole piece is free
 };
 
+/// Pieces of contact shorter than this part of the step are no progress; kMostSlowContacts of them in a row are rest.
+inline constexpr double kLeastProgress = 0x1p-20;
+
 class RollbackMover {
 public:
     /// What a trial of a shorter time is: the same flight looked at earlier, or a step of its own.
@@ -39,6 +42,10 @@ public:
     void advance(double elapsed);
     /// Answers what is in the way at the bracket's blocked end. The particle has gone to its free end.
     void answer();
+    /// True while it slides, rolls or rests.
+    [[nodiscard]] bool in_contact() const { return count_ > 0; }
+    /// Rests where it is for the time given.
+    void rest(double duration);
     /// Keeps the contact for the next step.
     void remember_contact();
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
@@ -59,6 +66,9 @@ private:
     void touch(std::span<const ContactSurface> surfaces);
     void plan_contact(double duration);
     void limit_stretch();
+    [[nodiscard]] double time_on_support() const;
+    void bend_stretch(double duration);
+    void turn_along();
     void book_contact(const Vec3& velocity_change, double elapsed);
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
 
@@ -75,7 +85,8 @@ private:
     std::optional<Flight> flown_;  // the last flight of this step
     Vec3 kick_velocity_;           // what kicks have put into the velocity since the last piece began, m/s
     std::optional<Stretch> stretch_;
-    Vec3 pull_;  // the forces' acceleration at the stretch's start
+    bool turns_ = false;  // the stretch is a chord of a surface that bends towards the particle
+    Vec3 pull_;           // the forces' acceleration at the stretch's start
     std::array<ContactSurface, 3> touched_;
     std::array<Vec3, 3> normals_;
     std::array<double, 3> shares_{};

@@ -1,29 +1,40 @@
 #include "ricochet/response/side_watch.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace ricochet {
 namespace {
 
 /// Relative rounding of a distance, by far.
-constexpr double kClearRounding = 1e-9;
+constexpr double kDistanceRounding = 1e-9;
 
 }  // namespace
 
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides) {
-    for (std::uint32_t collider = 0; collider < sides.size(); ++collider) {
-        sides[collider] = {};
-        const auto nearest = distance.closest(collider, position, std::numeric_limits<double>::infinity());
-        if (nearest && !nearest->on_rim) sides[collider].side = static_cast<std::int8_t>(nearest->side);
-    }
+    std::fill(sides.begin(), sides.end(), SideMemory{});
+    std::vector<SurfacePoint> on;
+    distance.near(position, 0.0, on);
+    for (const SurfacePoint& point : on) sides[point.collider].side = 1;
+}
+
+bool SideWatch::is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
+    if (point.on_rim || point.side == 0) return false;
+    const SideMemory& memory = sides_[point.collider];
+    if (memory.penetrating) return memory.side == -point.side;
+    const std::size_t met = distance_.count_met(point.collider, from, place);
+    if (met == 0) return false;
+    const auto before = distance_.closest(point.collider, from, length(place - from));
+    const bool starts_on_it = before && before->distance == 0.0;
+    if (starts_on_it) return memory.side == -point.side;
+    if (met % 2 == 1) return true;
+    return before && !before->on_rim && before->side == -point.side;
 }
 
 Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
     const SideMemory& memory = sides_[point.collider];
     Proximity seen{point.collider, point.surface, point.point, point.direction, 0.0, false, point.side};
-    const bool other_side = memory.side != 0 && point.side == -memory.side && !point.on_rim;
-    seen.behind = other_side && (memory.penetrating || distance_.segment_meets(point.collider, from, place));
+    seen.behind = is_behind(point, place, from);
     if (point.on_rim) seen.side = 0;
     if (seen.behind) seen.normal = -point.direction;
     // On the surface itself the direction is the surface's normal, not the particle's.
@@ -43,23 +54,15 @@ void SideWatch::survey(const Vec3& place, double reach) {
 void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out) {
     out.clear();
     points_.clear();
-    const double within = radius_ + margin + length(place - from);
-    // A rounding less than the distances say: they are rounded too.
-    const bool clear = length(place - clear_center_) + within < (1.0 - kClearRounding) * clear_radius_;
+    // Distances are rounded: what is as far off as it may be must not be lost for that.
+    const double within = (1.0 + kDistanceRounding) * (std::max(radius_ + margin, deepest()) + length(place - from));
+    const bool clear = length(place - clear_center_) + within < (1.0 - kDistanceRounding) * clear_radius_;
     if (!clear) distance_.near(place, within, points_);
-    const auto near_end = static_cast<std::ptrdiff_t>(points_.size());
-    for (std::uint32_t collider = 0; collider < sides_.size(); ++collider) {
-        if (!sides_[collider].penetrating) continue;
-        const auto is_it = [&](const SurfacePoint& point) { return point.collider == collider; };
-        if (std::any_of(points_.begin(), points_.begin() + near_end, is_it)) continue;
-        const auto far = distance_.closest(collider, place, std::numeric_limits<double>::infinity());
-        if (far) points_.push_back(*far);
-    }
     for (const SurfacePoint& point : points_) {
         const Proximity seen = proximity(point, place, from);
-        if (seen.gap < margin) out.push_back(seen);
+        // Just behind, the distance may be rounded to 0.
+        if (seen.behind || seen.gap < margin) out.push_back(seen);
     }
-    std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.collider < b.collider; });
 }
 
 void SideWatch::settle(std::span<const Proximity> seen) {
@@ -67,9 +70,18 @@ void SideWatch::settle(std::span<const Proximity> seen) {
     for (const Proximity& view : seen) {
         SideMemory& memory = sides_[view.collider];
         memory.penetrating = view.behind;
-        memory.touching = view.gap < 0.0;
-        if (!view.behind && view.side != 0) memory.side = static_cast<std::int8_t>(view.side);
+        memory.touching = view.behind || view.gap < 0.0;
+        memory.depth = view.behind ? std::nextafter(static_cast<float>(-view.gap), INFINITY) : 0.0F;
+        if (view.side != 0) memory.side = static_cast<std::int8_t>(view.behind ? -view.side : view.side);
     }
+}
+
+double SideWatch::deepest() const {
+    double depth = 0.0;
+    for (const SideMemory& memory : sides_) {
+        if (memory.penetrating) depth = std::max(depth, static_cast<double>(memory.depth));
+    }
+    return depth;
 }
 
 bool SideWatch::in_contact() const {

@@ -29,11 +29,13 @@ struct SideScratch {
     std::vector<ContactSurface> contacts;
 };
 
-/// The sides of all colliders that a newborn particle is on; 0 next to an open rim, where there is none.
+/// The sides of a newborn particle. It has none yet (they are those that it comes from when it meets a surface), unless
+/// it is put exactly on a surface: then it is where the surface's normal points to.
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides);
 
-/// Keeps the sides of one particle. A side is changed by going round an open rim only: a particle that is found on the
-/// other side is behind the surface when its way there meets the collider, or when it was behind it before.
+/// Keeps the sides of one particle. It is behind a surface when its way there meets the collider an odd number of
+/// times; when an even number (it may have gone through an edge, or right through), when its side is another than where
+/// it comes from. Behind it stays until it is seen on its own side again.
 class SideWatch {
 public:
     SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
@@ -52,6 +54,8 @@ public:
     [[nodiscard]] const SideMemory& memory(std::uint32_t collider) const { return sides_[collider]; }
 
 private:
+    [[nodiscard]] double deepest() const;
+    [[nodiscard]] bool is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
     [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
 
     const SignedDistance& distance_;

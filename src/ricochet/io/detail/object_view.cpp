@@ -82,6 +82,25 @@ ObjectView ObjectView::object(std::string_view key) const {
     return {node(key), *spec->content, path_of(key)};
 }
 
+std::vector<ObjectView> ObjectView::objects(std::string_view key) const {
+    std::vector<ObjectView> views;
+    const JsonNode::Array* items = node(key).array();
+    if (items == nullptr) return views;
+    const ObjectSpec& spec = *find_key(*spec_, variant_, key)->content;
+    for (std::size_t i = 0; i < items->size(); ++i) {
+        views.emplace_back((*items)[i], spec, path_of_item(path_of(key), i));
+    }
+    return views;
+}
+
+std::vector<std::uint64_t> ObjectView::whole_numbers(std::string_view key) const {
+    std::vector<std::uint64_t> numbers;
+    const JsonNode::Array* items = node(key).array();
+    if (items == nullptr) return numbers;
+    for (const JsonNode& item : *items) numbers.push_back(item.whole_number().value_or(0));
+    return numbers;
+}
+
 const Place& ObjectView::place_of(std::string_view key) const {
     const JsonNode* found = node_->find(key);
     return found == nullptr ? node_->place : found->place;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/emitter.h"
@@ -32,6 +33,9 @@ public:
     /// The value itself; null where it is absent.
     [[nodiscard]] const JsonNode& node(std::string_view key) const;
     [[nodiscard]] ObjectView object(std::string_view key) const;
+    /// The objects of a list.
+    [[nodiscard]] std::vector<ObjectView> objects(std::string_view key) const;
+    [[nodiscard]] std::vector<std::uint64_t> whole_numbers(std::string_view key) const;
 
     /// Name of the variant; empty where it was refused.
     [[nodiscard]] std::string_view type() const { return variant_ == nullptr ? "" : variant_->name; }

@@ -43,13 +43,6 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     }
 }
 
-void build_forces(const SceneContext& context, SimulationSetup& setup) {
-    for (const ObjectView& view : context.objects("forces")) {
-        if (view.type() == "gravity") setup.forces.push_back(make_gravity(view.vector("acceleration")));
-        if (view.type() == "drag") setup.forces.push_back(make_linear_drag(view.number("coefficient")));
-    }
-}
-
 void build_bounds(const SceneContext& context, SimulationSetup& setup) {
     if (!context.root().has("bounds")) return;
     const ObjectView view = context.root().object("bounds");
@@ -94,6 +87,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_colliders(context, scene.setup);
     build_emitters(context, scene.setup);
     build_particles(context, scene.setup);
+    warn_of_forces_without_radius(context, scene.setup);
     const ObjectView output = context.root().object("output");
     scene.output = {output.text("format"), output.whole_number("every")};
     scene.setup.options.record_contacts = output.boolean("contacts");

@@ -127,6 +127,17 @@ Problem pair_problem(const JsonNode& node, const KeySpec& key) {
                        expectation(key));
 }
 
+Problem integers_problem(const JsonNode& node, const KeySpec& key) {
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->empty()) return found_expected(node, key);
+    for (const JsonNode& item : *items) {
+        if (!item.whole_number()) {
+            return fmt::format("found {} in the list, expected {}", described(item), expectation(key));
+        }
+    }
+    return std::nullopt;
+}
+
 Problem text_problem(const JsonNode& node, const KeySpec& key) {
     const std::string* text = node.text();
     if (text == nullptr || text->empty()) return found_expected(node, key);
@@ -151,6 +162,8 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
             return text_problem(node, key);
         case ValueType::choice:
             return choice_problem(node, key);
+        case ValueType::integers:
+            return integers_problem(node, key);
         case ValueType::vector:
             return vector_problem(node, key);
         case ValueType::scale:
@@ -158,6 +171,7 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
         case ValueType::pair:
             return pair_problem(node, key);
         case ValueType::object:
+        case ValueType::named_object:
         case ValueType::list:
         case ValueType::list_or_file:
         case ValueType::table:
@@ -206,6 +220,9 @@ private:
             case ValueType::object:
                 check_object(node, *key.content, path);
                 return;
+            case ValueType::named_object:
+                check_named_object(node, key, path);
+                return;
             case ValueType::list:
                 check_list(node, key, path);
                 return;
@@ -222,6 +239,14 @@ private:
                 return;
             default:
                 if (const Problem problem = plain_problem(node, key)) refuse(node, path, *problem);
+        }
+    }
+
+    void check_named_object(JsonNode& node, const KeySpec& key, const std::string& path) {
+        if (node.object() != nullptr) {
+            check_object(node, *key.content, path);
+        } else if (const Problem problem = text_problem(node, key)) {
+            refuse(node, path, *problem);
         }
     }
 

@@ -12,16 +12,7 @@ namespace ricochet::detail {
 SceneContext::SceneContext(const JsonNode& root, std::filesystem::path folder, Diagnostics& diagnostics)
     : root_(root, scene_spec(), ""), folder_(std::move(folder)), diagnostics_(diagnostics) {}
 
-std::vector<ObjectView> SceneContext::objects(std::string_view list) const {
-    std::vector<ObjectView> views;
-    const JsonNode::Array* items = root_.node(list).array();
-    if (items == nullptr) return views;
-    const ObjectSpec& spec = *find_key(scene_spec(), nullptr, list)->content;
-    for (std::size_t i = 0; i < items->size(); ++i) {
-        views.emplace_back((*items)[i], spec, path_of_item(std::string(list), i));
-    }
-    return views;
-}
+std::vector<ObjectView> SceneContext::objects(std::string_view list) const { return root_.objects(list); }
 
 void SceneContext::error(const ObjectView& view, std::string_view key, const std::string& what) const {
     diagnostics_.error(view.place_of(key), view.path_of(key), what);

@@ -56,8 +56,11 @@ private:
                                        const std::vector<std::string_view>& known);
 
 /// The parts of a scene, in the order in which they are built.
+void build_forces(const SceneContext& context, SimulationSetup& setup);
 void build_colliders(SceneContext& context, SimulationSetup& setup);
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 void build_particles(SceneContext& context, SimulationSetup& setup);
+/// Forces that grow with a particle's radius, in a scene of points only.
+void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 
 }  // namespace ricochet::detail

@@ -5,16 +5,12 @@
 #include <algorithm>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/io/detail/force_keys.h"
+#include "ricochet/io/detail/key_ranges.h"
 #include "ricochet/io/detail/suggestion.h"
 
 namespace ricochet::detail {
 namespace {
-
-constexpr Range kPositive{.lower = 0.0, .lower_open = true};
-constexpr Range kNotNegative{.lower = 0.0};
-constexpr Range kCoordinate{.lower = -kLargestCoordinate, .upper = kLargestCoordinate};
-constexpr Range kLength{.lower = 0.0, .upper = kLargestCoordinate, .lower_open = true};
-constexpr Range kCount{.lower = 0.0, .upper = 4294967295.0};
 
 const ObjectSpec& rollback_spec() {
     static const ObjectSpec spec{
@@ -174,30 +170,6 @@ const ObjectSpec& simulation_spec() {
              .without = "its defaults",
              .content = &penalty_spec()},
         }};
-    return spec;
-}
-
-const ObjectSpec& force_spec() {
-    static const ObjectSpec spec{.title = "force",
-                                 .description = "Forces on all particles; they add up.",
-                                 .keys = {},
-                                 .variants = {
-                                     {.name = "gravity",
-                                      .description = "The same acceleration everywhere.",
-                                      .keys = {{.name = "acceleration",
-                                                .type = ValueType::vector,
-                                                .description = "Acceleration.",
-                                                .unit = "m/s^2",
-                                                .range = kCoordinate,
-                                                .required = true}}},
-                                     {.name = "drag",
-                                      .description = "Linear drag F = -c v.",
-                                      .keys = {{.name = "coefficient",
-                                                .description = "The c of F = -c v.",
-                                                .unit = "kg/s",
-                                                .range = kNotNegative,
-                                                .required = true}}},
-                                 }};
     return spec;
 }
 
@@ -631,6 +603,11 @@ std::vector<KeySpec> scene_keys() {
          .description = "Forces on the particles.",
          .fallback = "[]",
          .content = &force_spec()},
+        {.name = "flows",
+         .type = ValueType::table,
+         .description = "Flows by name, for several forces to share.",
+         .fallback = "{}",
+         .content = &flow_spec()},
         {.name = "materials",
          .type = ValueType::table,
          .description = "Materials by name.",
@@ -775,6 +752,8 @@ std::string expectation(const KeySpec& key) {
             return "the path of a file";
         case ValueType::choice:
             return choice_words(key);
+        case ValueType::integers:
+            return "a list of whole numbers, at least one";
         case ValueType::vector:
             return vector_words(key);
         case ValueType::scale:
@@ -783,6 +762,8 @@ std::string expectation(const KeySpec& key) {
             return pair_words(key);
         case ValueType::object:
             return fmt::format("an object {{...}} ({})", key.content->title);
+        case ValueType::named_object:
+            return fmt::format("an object {{...}} ({}), or one of the names in \"{}\"", key.content->title, key.table);
         case ValueType::list:
             return "a list [...] of objects";
         case ValueType::list_or_file:

@@ -20,10 +20,12 @@ enum class ValueType {
     text,          ///< a text that is not empty
     file,          ///< a path, relative to the scene file
     choice,        ///< one of KeySpec::choices
+    integers,      ///< a list of whole numbers >= 0
     vector,        ///< [x, y, z]
     scale,         ///< a number or [x, y, z], no component zero
     pair,          ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
     object,        ///< an object of KeySpec::content
+    named_object,  ///< the same, or the name of one in the table KeySpec::table
     list,          ///< a list of objects of KeySpec::content
     list_or_file,  ///< the same, or {"file": ...}
     table,         ///< an object whose keys are names and whose values are objects of KeySpec::content
@@ -71,6 +73,7 @@ struct KeySpec {
     std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;
+    std::string_view table = {};  ///< of ValueType::named_object: the scene's key with the named objects
 };
 
 /// One value of "type", with the keys that go with it.

@@ -1,0 +1,186 @@
+#include "cli/compare_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/gnuplot.h"
+#include "cli/interrupt.h"
+#include "cli/option_values.h"
+#include "cli/progress_line.h"
+#include "cli/scene_arguments.h"
+#include "ricochet/compare/comparison.h"
+#include "ricochet/compare/comparison_files.h"
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/io/output_directory.h"
+#include "ricochet/io/run_files.h"
+
+namespace ricochet {
+namespace {
+
+using cli::InterruptGuard;
+
+constexpr int kSignalled = 128;  // exit code of a program that a signal ended, plus the signal
+
+// The arguments as they stand on the command line.
+struct CompareArguments {
+    SceneArguments scene;
+    ComparisonRequest request;
+    std::string output;
+    std::string threads;
+    bool quiet = false;
+};
+
+std::string progress_text(const ComparisonProgress& progress) {
+    const std::string kind = progress.repeat == 0 ? "measured" : fmt::format("timed, round {}", progress.repeat);
+    return fmt::format("run {} of {}  {} at {:.4g} s ({})  step {} of {}", progress.run, progress.runs,
+                       progress.response, progress.time_step, kind, progress.step, progress.steps);
+}
+
+// Finds out whether the scene can run at all before anything in the output folder is touched.
+void check_setup(const SceneArguments& arguments) {
+    SceneDescription scene = read_scene(arguments.file, arguments.overrides);
+    try {
+        const Simulation simulation(std::move(scene.setup));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    }
+}
+
+std::optional<Comparison> compare(SceneDescription& scene, const ComparisonPlan& plan, bool quiet) {
+    cli::ProgressLine line(quiet);
+    try {
+        return compare_responses(std::move(scene.setup), plan, [&](const ComparisonProgress& progress) {
+            if (line.due()) line.show(progress_text(progress));
+            return InterruptGuard::signal() == 0;
+        });
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    }
+}
+
+ComparisonSource source_of(const SceneDescription& scene, const CompareArguments& arguments) {
+    ComparisonSource source;
+    source.version = RICOCHET_VERSION;
+    source.scene = scene.file;
+    source.overrides = arguments.scene.overrides;
+    source.threads = thread_count();
+    source.warnings = scene.warnings;
+    return source;
+}
+
+void write_numbers(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonSource& source) {
+    write_file(folder / kComparisonJsonFile, comparison_json(comparison, source));
+    write_file(folder / kComparisonTableFile, comparison_csv(comparison));
+    write_file(folder / kComparisonPointsFile, comparison_points(comparison));
+    write_file(folder / kComparisonEnergyFile, comparison_energies(comparison));
+    write_file(folder / kComparisonScriptFile, comparison_script(comparison));
+}
+
+// Returns why there are no pictures; empty when there are.
+std::string draw(const std::filesystem::path& folder) {
+    const std::vector<std::string> pictures(kComparisonPictures.begin(), kComparisonPictures.end());
+    return cli::draw_with_gnuplot(folder, kComparisonScriptFile, pictures,
+                                  [] { return InterruptGuard::signal() != 0; });
+}
+
+void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonSource& source,
+                  const std::string& failure) {
+    std::vector<std::string> pictures;
+    std::string remark;
+    if (failure.empty()) {
+        pictures.assign(kComparisonPictures.begin(), kComparisonPictures.end());
+    } else {
+        remark = fmt::format("The pictures are not drawn: {}. `gnuplot {}` in this folder draws them.", failure,
+                             kComparisonScriptFile);
+    }
+    write_file(folder / kComparisonMarkdownFile, comparison_markdown(comparison, source, pictures, remark));
+    write_file(folder / kComparisonHtmlFile, comparison_html(comparison, source, pictures, remark));
+}
+
+void print_table(const std::vector<std::vector<std::string>>& table) {
+    std::vector<std::size_t> widths(table.front().size(), 0);
+    for (const auto& row : table) {
+        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+    }
+    for (const auto& row : table) {
+        std::string line = fmt::format("  {:<{}}", row.front(), widths.front());
+        for (std::size_t k = 1; k < row.size(); ++k) line += fmt::format("  {:>{}}", row[k], widths[k]);
+        fmt::print("{}\n", line);
+    }
+}
+
+void print_report(const Comparison& comparison, const CompareArguments& arguments, const std::string& failure) {
+    fmt::print("{}: {} particles, {:.6g} s; reference exact at {:.4g} s\n", arguments.scene.file,
+               comparison.reference.figures.statistics.emitted, comparison.options.duration,
+               comparison.plan.reference_step);
+    print_table(comparison_table(comparison));
+    for (const ComparisonRow* row : comparison.listed_rows()) {
+        for (const std::string& warning : row->figures.warnings) {
+            fmt::print("  note: {} at {:.4g} s: {}\n", name_of(row->response), row->time_step, warning);
+        }
+    }
+    if (!failure.empty())
+        fmt::print("  note: no pictures: {}; the script {} is there\n", failure, kComparisonScriptFile);
+    fmt::print("  report in {}\n", (std::filesystem::path(arguments.output) / kComparisonHtmlFile).string());
+}
+
+int run_compare(const CompareArguments& arguments) {
+    const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
+    SceneDescription scene = load_scene(arguments.scene);
+    const ComparisonPlan plan = make_plan(arguments.request, scene.setup.options);
+    check_setup(arguments.scene);
+    const InterruptGuard guard;
+    const OutputDirectory folder(arguments.output);
+    const ComparisonSource source = source_of(scene, arguments);
+    const std::optional<Comparison> comparison = compare(scene, plan, arguments.quiet);
+    if (!comparison) return kSignalled + InterruptGuard::signal();
+    write_numbers(folder.path(), *comparison, source);
+    const std::string failure = draw(folder.path());
+    if (InterruptGuard::signal() != 0) return kSignalled + InterruptGuard::signal();
+    write_report(folder.path(), *comparison, source, failure);
+    if (!arguments.quiet) print_report(*comparison, arguments, failure);
+    return 0;
+}
+
+void add_options(CLI::App& command, CompareArguments& a) {
+    add_scene_arguments(command, a.scene);
+    command.add_option("--output", a.output, "Folder for the report: new, empty, or an earlier run's")
+        ->type_name("DIR")
+        ->required();
+    command
+        .add_option("--responses", a.request.responses,
+                    "Names with commas: exact, rollback, rollback:global, project, penalty (default: the four)")
+        ->type_name("LIST");
+    command
+        .add_option("--time-steps", a.request.time_steps,
+                    "Seconds with commas (default: the scene's step times 2, 1, 1/2 and 1/4)")
+        ->type_name("LIST");
+    command
+        .add_option("--reference-step", a.request.reference_step,
+                    "Time step of the exact run that all are measured against (default: half of the smallest)")
+        ->type_name("S");
+    command.add_option("--repeats", a.request.repeats, "Timed runs of each row (default: 3)")->type_name("N");
+    command.add_option("--threads", a.threads, "Worker threads (default: all processors)")->type_name("N");
+    command.add_flag("--quiet", a.quiet, "No progress, no table");
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<CompareArguments>();
+    CLI::App* const command =
+        app.add_subcommand("compare", "One scene with several answers to collisions: cost and errors");
+    add_options(*command, *arguments);
+    command->callback([arguments, &exit_code] { exit_code = run_compare(*arguments); });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,133 @@
+#include "cli/gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <thread>
+
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
+
+namespace ricochet::cli {
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(20);  // between two looks whether gnuplot has ended
+
+// Removes the unfinished pictures that are left when it goes.
+class UnfinishedPictures {
+public:
+    UnfinishedPictures(std::filesystem::path folder, const std::vector<std::string>& names)
+        : folder_(std::move(folder)), names_(names), ending_(fmt::format(".{}-0.partial", ::getpid())) {}
+    ~UnfinishedPictures() {
+        for (const std::string& name : names_) {
+            std::error_code ignored;
+            std::filesystem::remove(folder_ / (name + ending_), ignored);
+        }
+    }
+    UnfinishedPictures(const UnfinishedPictures&) = delete;
+    UnfinishedPictures& operator=(const UnfinishedPictures&) = delete;
+
+    [[nodiscard]] const std::string& ending() const { return ending_; }
+
+    // Gives them their names; false when one is missing or empty.
+    [[nodiscard]] bool finish() const {
+        for (const std::string& name : names_) {
+            std::error_code error;
+            if (std::filesystem::file_size(folder_ / (name + ending_), error) == 0 || error) return false;
+        }
+        for (const std::string& name : names_) {
+            std::error_code error;
+            std::filesystem::rename(folder_ / (name + ending_), folder_ / name, error);
+            if (error) return false;
+        }
+        return true;
+    }
+
+private:
+    std::filesystem::path folder_;
+    const std::vector<std::string>& names_;
+    std::string ending_;
+};
+
+// Starts the program in the folder; its messages go to the file. Returns 0 or the system's error.
+int start(pid_t& process, const std::filesystem::path& folder, std::vector<std::string> arguments,
+          std::FILE* messages) {
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ::fileno(messages), STDERR_FILENO);
+    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // Ctrl-C is for us; we end gnuplot
+    const int error = ::posix_spawnp(&process, "gnuplot", &actions, &attributes, pointers.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+// The exit status; -1 when it was told to stop.
+int wait_for(pid_t process, const std::function<bool()>& should_stop) {
+    int status = 0;
+    while (true) {
+        const pid_t ended = ::waitpid(process, &status, WNOHANG);
+        if (ended == process) return status;
+        if (ended < 0 && errno != EINTR) return -1;
+        if (should_stop()) {
+            (void)::kill(process, SIGKILL);
+            (void)::waitpid(process, &status, 0);
+            return -1;
+        }
+        std::this_thread::sleep_for(kPause);
+    }
+}
+
+// The first line that says something besides where in the script it happened.
+std::string first_words(std::FILE* messages) {
+    std::array<char, 400> line{};
+    std::rewind(messages);
+    std::string first;
+    while (std::fgets(line.data(), static_cast<int>(line.size()), messages) != nullptr) {
+        std::string text = line.data();
+        while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+        if (text.find("line ") != std::string::npos && text.find(": ") != std::string::npos) return text;
+        if (first.empty()) first = text;
+    }
+    return first.empty() ? "it said nothing" : first;
+}
+
+}  // namespace
+
+std::string draw_with_gnuplot(const std::filesystem::path& folder, const std::string& script,
+                              const std::vector<std::string>& pictures, const std::function<bool()>& should_stop) {
+    std::FILE* const messages = std::tmpfile();
+    if (messages == nullptr) return fmt::format("no temporary file for gnuplot ({})", std::strerror(errno));
+    const UnfinishedPictures unfinished(folder, pictures);
+    pid_t process = -1;
+    std::string failure;
+    const std::string set_ending = fmt::format("ending = '{}'", unfinished.ending());
+    if (const int error = start(process, folder, {"gnuplot", "-e", set_ending, script}, messages); error != 0) {
+        failure = fmt::format("gnuplot cannot be started ({})", std::strerror(error));
+    } else if (wait_for(process, should_stop) != 0) {
+        failure = should_stop() ? "gnuplot was stopped" : fmt::format("gnuplot failed: {}", first_words(messages));
+    } else if (!unfinished.finish()) {
+        failure = "gnuplot has not written all pictures";
+    }
+    (void)std::fclose(messages);
+    return failure;
+}
+
+}  // namespace ricochet::cli

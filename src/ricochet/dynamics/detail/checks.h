@@ -1,0 +1,19 @@
+/// \file
+/// Arguments of forces and flows: each check throws InputError with one line.
+#pragma once
+
+#include <string_view>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet::detail {
+
+/// what: `drag: the coefficient`; unit: empty for pure numbers.
+void require_finite(const Vec3& value, std::string_view what, std::string_view unit);
+void require_finite(double value, std::string_view what, std::string_view unit);
+void require_positive(double value, std::string_view what, std::string_view unit);
+void require_not_negative(double value, std::string_view what, std::string_view unit);
+/// The unit vector along a direction of any length but zero.
+[[nodiscard]] Vec3 unit_direction(const Vec3& direction, std::string_view what);
+
+}  // namespace ricochet::detail

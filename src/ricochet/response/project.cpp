@@ -17,7 +17,6 @@ public:
     Projector(const ResponseRules& rules, const SignedDistance& distance, MovingParticle& particle,
               MoveScratch& scratch, SideScratch& lists)
         : rules_(rules),
-          particle_(particle),
           state_(particle.state),
           scratch_(scratch),
           impact_(rules, particle, scratch, outcome_),
@@ -115,7 +114,6 @@ private:
     }
 
     const ResponseRules& rules_;
-    MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
     MoveOutcome outcome_;

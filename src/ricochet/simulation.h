@@ -25,7 +25,7 @@ namespace ricochet {
 struct SimulationOptions {
     double time_step = 1.0 / 60.0;  ///< s, > 0
     double duration = 1.0;          ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
-    IntegratorKind integrator = IntegratorKind::ballistic;
+    Integrator integrator = IntegratorKind::ballistic;
     std::uint64_t seed = 0;
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;

@@ -27,7 +27,7 @@ struct EndState {
 };
 
 /// A point that bounces inside a ball of radius 1, with restitution 0.95.
-EndState run(IntegratorKind integrator, int steps) {
+EndState run(const Integrator& integrator, int steps) {
     SimulationSetup setup;
     setup.options.integrator = integrator;
     setup.options.duration = kDuration;
@@ -86,6 +86,27 @@ TEST_F(OrderWithBounces, TheCaseBouncesSeveralTimes) { EXPECT_GE(reference().con
 
 TEST_F(OrderWithBounces, SymplecticEulerKeepsOrderOne) {
     EXPECT_NEAR(measured_order(IntegratorKind::symplectic_euler, geometric(400, 1.13, 40), reference()), 1.0, 0.1);
+}
+
+TEST_F(OrderWithBounces, ForwardEulerKeepsOrderOne) {
+    EXPECT_NEAR(measured_order(IntegratorKind::forward_euler, geometric(400, 1.13, 40), reference()), 1.0, 0.1);
+}
+
+TEST_F(OrderWithBounces, VelocityVerletKeepsOrderTwo) {
+    EXPECT_NEAR(measured_order(IntegratorKind::velocity_verlet, geometric(100, 1.15, 24), reference()), 2.0, 0.1);
+}
+
+// From one step for the whole run down; the error is that of some sub-steps, times what bounces make of it.
+TEST_F(OrderWithBounces, DormandPrinceMeetsItsTolerance) {
+    for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
+        for (const int steps : {1, 10, 100}) {
+            const EndState end = run({IntegratorKind::dormand_prince, {tolerance, tolerance}}, steps);
+            EXPECT_EQ(end.contacts, reference().contacts);
+            const double error =
+                length(end.position - reference().position) + length(end.velocity - reference().velocity);
+            EXPECT_LT(error, 300.0 * tolerance) << steps << " steps, tolerance " << tolerance;
+        }
+    }
 }
 
 TEST_F(OrderWithBounces, MidpointKeepsOrderTwo) {

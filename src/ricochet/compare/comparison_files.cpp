@@ -54,7 +54,7 @@ Json settings_json(const Comparison& comparison, const ComparisonSource& source)
     json["overrides"] = source.overrides;
     json["threads"] = source.threads;
     json["seed"] = options.seed;
-    json["integrator"] = name_of(options.integrator);
+    json["integrator"] = name_of(options.integrator.kind);
     json["duration"] = options.duration;
     json["scene_time_step"] = options.time_step;
     json["resting_speed"] = options.resting_speed;

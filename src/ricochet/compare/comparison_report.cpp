@@ -59,7 +59,7 @@ std::vector<std::string> what_was_run(const Comparison& comparison, const Compar
     std::vector<std::string> lines{
         fmt::format("scene: {}", source.scene),
         fmt::format("{:.6g} s, integrator {}, seed {}, step of the scene {:.6g} s", options.duration,
-                    name_of(options.integrator), options.seed, options.time_step),
+                    name_of(options.integrator.kind), options.seed, options.time_step),
         fmt::format("reference: exact with a step of {:.6g} s; {} particles, {} alive at the end, {} contacts",
                     comparison.plan.reference_step, comparison.reference.figures.statistics.emitted,
                     comparison.reference.figures.alive, comparison.reference.figures.statistics.contacts),

@@ -4,13 +4,18 @@
 #include <array>
 #include <utility>
 
+#include "ricochet/dynamics/dormand_prince.h"
+
 namespace ricochet {
 namespace {
 
-constexpr std::array<std::pair<IntegratorKind, std::string_view>, 4> kNames{{
+constexpr std::array<std::pair<IntegratorKind, std::string_view>, 7> kNames{{
+    {IntegratorKind::forward_euler, "forward_euler"},
     {IntegratorKind::symplectic_euler, "symplectic_euler"},
     {IntegratorKind::midpoint, "midpoint"},
+    {IntegratorKind::velocity_verlet, "velocity_verlet"},
     {IntegratorKind::rk4, "rk4"},
+    {IntegratorKind::dormand_prince, "dormand_prince"},
     {IntegratorKind::ballistic, "ballistic"},
 }};
 
@@ -21,6 +26,13 @@ ForceInput moved(const ForceInput& state, const Vec3& position, const Vec3& velo
     result.time = time;
     return result;
 }
+
+/// Halvings of an adaptive step; a state that is still wrong by more is taken as it is, and frozen if it is not finite.
+constexpr int kMostHalvings = 48;
+
+/// An error, relative to the tolerance, after which twice the step will do: the fifth order makes it 32 times as large,
+/// the path's fourth 16 times.
+constexpr double kErrorToDouble = 1.0 / 64.0;
 
 PhaseState midpoint_step(const ForceField& forces, const ForceInput& state, double h) {
     const Vec3 a0 = forces.acceleration(state);
@@ -44,14 +56,61 @@ PhaseState rk4_step(const ForceField& forces, const ForceInput& state, double h)
     return {x + (h / 6.0) * (v + 2.0 * (v2 + v3) + v4), v + (h / 6.0) * (a1 + 2.0 * (a2 + a3) + a4)};
 }
 
+PhaseState verlet_step(const ForceField& forces, const ForceInput& state, double h) {
+    const Vec3 a0 = forces.acceleration(state);
+    const Vec3 x = state.position + h * state.velocity + (0.5 * h * h) * a0;
+    const Vec3 a1 = forces.acceleration(moved(state, x, state.velocity + h * a0, state.time + h));
+    return {x, state.velocity + (0.5 * h) * (a0 + a1)};
+}
+
 PhaseState one_step(IntegratorKind kind, const ForceField& forces, const ForceInput& state, double h) {
-    return kind == IntegratorKind::midpoint ? midpoint_step(forces, state, h) : rk4_step(forces, state, h);
+    switch (kind) {
+        case IntegratorKind::midpoint:
+            return midpoint_step(forces, state, h);
+        case IntegratorKind::velocity_verlet:
+            return verlet_step(forces, state, h);
+        case IntegratorKind::dormand_prince:
+            return dormand_prince_step(forces, state, h).end;
+        default:
+            return rk4_step(forces, state, h);
+    }
 }
 
 Flight one_step_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state, double h) {
     const PhaseState end = one_step(kind, forces, state, h);
-    return {hermite_path(state.position, state.velocity, end.position, end.velocity, h), forces.acceleration(state),
-            0.0, state, end.velocity};
+    const Path path = hermite_path(state.position, state.velocity, end.position, end.velocity, h);
+    return {path, forces.acceleration(state), 0.0, state, end.velocity, 0.0, path.degree >= 3};
+}
+
+Flight straight_flight(const ForceField& forces, const ForceInput& state, double h) {
+    const Vec3 a = forces.acceleration(state);
+    return {line_path(state.position, state.velocity, h), a, 0.0, state, state.velocity + h * a, 0.0, true};
+}
+
+Flight verlet_flight(const ForceField& forces, const ForceInput& state, double h) {
+    const Vec3 a = forces.acceleration(state);
+    const Vec3 end_velocity = verlet_step(forces, state, h).velocity;
+    return {parabola_path(state.position, state.velocity, a, h), a, 0.0, state, end_velocity, 0.0, true};
+}
+
+/// Tries `first` seconds, then half of it, until the errors are small enough. Halving, not a formula of the error: its
+/// powers would differ between systems in their last bits, and so would the result.
+Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state, double duration,
+                       double first) {
+    double h = std::min(first, duration);
+    double next = h;
+    EmbeddedStep step;
+    for (int halvings = 0;; ++halvings, h *= 0.5) {
+        step = dormand_prince_step(forces, state, h);
+        const double error = std::max({step.position_error / integrator.tolerance.position,
+                                       step.path_error / integrator.tolerance.position,
+                                       step.velocity_error / integrator.tolerance.velocity});
+        next = error < kErrorToDouble ? 2.0 * h : h;
+        if (error <= 1.0 || halvings == kMostHalvings) break;
+    }
+    if (h >= duration) next = first;  // the step ended here, not the method
+    const Path path = hermite_path(state.position, state.velocity, step.end.position, step.end.velocity, h);
+    return {path, step.acceleration, 0.0, state, step.end.velocity, next, path.degree >= 3};
 }
 
 Flight kicked_flight(const ForceField& forces, const ForceInput& state, double h) {
@@ -84,37 +143,51 @@ std::vector<std::string_view> integrator_names() {
     return names;
 }
 
-Flight begin_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state, double duration) {
-    switch (kind) {
+Flight begin_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state, double duration) {
+    switch (integrator.kind) {
+        case IntegratorKind::forward_euler:
+            return straight_flight(forces, state, duration);
         case IntegratorKind::symplectic_euler:
             return kicked_flight(forces, state, duration);
+        case IntegratorKind::velocity_verlet:
+            if (!forces.is_uniform()) return verlet_flight(forces, state, duration);
+            break;
         case IntegratorKind::midpoint:
         case IntegratorKind::rk4:
-            if (!forces.is_uniform()) return one_step_flight(kind, forces, state, duration);
-            break;  // the exact flow is a parabola, and both methods reproduce it
+            if (!forces.is_uniform()) return one_step_flight(integrator.kind, forces, state, duration);
+            break;  // the exact flow is a parabola, and all these methods reproduce it
+        case IntegratorKind::dormand_prince:
+            if (!forces.is_uniform()) return adaptive_flight(integrator, forces, state, duration, duration);
+            break;
         case IntegratorKind::ballistic:
             break;
     }
     return parabolic_flight(forces, state, duration);
 }
 
-Flight resume_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state, const Flight& before,
-                     double duration) {
-    if (kind != IntegratorKind::symplectic_euler) return begin_flight(kind, forces, state, duration);
-    return {line_path(state.position, state.velocity, duration), before.acceleration, before.kick_duration, state,
-            state.velocity};
+Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
+                     const Flight& before, double duration) {
+    if (integrator.kind == IntegratorKind::symplectic_euler) {
+        return {line_path(state.position, state.velocity, duration), before.acceleration, before.kick_duration, state,
+                state.velocity};
+    }
+    if (integrator.kind == IntegratorKind::dormand_prince && before.next_duration > 0.0) {
+        return adaptive_flight(integrator, forces, state, duration, before.next_duration);
+    }
+    return begin_flight(integrator, forces, state, duration);
 }
 
-Vec3 velocity_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s) {
-    if (s >= flight.path.duration) return flight.end_velocity;
-    if (flight.path.degree < 3) return flight.path.velocity(s);
-    return one_step(kind, forces, flight.start, s).velocity;
-}
-
-PhaseState state_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s) {
+PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s) {
     if (s >= flight.path.duration) return {flight.path.end, flight.end_velocity};
-    if (flight.path.degree < 3) return {flight.path.position(s), flight.path.velocity(s)};
-    return one_step(kind, forces, flight.start, s);
+    if (flight.path.degree >= 3) return one_step(integrator.kind, forces, flight.start, s);
+    return {flight.path.position(s), velocity_at(integrator, forces, flight, s)};
+}
+
+Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s) {
+    if (s >= flight.path.duration) return flight.end_velocity;
+    if (!flight.steps_again) return flight.path.velocity(s);
+    if (integrator.kind == IntegratorKind::forward_euler) return flight.start.velocity + s * flight.acceleration;
+    return one_step(integrator.kind, forces, flight.start, s).velocity;
 }
 
 }  // namespace ricochet

@@ -13,10 +13,32 @@ namespace ricochet {
 
 /// Methods a scene can name.
 enum class IntegratorKind {
+    forward_euler,     ///< order 1: straight lines, the velocity changes afterwards
     symplectic_euler,  ///< order 1: kick, then drift in straight lines; a bounce turns the drift
     midpoint,          ///< order 2: explicit midpoint (Runge 1895)
+    velocity_verlet,   ///< order 2, symplectic for forces of position: parabola, mean of the forces at both ends
     rk4,               ///< order 4: the classical Runge-Kutta method (Kutta 1901)
+    dormand_prince,    ///< order 5(4), adaptive: each particle chooses its sub-steps by its own error
     ballistic,         ///< acceleration held over the step: a parabola, exact for constant acceleration
+};
+
+/// What one adaptive sub-step may be wrong by.
+struct ErrorTolerance {
+    double position = 1e-6;  ///< m, > 0; also for the path between a sub-step's ends
+    double velocity = 1e-6;  ///< m/s, > 0
+
+    friend bool operator==(const ErrorTolerance&, const ErrorTolerance&) = default;
+};
+
+/// A method with its settings.
+struct Integrator {
+    IntegratorKind kind = IntegratorKind::ballistic;
+    ErrorTolerance tolerance = {};  ///< of dormand_prince
+
+    Integrator() = default;
+    Integrator(IntegratorKind k) : kind(k) {}  // NOLINT(google-explicit-constructor): most methods have no settings
+    Integrator(IntegratorKind k, const ErrorTolerance& t) : kind(k), tolerance(t) {}
+    friend bool operator==(const Integrator&, const Integrator&) = default;
 };
 
 [[nodiscard]] std::optional<IntegratorKind> integrator_from_name(std::string_view name);
@@ -38,9 +60,20 @@ struct Flight {
         0.0;             ///< s of force that the velocity along the path already contains (0: none, it builds up)
     ForceInput start{};  ///< the state that the flight starts from; one-step methods step from it again
     Vec3 end_velocity;   ///< velocity at the end of the path, m/s
+    double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
+    bool steps_again = false;    ///< velocities on the way are those of a shorter step, not the path's derivative
 };
 
-/// The flight that starts at the beginning of a step (or at birth), over `duration` seconds.
+/// The flight that starts at the beginning of a step (or at birth), over `duration` seconds; an adaptive method may end
+/// it earlier, at the end of its first sub-step.
+///
+/// forward_euler goes straight on with the velocity that it has. velocity_verlet (L. Verlet 1967; velocity form: W. C.
+/// Swope et al., J. Chem. Phys. 76, 1982) flies the parabola of the first force; forces that depend on the velocity see
+/// the one predicted with it.
+///
+/// dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980) halves its step until the embedded
+/// error estimates of position and velocity and the estimated distance between trajectory and path, h^4 / 384 times the
+/// fourth derivative, are within the tolerance.
 ///
 /// symplectic_euler is a splitting: one kick with the whole step's force, then force-free drift; an impact turns the
 /// drift and the forces do not act again in that step. Kick and drift are each exact flows (with elastic walls the
@@ -54,17 +87,18 @@ struct Flight {
 /// error of fourth order in the duration is that of the impact's time (E. Hairer, S. P. Norsett, G. Wanner, "Solving
 /// Ordinary Differential Equations I", section II.6, dense output). Where the acceleration is uniform the path is the
 /// exact parabola.
-[[nodiscard]] Flight begin_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state,
+[[nodiscard]] Flight begin_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                                   double duration);
 /// The flight that goes on after an impact, with the reflected velocity in `state`.
-[[nodiscard]] Flight resume_flight(IntegratorKind kind, const ForceField& forces, const ForceInput& state,
+[[nodiscard]] Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                                    const Flight& before, double duration);
-/// Velocity at flight time s: what is reflected at an impact and stored at the end. For midpoint and rk4 it is that of
-/// a step of length s from the flight's start: the Hermite path's own derivative would lose an order.
-[[nodiscard]] Vec3 velocity_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s);
+/// Velocity at flight time s: what is reflected at an impact and stored at the end. It is that of a step of length s
+/// from the flight's start: the Hermite path's own derivative would lose an order.
+[[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
-/// Position and velocity at flight time s: midpoint and rk4 step from the flight's start again, the others are on the
-/// flight's path.
-[[nodiscard]] PhaseState state_at(IntegratorKind kind, const ForceField& forces, const Flight& flight, double s);
+/// Position and velocity at flight time s: midpoint, rk4 and dormand_prince step from the flight's start again, the
+/// others are on the flight's path.
+[[nodiscard]] PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight,
+                                  double s);
 
 }  // namespace ricochet

@@ -21,7 +21,7 @@ void ExactResponse::add_weight(const MovingParticle& particle, double duration, 
 
 /// The loop that moves one particle: fly until something is in the way, answer, go on with the time that is left.
 MoveOutcome Mover::run() {
-    const IntegratorKind integrator = rules_.settings.integrator;
+    const Integrator& integrator = rules_.settings.integrator;
     std::optional<Contact> contact = go_on_in_contact();
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {

@@ -111,19 +111,23 @@ bool PenaltyMover::substep(double h) {
 }
 
 std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
-    switch (rules_.settings.integrator) {
+    switch (rules_.settings.integrator.kind) {
         case IntegratorKind::ballistic:
+        case IntegratorKind::velocity_verlet:
             return verlet(now, h);
         case IntegratorKind::midpoint:
             return midpoint(now, h);
         case IntegratorKind::rk4:
+        case IntegratorKind::dormand_prince:  // refused by make_response()
             return rk4(now, h);
+        case IntegratorKind::forward_euler:
         case IntegratorKind::symplectic_euler:
             break;
     }
     const ContactPush k = push_at(now, state_.time, seen_, h);
     const Motion motion{now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration};
-    return BodyState{now.position + h * motion.velocity, motion};
+    const bool drifts_first = rules_.settings.integrator.kind == IntegratorKind::forward_euler;
+    return BodyState{now.position + h * (drifts_first ? now.motion.velocity : motion.velocity), motion};
 }
 
 /// Velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982); forces that depend on

@@ -28,20 +28,37 @@ public:
     }
 
     MoveOutcome run(double duration) {
-        flight_ = begin_flight(rules_.settings.integrator, rules_.forces, state_, duration);
-        if (!can_be_followed(flight_.path)) {
+        pull_ = rules_.forces.acceleration(state_);
+        if (!fly(duration)) {
             outcome_.frozen = true;
             return outcome_;
         }
-        state_.velocity = flight_.end_velocity;
-        state_.time += duration;
-        state_.position = put_back(flush_tiny(flight_.path.end));
+        state_.position = put_back(flush_tiny(state_.position));
         if (scratch_.record_legs) scratch_.legs.push_back({from_, state_.position, state_.time - duration});
         if (!contacts_.empty()) answer(duration);
         return outcome_;
     }
 
 private:
+    /// The whole step, in as many flights as the method cuts it into. False when the state cannot be followed.
+    bool fly(double duration) {
+        const double end = state_.time + duration;
+        Flight flight;
+        ForceInput next = state_;
+        for (double left = duration; left > 0.0; left -= flight.path.duration) {
+            const bool first = flight.path.duration == 0.0;
+            flight = first ? begin_flight(rules_.settings.integrator, rules_.forces, next, left)
+                           : resume_flight(rules_.settings.integrator, rules_.forces, next, flight, left);
+            if (!can_be_followed(flight.path)) return false;
+            next.position = flight.path.end;
+            next.velocity = flight.end_velocity;
+            next.time += flight.path.duration;
+        }
+        state_ = next;
+        state_.time = end;
+        return true;
+    }
+
     [[nodiscard]] double offset() const {
         return std::max(rules_.settings.project.offset, parking_gap(state_.position));
     }
@@ -89,7 +106,7 @@ private:
             const double towards = -dot(state_.velocity, contact.normal);
             if (towards <= 0.0) return true;
             const Material& material = impact_.material_of(contact.surface);
-            const double pressed = std::max(0.0, -dot(flight_.acceleration, contact.normal)) * duration;
+            const double pressed = std::max(0.0, -dot(pull_, contact.normal)) * duration;
             const double approach = std::max(0.0, towards - pressed);
             return pressed > 0.0 && material.can_hold(rules_.settings.resting_speed) &&
                    material.restitution_at(approach) * approach < rules_.settings.resting_speed;
@@ -103,7 +120,7 @@ private:
     ImpactAnswer impact_;
     SideWatch watch_;
     Vec3 from_;
-    Flight flight_;
+    Vec3 pull_;  // the forces' acceleration at the start
     std::vector<Proximity>& seen_;
     std::vector<ContactSurface>& contacts_;
 };

@@ -40,6 +40,21 @@ void check(const ResponseSettings& settings) {
     if (penalty.substeps == 0) throw InputError("penalty.substeps: found 0, expected at least 1");
 }
 
+/// What steps together, or in sub-steps of its own, cannot let each particle choose its steps.
+void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
+    require_positive(settings.integrator.tolerance.position, "tolerance.position", "m");
+    require_positive(settings.integrator.tolerance.velocity, "tolerance.velocity", "m/s");
+    const bool together = kind == ResponseKind::rollback && settings.rollback.global;
+    if (settings.integrator.kind != IntegratorKind::dormand_prince) return;
+    if (kind != ResponseKind::penalty && !together) return;
+    throw InputError(
+        fmt::format("integrator: found dormand_prince, whose particles choose their own steps, with {}; "
+                    "expected a method of fixed steps, for example rk4",
+                    together ? "rollback.global, where all step together"
+                             : "the penalty response, which "
+                               "steps in equal sub-steps"));
+}
+
 }  // namespace
 
 std::optional<ResponseKind> response_from_name(std::string_view name) {
@@ -64,6 +79,7 @@ void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides
 
 std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules) {
     check(rules.settings);
+    check_integrator(kind, rules.settings);
     switch (kind) {
         case ResponseKind::rollback:
             return std::make_unique<RollbackResponse>(rules);

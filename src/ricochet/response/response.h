@@ -54,7 +54,7 @@ struct PenaltySettings {
 
 /// The rules of a run that a response needs.
 struct ResponseSettings {
-    IntegratorKind integrator = IntegratorKind::ballistic;
+    Integrator integrator = IntegratorKind::ballistic;
     double resting_speed = 1e-3;  ///< m/s
     std::uint32_t bounce_budget = 1000;
     std::uint64_t seed = 0;

@@ -68,9 +68,11 @@ bool RollbackMover::begin(double duration) {
 }
 
 Flight RollbackMover::flight_for(double duration) const {
-    const IntegratorKind kind = rules_.settings.integrator;
-    if (kick_ && trial_ == Trial::same_flight) return resume_flight(kind, rules_.forces, state_, *kick_, duration);
-    return begin_flight(kind, rules_.forces, state_, duration);
+    const Integrator& integrator = rules_.settings.integrator;
+    if (flown_ && trial_ == Trial::same_flight) {
+        return resume_flight(integrator, rules_.forces, state_, *flown_, duration);
+    }
+    return begin_flight(integrator, rules_.forces, state_, duration);
 }
 
 PhaseState RollbackMover::state_at(double elapsed) const {
@@ -126,7 +128,7 @@ void RollbackMover::fly(double elapsed) {
     }
     const bool own_step = trial_ == Trial::own_step;
     kick_velocity_ = (flight_.kick_duration > 0.0 && own_step ? elapsed : flight_.kick_duration) * flight_.acceleration;
-    if (flight_.kick_duration > 0.0 && !own_step) kick_ = flight_;
+    if (!own_step) flown_ = flight_;
 }
 
 void RollbackMover::follow_stretch(double elapsed) {
@@ -179,7 +181,7 @@ void RollbackMover::leave_surface() {
 
 /// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
 bool RollbackMover::will_stay() const {
-    const Vec3 a = kick_ ? kick_->acceleration : rules_.forces.acceleration(state_);
+    const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
     // What is touched already holds its part; what is left may press onto the next surface.
     const Vec3 pull = project_off(a, normals());
     bool pressed = false;

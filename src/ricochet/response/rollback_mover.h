@@ -56,6 +56,8 @@ private:
     void fly(double elapsed);
     void follow_stretch(double elapsed);
     void leave_surface();
+    /// This step's force has acted already (symplectic Euler).
+    [[nodiscard]] bool is_kicked() const { return flown_ && flown_->kick_duration > 0.0; }
     [[nodiscard]] bool will_stay() const;
 
     // Contact (rollback_contact.cpp).
@@ -67,7 +69,6 @@ private:
     [[nodiscard]] double time_on_support() const;
     void bend_stretch(double duration);
     void turn_along();
-    [[nodiscard]] bool is_kicked() const { return kick_.has_value() && trial_ == Trial::same_flight; }
     void book_contact(const Vec3& velocity_change, double elapsed);
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
 
@@ -81,8 +82,8 @@ private:
     Vec3 from_;           // where the piece began
     Vec3 blocked_place_;  // the bracket's blocked end
     Flight flight_;
-    std::optional<Flight> kick_;  // the flight in which this step's force has acted already (symplectic Euler)
-    Vec3 kick_velocity_;          // what kicks have put into the velocity since the last piece began, m/s
+    std::optional<Flight> flown_;  // the last flight of this step
+    Vec3 kick_velocity_;           // what kicks have put into the velocity since the last piece began, m/s
     std::optional<Stretch> stretch_;
     bool turns_ = false;  // the stretch is a chord of a surface that bends towards the particle
     Vec3 pull_;           // the forces' acceleration at the stretch's start

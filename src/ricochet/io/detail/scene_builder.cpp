@@ -27,7 +27,9 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     const ObjectView view = context.root().object("simulation");
     options.time_step = view.number("time_step");
     options.duration = view.number("duration");
-    options.integrator = integrator_from_name(view.text("integrator")).value_or(options.integrator);
+    options.integrator.kind = integrator_from_name(view.text("integrator")).value_or(options.integrator.kind);
+    const ObjectView tolerance = view.object("tolerance");
+    options.integrator.tolerance = {tolerance.number("position"), tolerance.number("velocity")};
     options.seed = view.whole_number("seed");
     options.resting_speed = view.number("resting_speed");
     options.bounce_budget = static_cast<std::uint32_t>(view.whole_number("bounce_budget"));

@@ -75,6 +75,24 @@ const ObjectSpec& penalty_spec() {
     return spec;
 }
 
+const ObjectSpec& tolerance_spec() {
+    static const ObjectSpec spec{.title = "tolerance",
+                                 .description = "What one sub-step of an adaptive integrator may be wrong by.",
+                                 .keys = {
+                                     {.name = "position",
+                                      .description = "Of the position, also on the way between a sub-step's ends.",
+                                      .unit = "m",
+                                      .range = kPositive,
+                                      .fallback = "1e-6"},
+                                     {.name = "velocity",
+                                      .description = "Of the velocity.",
+                                      .unit = "m/s",
+                                      .range = kPositive,
+                                      .fallback = "1e-6"},
+                                 }};
+    return spec;
+}
+
 const ObjectSpec& simulation_spec() {
     static const ObjectSpec spec{
         .title = "simulation",
@@ -95,10 +113,22 @@ const ObjectSpec& simulation_spec() {
              .type = ValueType::choice,
              .description = "How particles move inside a step.",
              .fallback = "\"ballistic\"",
-             .choices = {{"symplectic_euler", "the step's force first, then a straight line"},
+             .choices = {{"forward_euler", "straight lines; the velocity changes afterwards: first order"},
+                         {"symplectic_euler", "the step's force first, then a straight line"},
                          {"ballistic", "a parabola: exact when the acceleration is constant"},
                          {"midpoint", "the explicit midpoint method: second order"},
-                         {"rk4", "the classical Runge-Kutta method: fourth order"}}},
+                         {"velocity_verlet",
+                          "a parabola, then the mean of both ends' forces: second order, keeps energy "
+                          "bounded where forces depend on position only"},
+                         {"rk4", "the classical Runge-Kutta method: fourth order"},
+                         {"dormand_prince",
+                          "adaptive Runge-Kutta of order 5(4): each particle cuts the step by its own "
+                          "error"}}},
+            {.name = "tolerance",
+             .type = ValueType::object,
+             .description = "What one sub-step of dormand_prince may be wrong by.",
+             .without = "its defaults",
+             .content = &tolerance_spec()},
             {.name = "response",
              .type = ValueType::choice,
              .description = "How impacts are answered.",

@@ -1,0 +1,65 @@
+#include "ricochet/dynamics/dormand_prince.h"
+
+#include <array>
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kStages = 7;
+
+// The published tableau; the last row of kA is the fifth order's weights too.
+constexpr std::array<double, kStages> kC{0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0};
+constexpr std::array<std::array<double, kStages - 1>, kStages> kA{{
+    {},
+    {1.0 / 5.0},
+    {3.0 / 40.0, 9.0 / 40.0},
+    {44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0},
+    {19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0},
+    {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
+    {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0},
+}};
+/// Fifth order's weights less the fourth's.
+constexpr std::array<double, kStages> kError{71.0 / 57600.0,      0.0,          -71.0 / 16695.0, 71.0 / 1920.0,
+                                             -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
+
+/// Second derivative over the step, times its length squared, from values at 0, c and 1.
+Vec3 second_difference(const Vec3& at_0, const Vec3& at_c, const Vec3& at_1, double c) {
+    const Vec3 first = (at_c - at_0) / c;
+    const Vec3 second = (at_1 - at_c) / (1.0 - c);
+    return 2.0 * (second - first);
+}
+
+}  // namespace
+
+EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h) {
+    std::array<Vec3, kStages> v;
+    std::array<Vec3, kStages> a;
+    EmbeddedStep step;
+    for (std::size_t i = 0; i < kStages; ++i) {
+        PhaseState stage{state.position, state.velocity};
+        for (std::size_t j = 0; j < i; ++j) {
+            stage.position += (h * kA[i][j]) * v[j];
+            stage.velocity += (h * kA[i][j]) * a[j];
+        }
+        ForceInput input = state;
+        input.position = stage.position;
+        input.velocity = stage.velocity;
+        input.time = state.time + kC[i] * h;
+        v[i] = stage.velocity;
+        a[i] = forces.acceleration(input);
+        step.end = stage;  // the last stage stands at the end
+    }
+    Vec3 position_error;
+    Vec3 velocity_error;
+    for (std::size_t i = 0; i < kStages; ++i) {
+        position_error += (h * kError[i]) * v[i];
+        velocity_error += (h * kError[i]) * a[i];
+    }
+    step.acceleration = a[0];
+    step.position_error = length(position_error);
+    step.velocity_error = length(velocity_error);
+    step.path_error = h * h / 384.0 * length(second_difference(a[0], a[2], a[kStages - 1], kC[2]));
+    return step;
+}
+
+}  // namespace ricochet

@@ -35,11 +35,12 @@ void Particles::append(const Particle& particle) {
     draws.push_back(0);
     support.push_back({kNoSupport, kNoSupport, kNoSupport});
     cascade_left.push_back(0.0);
+    pinned.push_back(particle.pinned ? 1 : 0);
     booked_until.push_back(0.0);
 }
 
 Particle Particles::at(std::size_t i) const {
-    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i], spin[i]};
+    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i], spin[i], pinned[i] != 0};
 }
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
@@ -60,6 +61,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(draws, keep);
     compact_array(support, keep);
     compact_array(cascade_left, keep);
+    compact_array(pinned, keep);
     compact_array(booked_until, keep);
 }
 

@@ -7,6 +7,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/dynamics/implicit_euler.h"
 
 namespace ricochet {
 namespace {
@@ -42,7 +43,7 @@ void ParticleSystem::assign(const Particles& particles, std::span<const std::uin
         const std::uint32_t i = members_[k];
         constants_[k] = {particles.id[i], particles.mass[i], particles.radius[i], particles.pinned[i] != 0};
         position_[k] = particles.position[i];
-        velocity_[k] = particles.velocity[i];
+        velocity_[k] = constants_[k].pinned ? Vec3{} : particles.velocity[i];
     }
     link(particles.size());
 }
@@ -149,6 +150,10 @@ Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positi
 
 Vec3 ParticleSystem::own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const {
     return forces_.acceleration(input(i, time, position, velocity));
+}
+
+std::array<Vec3, 3> ParticleSystem::own_slope(std::size_t i, const Vec3& end_velocity, double duration) const {
+    return acceleration_slope(forces_, input(i, time_, position_[i], velocity_[i]), end_velocity, duration);
 }
 
 double ParticleSystem::spring_energy(std::span<const Vec3> positions) const {

@@ -3,6 +3,7 @@
 /// solvers ask for.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -67,6 +68,9 @@ public:
                                        std::span<const Vec3> velocities) const;
     /// What forces that look at one particle only do to member i, m/s^2.
     [[nodiscard]] Vec3 own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
+    /// Derivative of own_acceleration() at the end of a backward Euler step by the velocity there, see
+    /// acceleration_slope(): three columns, 1/s.
+    [[nodiscard]] std::array<Vec3, 3> own_slope(std::size_t i, const Vec3& end_velocity, double duration) const;
     /// Energy stored in the springs, J.
     [[nodiscard]] double spring_energy(std::span<const Vec3> positions) const;
     [[nodiscard]] const std::vector<Bond>& bonds() const { return bonds_; }

@@ -39,6 +39,7 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/point_gravity.h"
 #include "ricochet/dynamics/radial_force.h"
+#include "ricochet/dynamics/spring_makers.h"
 #include "ricochet/dynamics/spring_network.h"
 #include "ricochet/dynamics/spring_stability.h"
 #include "ricochet/dynamics/system_integrator.h"

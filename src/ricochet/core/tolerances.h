@@ -172,6 +172,14 @@ inline constexpr double kFastestSpeed = 299792458.0;
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;
 
+/// Part of a rope's length by which it must exceed the distance of its ends to be laid out as a catenary, not straight.
+/// Smaller (below some 1e-14): the catenary's parameter is made of rounding. Larger: nearly taut ropes start shortened.
+inline constexpr double kTautRope = 1e-9;
+
+/// Sideways distance of a rope's ends, relative to its length, below which it hangs straight down and comes back.
+/// Smaller than some 1e-300: exponentials overflow. Larger: narrow catenaries lose their bend.
+inline constexpr double kFoldedRope = 1e-9;
+
 /// Unit of the per-triangle impulse totals, N s. They are 128-bit integers in this unit, so that sums do not depend on
 /// the order; the largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;

@@ -174,9 +174,10 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
     const IntegratorKind kind = setup.options.integrator.kind;
     const double bound = longest_stable_step(kind, setup.springs, setup.particles);
     if (setup.options.time_step <= bound) return {};
-    return {fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
-                        "springs: they may explode; use a shorter step or the integrator implicit_euler",
-                        setup.options.time_step, bound, name_of(kind))};
+    return {
+        fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
+                    "springs: they may explode; use a shorter step or the integrator implicit_euler",
+                    setup.options.time_step, bound, name_of(kind))};
 }
 
 std::vector<std::string> warnings_of(const SimulationSetup& setup) {

@@ -53,10 +53,10 @@ struct SimulationSetup {
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
     std::vector<Spring> springs;      ///< between them: ids are positions in `particles`
-    /// An own method for all particles together, in place of options.integrator, which then says only how particles go on
-    /// after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
+    /// An own method for all particles together, in place of options.integrator, which then says only how particles go
+    /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
     SystemSolver solver = {};
-    std::optional<Box3> bounds;       ///< particles outside are retired
+    std::optional<Box3> bounds;  ///< particles outside are retired
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
@@ -81,9 +81,9 @@ struct SimulationStatistics {
     std::uint64_t penetrations = 0;      ///< particle-steps in which a particle was seen behind a surface
     double penetration_sum = 0.0;        ///< m, sum of their depths, before anything put them right
     double penetration_deepest = 0.0;    ///< m
-    std::uint64_t springs_broken = 0;  ///< stretched beyond their limit
-    std::uint64_t springs_lost = 0;    ///< removed because a particle at an end was gone
-    std::uint64_t unsolved_steps = 0;  ///< steps whose implicit equations were not solved to the tolerance
+    std::uint64_t springs_broken = 0;    ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;      ///< removed because a particle at an end was gone
+    std::uint64_t unsolved_steps = 0;    ///< steps whose implicit equations were not solved to the tolerance
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 

@@ -208,6 +208,8 @@ struct Simulation::Impl {
     std::unique_ptr<Response> response;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
+    SpringNetwork springs;
+    std::vector<SpringFace> spring_faces;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
     std::vector<ContactRecord> records;
@@ -237,6 +239,9 @@ Simulation::Impl::Impl(SimulationSetup setup)
         emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
     }
     for (const Particle& particle : setup.particles) add(particle);
+    springs = SpringNetwork(std::move(setup.springs));
+    spring_faces = std::move(setup.spring_faces);
+    springs.bind(particles.id);
     if (options.verify) check = std::make_unique<RunCheck>(world);
 }
 
@@ -271,6 +276,7 @@ void Simulation::Impl::emit(double from, double to) {
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
     for (const Particle& particle : born) add(particle);
+    if (!springs.empty() && !born.empty()) springs.bind(particles.id);
 }
 
 void Simulation::Impl::move_all(double from, double to) {
@@ -457,6 +463,7 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
         sides.erase(kept, sides.end());
     }
     particles.compact(keep);
+    if (!springs.empty()) springs.bind(particles.id);
     if (check) check->compact(keep);
 }
 
@@ -482,6 +489,8 @@ std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
 std::uint64_t Simulation::step_count() const { return impl_->steps; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
+const SpringNetwork& Simulation::springs() const { return impl_->springs; }
+const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {

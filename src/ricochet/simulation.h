@@ -15,6 +15,8 @@
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/spring_makers.h"
+#include "ricochet/dynamics/spring_network.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/response.h"
 #include "ricochet/verify/violation.h"
@@ -49,8 +51,10 @@ struct SimulationSetup {
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
     std::vector<EmitterDescription> emitters;
-    std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
-    std::optional<Box3> bounds;       ///< particles outside are retired
+    std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
+    std::vector<Spring> springs;           ///< between these particles: their ids are places in the list
+    std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
+    std::optional<Box3> bounds;            ///< particles outside are retired
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
@@ -103,6 +107,10 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
+    /// The springs of the setup, bound to the order of particles().
+    [[nodiscard]] const SpringNetwork& springs() const;
+    /// The cloth of the setup, torn parts included.
+    [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no

@@ -44,7 +44,9 @@ private:
     void load_colliders(const RunFolder& folder);
     void choose_camera(const RunFolder& folder, double aspect);
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
-    [[nodiscard]] PreviewSpheres spheres(const VtkPolyData& frame, const FrameFile& file) const;
+    [[nodiscard]] double visible_radius() const;
+    [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
+    [[nodiscard]] PreviewMoving moving(const VtkPolyData& frame, const FrameFile& file) const;
 
     PictureStyle style_;
     ViewSubject subject_;

@@ -231,6 +231,7 @@ struct Simulation::Impl {
     std::unique_ptr<Response> response;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
+    std::vector<SpringFace> spring_faces;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
     std::vector<ContactRecord> records;
@@ -261,6 +262,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
         emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
     }
     for (const Particle& particle : setup.particles) add(particle);
+    spring_faces = std::move(setup.spring_faces);
     if (coupled.is_active()) coupled.bind(particles);
     if (options.verify) check = std::make_unique<RunCheck>(world);
 }
@@ -545,6 +547,7 @@ std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
 std::uint64_t Simulation::step_count() const { return impl_->steps; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
+const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
 const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }

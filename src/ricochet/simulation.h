@@ -16,6 +16,7 @@
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/spring_makers.h"
 #include "ricochet/dynamics/spring_network.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/response.h"
@@ -51,8 +52,9 @@ struct SimulationSetup {
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
     std::vector<EmitterDescription> emitters;
-    std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
-    std::vector<Spring> springs;      ///< between them: ids are positions in `particles`
+    std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
+    std::vector<Spring> springs;           ///< between these particles: their ids are places in the list
+    std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
     /// An own method for all particles together, in place of options.integrator, which then says only how particles go
     /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
     SystemSolver solver = {};
@@ -114,10 +116,12 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
+    /// The springs of the setup, bound to the order of particles().
+    [[nodiscard]] const SpringNetwork& springs() const;
+    /// The cloth of the setup, torn parts included.
+    [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
-    /// The springs, bound to particles().
-    [[nodiscard]] const SpringNetwork& springs() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
     /// triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;

@@ -9,6 +9,7 @@
 #include "io/force_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
+#include "io/spring_scene.h"
 #include "ricochet/core/random.h"
 #include "ricochet/io/detail/json_parser.h"
 #include "ricochet/io/detail/scene_check.h"
@@ -79,6 +80,10 @@ std::vector<Json> samples() {
         scenes.push_back({{"ricochet", 1}, {"flows", {{name, alone}}}});
         if (!flow.contains("parts")) continue;
         for (const Json& part : flow["parts"]) scenes.push_back({{"ricochet", 1}, {"flows", {{name, part}}}});
+    }
+    const Json springs = Json::parse(test::kSpringScene);
+    for (const Json& body : springs["springs"]) {
+        scenes.push_back({{"ricochet", 1}, {"particles", springs["particles"]}, {"springs", {body}}});
     }
     return scenes;
 }
@@ -251,7 +256,7 @@ void expect_agreement_on_random_changes(const Json& sample) {
 }
 
 TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
-    for (const char* sample : {test::kSampleScene, test::kForceScene}) {
+    for (const char* sample : {test::kSampleScene, test::kForceScene, test::kSpringScene}) {
         expect_agreement_on_random_changes(Json::parse(sample));
     }
 }

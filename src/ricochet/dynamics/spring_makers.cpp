@@ -156,6 +156,7 @@ SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
         const auto [a, b] = edge.opposite;
         if (settings.bending_stiffness == 0.0 || a == kNoVertex || b == kNoVertex || a == b) continue;
         Spring spring{a, b, distance(a, b), settings.bending_stiffness, settings.damping};
+        spring.resists_bending = true;
         cloth.springs.push_back(spring);
     }
     cloth.faces = cloth_faces(mesh, edges);

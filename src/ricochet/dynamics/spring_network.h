@@ -22,6 +22,7 @@ struct Spring {
     /// Stretch, relative to the rest length, beyond which it breaks for good: > 0; infinite where it never does. A
     /// spring without a rest length has no relative stretch and cannot break.
     double breaking_stretch = std::numeric_limits<double>::infinity();
+    bool resists_bending = false;  ///< lies across an edge of cloth: a force like the others, but no thread to be shown
 };
 
 /// Force on the first end of a spring, N: (k (l - l0) + c l') along the unit vector towards the second end, with l the

@@ -7,6 +7,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/io/detail/force_keys.h"
 #include "ricochet/io/detail/key_ranges.h"
+#include "ricochet/io/detail/spring_keys.h"
 #include "ricochet/io/detail/suggestion.h"
 
 namespace ricochet::detail {
@@ -230,6 +231,8 @@ const ObjectSpec& rotation_spec() {
     return spec;
 }
 
+}  // namespace
+
 std::vector<KeySpec> placement_keys(std::string_view needs) {
     return {
         {.name = "position",
@@ -253,6 +256,8 @@ std::vector<KeySpec> placement_keys(std::string_view needs) {
          .needs = needs},
     };
 }
+
+namespace {
 
 KeySpec center_key() {
     return {.name = "center",
@@ -507,6 +512,10 @@ const ObjectSpec& particle_spec() {
              .unit = "rad/s",
              .range = kCoordinate,
              .fallback = "[0, 0, 0]"},
+            {.name = "pinned",
+             .type = ValueType::boolean,
+             .description = "true: it never moves, for springs to hang on.",
+             .fallback = "false"},
         }};
     return spec;
 }
@@ -631,6 +640,11 @@ std::vector<KeySpec> scene_keys() {
          .description = "Particles that are there from the start, one by one or from a table.",
          .fallback = "[]",
          .content = &particle_spec()},
+        {.name = "springs",
+         .type = ValueType::list,
+         .description = "Springs between particles; ropes, chains and cloth with particles of their own.",
+         .fallback = "[]",
+         .content = &springs_spec()},
         {.name = "bounds",
          .type = ValueType::object,
          .description = "Where particles are retired.",

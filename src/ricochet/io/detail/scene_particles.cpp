@@ -56,6 +56,7 @@ void build_particles(SceneContext& context, SimulationSetup& setup) {
         particle.mass = view.number("mass");
         particle.radius = view.number("radius");
         particle.spin = view.vector("spin");
+        particle.pinned = view.boolean("pinned");
         setup.particles.push_back(particle);
     }
     warn_about_particles_outside(context, setup);

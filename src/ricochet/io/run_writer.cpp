@@ -91,6 +91,16 @@ void RunWriter::write_frame(const Simulation& simulation) {
 
 RunSummary RunWriter::finish(const Simulation& simulation) {
     write_frame(simulation);
+    return close(simulation);
+}
+
+RunSummary RunWriter::finish_diverged(const Simulation& simulation, const std::string& message) {
+    RunSummary summary = close(simulation);
+    summary.diverged = message;
+    return summary;
+}
+
+RunSummary RunWriter::close(const Simulation& simulation) {
     frames_.finish();
     if (contacts_) contacts_->finish();
     write_colliders(simulation);

@@ -92,6 +92,7 @@ std::string summary_text(const RunSummary& summary) {
     json["simulated_time"] = summary.simulated_time;
     json["wall_seconds"] = summary.wall_seconds;
     json["interrupted"] = summary.interrupted;
+    json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;
     add_statistics(json, summary.statistics);
     json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);  // known only to a run that verifies itself

@@ -9,8 +9,19 @@
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/attributes.h"
 
 namespace ricochet {
+
+/// In place of an emitter's number: none.
+inline constexpr std::uint32_t kNoEmitter = 0xFFFFFFFFU;
+
+/// Where a particle comes from.
+struct Origin {
+    std::uint32_t emitter = kNoEmitter;  ///< its emitter's number in the scene
+    std::uint32_t generation = 0;        ///< 0; of particles born of particles one more than the parent's
+    std::uint64_t lineage = 0;  ///< key of its children's random numbers; depends on neither ids nor time steps
+};
 
 /// Everything that one particle carries, as a value: what emitters and scenes make and what forces see.
 struct Particle {
@@ -22,6 +33,8 @@ struct Particle {
     double birth_time = 0.0;                                    ///< s, simulation time
     double lifetime = std::numeric_limits<double>::infinity();  ///< s after birth at which it is retired
     Vec3 spin{};                                                ///< angular velocity, rad/s; spheres only
+    Origin origin{};
+    std::vector<AttributeValue> attributes = {};  ///< one a column of Particles::attributes; fewer: fallbacks
 };
 
 /// In place of a surface number: none.
@@ -49,6 +62,9 @@ public:
     std::vector<std::array<std::uint32_t, 3>> support;
     std::vector<double> cascade_left;  ///< s of a bounce cascade that the end of the step has cut in two
     std::vector<double> booked_until;  ///< s, simulation time up to which surfaces have carried a sleeping particle
+    AttributeTable attributes;         ///< set its columns before the first particle is appended
+    std::vector<Origin> origin;        ///< empty unless keeps_origin
+    bool keeps_origin = false;         ///< set before the first particle is appended
 
     [[nodiscard]] std::size_t size() const { return id.size(); }
     [[nodiscard]] bool empty() const { return id.empty(); }

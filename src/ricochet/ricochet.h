@@ -35,6 +35,7 @@
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/grid_flow.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/keyed_curve.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/point_gravity.h"
 #include "ricochet/dynamics/radial_force.h"

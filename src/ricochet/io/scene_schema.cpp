@@ -76,7 +76,11 @@ std::string definition_name(const ObjectSpec& spec) {
 
 Json reference_to(const ObjectSpec& spec) { return {{"$ref", "#/$defs/" + definition_name(spec)}}; }
 
-Json list_schema(const ObjectSpec& content) { return {{"type", "array"}, {"items", reference_to(content)}}; }
+Json list_schema(const KeySpec& key) {
+    Json schema = {{"type", "array"}, {"items", reference_to(*key.content)}};
+    if (key.not_empty) schema["minItems"] = 1;
+    return schema;
+}
 
 Json value_schema(const KeySpec& key) {
     switch (key.type) {
@@ -106,9 +110,9 @@ Json value_schema(const KeySpec& key) {
         case ValueType::named_object:
             return {{"oneOf", Json::array({reference_to(*key.content), text_schema()})}};
         case ValueType::list:
-            return list_schema(*key.content);
+            return list_schema(key);
         case ValueType::list_or_file:
-            return {{"oneOf", Json::array({list_schema(*key.content), reference_to(detail::particle_file_spec())})}};
+            return {{"oneOf", Json::array({list_schema(key), reference_to(detail::particle_file_spec())})}};
         case ValueType::table:
             return {{"type", "object"},
                     {"propertyNames", {{"minLength", 1}}},

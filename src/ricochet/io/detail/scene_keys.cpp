@@ -765,7 +765,7 @@ std::string expectation(const KeySpec& key) {
         case ValueType::named_object:
             return fmt::format("an object {{...}} ({}), or one of the names in \"{}\"", key.content->title, key.table);
         case ValueType::list:
-            return "a list [...] of objects";
+            return key.not_empty ? "a list [...] of objects, at least one" : "a list [...] of objects";
         case ValueType::list_or_file:
             return "a list [...] of objects, or {\"file\": ...}";
         case ValueType::table:

@@ -68,7 +68,8 @@ struct KeySpec {
     std::string_view fallback = {};  ///< the default as JSON; empty when there is none
     std::string_view without = {};   ///< what its absence means, where no JSON value says it
     bool required = false;
-    bool not_zero = false;  ///< vectors: not all components zero
+    bool not_zero = false;   ///< vectors: not all components zero
+    bool not_empty = false;  ///< lists: at least one object
     Built built = Built::yes;
     std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};

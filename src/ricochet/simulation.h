@@ -40,6 +40,9 @@ struct SimulationOptions {
     RollbackSettings rollback = {};               ///< of the rollback response
     ProjectSettings project = {};                 ///< of the project response
     PenaltySettings penalty = {};                 ///< of the penalty response
+    double frame_rate = 24.0;                   ///< frames a second of emission rates per frame, > 0
+    std::uint32_t max_depth = 16;               ///< highest generation of particles born of particles; 0: none are
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time; births beyond are refused and counted
 };
 
 /// Everything a simulation is made from.
@@ -51,6 +54,8 @@ struct SimulationSetup {
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
     std::optional<Box3> bounds;       ///< particles outside are retired
+    std::vector<AttributeDescription> attributes;      ///< what particles carry of the user's own, and for looks
+    std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
@@ -60,6 +65,10 @@ struct SimulationStatistics {
     std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
     std::uint64_t expired = 0;         ///< retired at the end of their lifetime
     std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces
+    std::uint64_t shattered = 0;       ///< replaced by fragments at an impact
+    std::uint64_t children = 0;        ///< of the emitted ones those born of particles
+    std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
+    std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
     std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
     std::uint64_t contacts = 0;        ///< impacts
     std::uint32_t bounces_per_step_max = 0;
@@ -103,6 +112,8 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
+    /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
+    [[nodiscard]] AttributeTable shown_attributes() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no

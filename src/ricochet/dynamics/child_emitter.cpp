@@ -96,7 +96,7 @@ Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_
     child.position = parent.position;
     child.velocity += emitter.description().parent->inherit_velocity * parent.velocity;
     child.birth_time = time;
-    child.origin = {emitter.number(), parent.origin.generation + 1, lineage};
+    child.origin = {emitter.number(), parent.origin.generation + 1, lineage, 0, 0};
     inherit_attributes(emitter, parent, child);
     return child;
 }

@@ -105,6 +105,9 @@ Emitter::Emitter(EmitterDescription description, std::uint64_t seed, std::uint32
         require(found.has_value(), description_, "the scene does not declare one of its attributes");
         attribute_columns_.push_back(*found);
     }
+    for (const LifeCurve& curve : description_.curves) {
+        require(column(curve.name).has_value(), description_, "the scene does not declare the attribute of a curve");
+    }
     set_rate(surroundings);
 }
 

@@ -16,6 +16,7 @@
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/attributes.h"
 #include "ricochet/dynamics/emitter_shape.h"
+#include "ricochet/dynamics/life_curve.h"
 #include "ricochet/dynamics/mean_spread.h"
 #include "ricochet/dynamics/parent_rule.h"
 #include "ricochet/dynamics/particles.h"
@@ -53,6 +54,7 @@ struct EmitterDescription {
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
+    std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
     std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's place in the scene
     std::optional<ParentRule> parent;         ///< particles give birth here; shape, burst, start and stop are not used
 };

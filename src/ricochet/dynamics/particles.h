@@ -21,6 +21,8 @@ struct Origin {
     std::uint32_t emitter = kNoEmitter;  ///< its emitter's number in the scene
     std::uint32_t generation = 0;        ///< 0; of particles born of particles one more than the parent's
     std::uint64_t lineage = 0;  ///< key of its children's random numbers; depends on neither ids nor time steps
+    std::uint32_t birth_impacts = 0;    ///< impacts so far that have given birth
+    std::uint32_t impact_children = 0;  ///< and the children born there
 };
 
 /// Everything that one particle carries, as a value: what emitters and scenes make and what forces see.
@@ -40,6 +42,9 @@ struct Particle {
 /// In place of a surface number: none.
 inline constexpr std::uint32_t kNoSupport = 0xFFFFFFFFU;
 
+/// In Particles::absorbed: replaced by fragments.
+inline constexpr std::uint8_t kShattered = 2;
+
 /// Structure of arrays. All vectors have the same length; entry i of each is particle i.
 class Particles {
 public:
@@ -56,7 +61,8 @@ public:
     std::vector<std::uint8_t> frozen;      ///< 1 when the state left the range of the arithmetic: it no longer moves
     std::vector<std::uint8_t> resting;     ///< 1 while at rest on the surfaces in `support`
     std::vector<std::uint8_t> held;        ///< 1 while at rest because friction and support hold it
-    std::vector<std::uint8_t> absorbed;    ///< 1 when an impact has removed it; gone after the step
+    /// 1 when an impact has removed it, kShattered when its fragments take its place; gone after the step.
+    std::vector<std::uint8_t> absorbed;
     std::vector<std::uint32_t> draws;      ///< random numbers drawn by impacts so far
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.
     std::vector<std::array<std::uint32_t, 3>> support;

@@ -14,6 +14,9 @@ namespace ricochet {
 /// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
 /// on it, see Simulation::has_spheres().
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres = false);
+/// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
+[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
+                                         bool has_spheres = false);
 
 /// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);

@@ -58,6 +58,17 @@ Json pair_schema(const KeySpec& key) {
     return {{"oneOf", Json::array({mean, pair})}};
 }
 
+Json two_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}, {"minItems", 2}, {"maxItems", 2}}; }
+
+Json quantity_schema(const KeySpec& key) {
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key)})}};
+}
+
+Json spread_schema(const KeySpec& key) {
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key), two_of(number_schema(key.range)),
+                                   two_of(vector_schema(key))})}};
+}
+
 Json text_schema() { return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^\\u0000-\\u001f\\u007f]*$"}}; }
 
 Json choice_schema(const KeySpec& key) {
@@ -117,6 +128,16 @@ Json value_schema(const KeySpec& key) {
             return {{"type", "object"},
                     {"propertyNames", {{"minLength", 1}}},
                     {"additionalProperties", reference_to(*key.content)}};
+        case ValueType::quantity:
+            return quantity_schema(key);
+        case ValueType::vector_pair: {
+            const Json vector = vector_schema(key);
+            return {{"oneOf", Json::array({vector, two_of(vector)})}};
+        }
+        case ValueType::quantity_table:
+            return {{"type", "object"},
+                    {"propertyNames", {{"minLength", 1}}},
+                    {"additionalProperties", spread_schema(key)}};
         case ValueType::text_table:
             return {{"type", "object"}, {"propertyNames", {{"minLength", 1}}}, {"additionalProperties", text_schema()}};
     }

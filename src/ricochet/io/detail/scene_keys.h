@@ -29,6 +29,9 @@ enum class ValueType {
     list,          ///< a list of objects of KeySpec::content
     list_or_file,  ///< the same, or {"file": ...}
     table,         ///< an object whose keys are names and whose values are objects of KeySpec::content
+    quantity,      ///< a number or [x, y, z]
+    vector_pair,   ///< [x, y, z], or [[x, y, z], [spread, spread, spread]]
+    quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
     text_table,    ///< an object whose keys are names and whose values are texts that are not empty
 };
 

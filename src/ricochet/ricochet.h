@@ -92,6 +92,7 @@
 #include "ricochet/render/light.h"
 #include "ricochet/render/picture.h"
 #include "ricochet/render/preview.h"
+#include "ricochet/render/sprites.h"
 #include "ricochet/response/bounce.h"
 #include "ricochet/response/contact_mode.h"
 #include "ricochet/response/exact.h"

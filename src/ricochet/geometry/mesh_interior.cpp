@@ -25,16 +25,18 @@ bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
     return turn > 0;  // on a vertical edge the move to the right decides: p is not on the left
 }
 
-enum class Crossing { none, above, touches };
-
-Crossing crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+// True when the ray upwards from the moved point crosses the triangle.
+bool is_crossed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
-    if (!covers) return Crossing::none;
+    if (!covers) return false;
     const int turn = orient2d(flat(a), flat(b), flat(c));
-    if (turn == 0) return Crossing::none;
-    const int here = orient3d(a, b, c, p);
-    if (here == 0) return Crossing::touches;
-    return here == turn ? Crossing::none : Crossing::above;  // the normal's z has the sign of the turn
+    return turn != 0 && orient3d(a, b, c, p) == -turn;  // the normal's z has the sign of the turn
+}
+
+bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    Box3 box;
+    for (const Vec3& corner : {a, b, c}) box.include(corner);
+    return box.contains(p) && point_on_triangle(p, a, b, c);
 }
 
 }  // namespace
@@ -78,9 +80,11 @@ bool MeshInterior::contains(const Vec3& point) const {
     bool inside = false;
     for (std::uint32_t k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
         const Triangle& t = mesh_->triangles[column_triangles_[k]];
-        const auto found = crossing(mesh_->vertices[t[0]], mesh_->vertices[t[1]], mesh_->vertices[t[2]], point);
-        if (found == Crossing::touches) return false;
-        if (found == Crossing::above) inside = !inside;
+        const Vec3& a = mesh_->vertices[t[0]];
+        const Vec3& b = mesh_->vertices[t[1]];
+        const Vec3& c = mesh_->vertices[t[2]];
+        if (is_on(a, b, c, point)) return false;
+        if (is_crossed(a, b, c, point)) inside = !inside;
     }
     return inside;
 }

@@ -64,9 +64,15 @@ Json quantity_schema(const KeySpec& key) {
     return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key)})}};
 }
 
+// A number, a vector, or a pair of two alike, the second of which is a spread.
 Json spread_schema(const KeySpec& key) {
-    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key), two_of(number_schema(key.range)),
-                                   two_of(vector_schema(key))})}};
+    const Range spread{.lower = 0.0, .upper = key.range.upper};
+    const auto pair = [](Json mean, Json width) {
+        return Json{{"type", "array"}, {"prefixItems", Json::array({mean, width})}, {"minItems", 2}, {"maxItems", 2}};
+    };
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key),
+                                   pair(number_schema(key.range), number_schema(spread)),
+                                   pair(vector_schema(key), three_of(number_schema(spread)))})}};
 }
 
 Json text_schema() { return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^\\u0000-\\u001f\\u007f]*$"}}; }

@@ -172,6 +172,9 @@ Problem spread_problem(const JsonNode& node, const KeySpec& key) {
         if (Problem problem = quantity_problem(item, key)) return problem;
     }
     const JsonNode& spread = (*items)[1];
+    if (((*items)[0].array() == nullptr) != (spread.array() == nullptr)) {
+        return fmt::format("found {}, expected mean and spread alike: two numbers or two of [x, y, z]", described(spread));
+    }
     bool negative = spread.number().value_or(0.0) < 0.0;
     if (spread.array() != nullptr) {
         for (const JsonNode& item : *spread.array()) negative = negative || item.number().value_or(0.0) < 0.0;

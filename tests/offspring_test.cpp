@@ -81,7 +81,8 @@ TEST(Offspring, FragmentsOfADeathCarryMassAndMomentumOnAndStartInsideTheStep) {
     EXPECT_EQ(simulation.statistics().expired, 5U);
     EXPECT_EQ(simulation.statistics().children, particles.size());
     EXPECT_GT(particles.size(), 5U * 9U);
-    EXPECT_NEAR(mass_of(particles), 10.0, 1e-13);  // exact for each parent, see ChildEmitter; here sums of several round
+    EXPECT_NEAR(mass_of(particles), 10.0,
+                1e-13);  // exact for each parent, see ChildEmitter; here sums of several round
     EXPECT_LT(length(momentum_of(particles) - Vec3{10, 20, 30}), 1e-12);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         ASSERT_EQ(particles.birth_time[i], 0.437);
@@ -174,10 +175,12 @@ SimulationSetup busy_setup(double time_step) {
     SimulationSetup setup = setup_of(time_step, 0.6);
     setup.forces.push_back(make_gravity({0, 0, -kG}));
     setup.materials = {{"stone", 0.6, 0.2}};
-    setup.colliders = {{"ball", MeshShape{std::make_shared<const TriangleMesh>(
-                                              testing::flipped(testing::sphere_mesh({}, 1.0, 2))), {}, ""}, 0}};
+    setup.colliders = {
+        {"ball",
+         MeshShape{std::make_shared<const TriangleMesh>(testing::flipped(testing::sphere_mesh({}, 1.0, 2))), {}, ""},
+         0}};
     setup.attributes = {{"heat", 1, {1, 0, 0}}, *looks_attribute("color"), *looks_attribute("size")};
-    EmitterDescription first = parents(300, {0, 0, 0}, {0, 0, 0});
+    EmitterDescription first = parents(40, {0, 0, 0}, {0, 0, 0});
     first.speed = {4.0, 2.0};
     first.radius = {0.03, 0.02};
     first.lifetime = {0.5, 0.2};
@@ -202,12 +205,12 @@ TEST(Offspring, TheSameBitsForAnyNumberOfThreadsWithAndWithoutVerificationAndCul
     std::set<std::uint64_t> hashes;
     for (const int threads : {1, 2, 5}) {
         const ThreadLimit limit(threads);
-        SimulationSetup setup = busy_setup(0.02);
+        SimulationSetup setup = busy_setup(0.04);
         setup.options.verify = threads == 2;
         setup.options.culling = threads != 5;
         const Simulation simulation = finished(std::move(setup));
         hashes.insert(simulation.state_hash());
-        EXPECT_GT(simulation.statistics().shattered, 50U);
+        EXPECT_GT(simulation.statistics().shattered, 5U);
         EXPECT_GT(simulation.statistics().births_refused_by_depth, 0U);
         EXPECT_EQ(simulation.statistics().violations, 0U);
     }
@@ -216,13 +219,13 @@ TEST(Offspring, TheSameBitsForAnyNumberOfThreadsWithAndWithoutVerificationAndCul
 
 TEST(Offspring, NoChildIsEverBornOutsideAClosedMesh) {
     const ParityOracle oracle(testing::sphere_mesh({}, 1.0, 2));
-    for (const double time_step : {0.005, 0.05, 0.2}) {
+    for (const double time_step : {0.02, 0.05, 0.2}) {
         Simulation simulation(busy_setup(time_step));
         while (!simulation.finished()) {
             simulation.step();
             for (const Vec3& p : simulation.particles().position) ASSERT_TRUE(oracle.inside(p));
         }
-        EXPECT_GT(simulation.statistics().children, 1000U);
+        EXPECT_GT(simulation.statistics().children, 200U);
         EXPECT_EQ(simulation.statistics().started_inside, 0U);
     }
 }
@@ -287,7 +290,7 @@ TEST(Offspring, CurvesOverLifeChangeWhatIsShownAndNothingElse) {
     const Simulation simulation = finished(std::move(setup));
     EXPECT_EQ(simulation.particles().attributes.value(0, 1).x, 80.0);
     EXPECT_EQ(simulation.shown_attributes().value(0, 1).x, 60.0);
-    EXPECT_EQ(simulation.particles().attributes.value(1, 1).x, 0.1);  // the radius
+    EXPECT_EQ(simulation.particles().attributes.value(1, 1).x, 0.1);     // the radius
     EXPECT_DOUBLE_EQ(simulation.shown_attributes().value(1, 1).x, 0.1);  // at 0.5 s the factor is 1
 }
 

@@ -223,8 +223,9 @@ void add_options(CLI::App& command, RenderArguments& a) {
     command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
     command.add_option("--color-by", a.color_by,
                        "Array of the frames that colours the particles (default: their own color, or speed)");
-    command.add_option("--draw", a.drawing,
-                       "Particles as spheres, soft discs by opacity, or glow that adds up (auto: soft with an opacity)")
+    command
+        .add_option("--draw", a.drawing,
+                    "Particles as spheres, soft discs by opacity, or glow that adds up (auto: soft with an opacity)")
         ->capture_default_str();
     command.add_flag("--night", a.night, "A dark sky");
     command.add_option("--color-map", a.color_map, "viridis, plasma or turbo")->capture_default_str();

@@ -201,8 +201,7 @@ std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile&
     if (vectors != nullptr) return *vectors;
     std::vector<Vec3> colors;
     for (const double value : shown_values(frame, file)) {
-        colors.push_back(kParticleAlbedo *
-                         map_color(style_.map, (value - range_.low) / (range_.high - range_.low)));
+        colors.push_back(kParticleAlbedo * map_color(style_.map, (value - range_.low) / (range_.high - range_.low)));
     }
     return colors;
 }

@@ -67,8 +67,7 @@ Particle Offspring::Way::at(double time, const CollisionWorld& world, ContactScr
     const Vec3 end = chord - duration * b.before;
     Particle parent = particle;
     parent.position = flush_tiny(a.position + s * (chord + (1.0 - s) * ((1.0 - s) * begin + s * end)));
-    parent.velocity =
-        (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration;
+    parent.velocity = (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration;
     if (is_clear(world, scratch, a.position, parent.position)) return parent;
     if (is_clear(world, scratch, b.position, parent.position)) return parent;
     return at(a, a.after);
@@ -143,8 +142,7 @@ void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, co
                          std::vector<Litter>& litters) const {
     thread_local ContactScratch scratch;
     for (const LifeBirth& birth : births_in_life(emitter, way.particle, way.begin(), way.end())) {
-        litters.push_back(
-            {birth.time, emitter.number(), birth.ordinal, 1, false, way.at(birth.time, world, scratch)});
+        litters.push_back({birth.time, emitter.number(), birth.ordinal, 1, false, way.at(birth.time, world, scratch)});
     }
 }
 
@@ -176,7 +174,8 @@ void Offspring::add_death(const Emitter& emitter, const Way& way, std::vector<Li
     const Way::Knot& last = way.knots.back();
     // What an absorbing surface has stopped is born with the velocity of arrival.
     const bool absorbed = !way.records.empty() && last.time == way.records.back().time;
-    litters.push_back({last.time, emitter.number(), 0, count, rule.share, way.at(last, absorbed ? last.before : last.after)});
+    litters.push_back(
+        {last.time, emitter.number(), 0, count, rule.share, way.at(last, absorbed ? last.before : last.after)});
 }
 
 std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
@@ -184,8 +183,9 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     std::stable_sort(records.begin(), records.end(),
                      [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
     const auto records_of = [&](std::uint64_t id) {
-        const auto first = std::lower_bound(records.begin(), records.end(), id,
-                                            [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
+        const auto first =
+            std::lower_bound(records.begin(), records.end(), id,
+                             [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
         auto last = first;
         while (last != records.end() && last->particle == id) ++last;
         return std::span<const ContactRecord>(first, last);
@@ -195,7 +195,8 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = first_ + begin; i < first_ + end; ++i) {
             Origin& origin = particles.origin[i];
-            if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty()) continue;
+            if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty())
+                continue;
             const Way way = way_of(particles, i, from, to, records_of(particles.id[i]));
             for (const std::uint32_t child : children_of_[origin.emitter]) {
                 const Emitter& emitter = emitters_[child];
@@ -226,8 +227,8 @@ std::vector<Particle> Offspring::born(std::vector<Litter>& litters, std::size_t 
         }
         if (litter.share) --living;  // the parent makes room
         const std::uint64_t room = limits_.most_particles - std::min<std::uint64_t>(limits_.most_particles, living);
-        const auto allowed =
-            static_cast<std::uint32_t>(std::min<std::uint64_t>(litter.count, std::max<std::uint64_t>(room, litter.share ? 1 : 0)));
+        const auto allowed = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(litter.count, std::max<std::uint64_t>(room, litter.share ? 1 : 0)));
         counts.refused_by_population += litter.count - allowed;
         const Emitter& emitter = emitters_[litter.emitter];
         if (litter.share) {

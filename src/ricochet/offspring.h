@@ -20,8 +20,8 @@ namespace ricochet {
 
 /// Where hierarchies end.
 struct OffspringLimits {
-    std::uint32_t max_depth = 16;                   ///< highest generation
-    std::uint64_t most_particles = 0xFFFFFFFFU;     ///< living at a time
+    std::uint32_t max_depth = 16;                ///< highest generation
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time
 };
 
 /// What a pass of births has done.

@@ -221,7 +221,7 @@ struct Simulation::Impl {
     std::vector<ContactRecord> records;       ///< of the step
     std::vector<ContactRecord> pass_records;  ///< of the particles that were moved last, for their children
     std::unique_ptr<Offspring> offspring;     ///< where particles are born of particles
-    std::unique_ptr<RunCheck> check;  ///< with options.verify
+    std::unique_ptr<RunCheck> check;          ///< with options.verify
     std::vector<Violation> violations;
     std::vector<Violation> last_violations;
     std::uint64_t steps;
@@ -291,7 +291,8 @@ void Simulation::Impl::emit(double from, double to) {
     }
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
+    const std::uint64_t room =
+        options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
     const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
     statistics.births_refused_by_population += born.size() - allowed;
     for (std::size_t k = 0; k < allowed; ++k) add(born[k]);
@@ -553,7 +554,8 @@ AttributeTable Simulation::shown_attributes() const {
         if (curves.empty()) continue;
         for (std::size_t k = 0; k < shown.columns().size(); ++k) {
             const double age = time() - particles.birth_time[i];
-            shown.set(k, i, shown_value(curves, shown.columns()[k].name, shown.value(k, i), age, particles.lifetime[i]));
+            shown.set(k, i,
+                      shown_value(curves, shown.columns()[k].name, shown.value(k, i), age, particles.lifetime[i]));
         }
     }
     return shown;

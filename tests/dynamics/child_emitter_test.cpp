@@ -120,7 +120,8 @@ TEST(ChildEmitter, FragmentsShareTheMassExactlyInAnyOrder) {
             double sum = 0.0;
             for (const Particle& fragment : fragments) sum += fragment.mass;
             ASSERT_EQ(sum, parent.mass);
-            std::rotate(fragments.begin(), fragments.begin() + static_cast<std::ptrdiff_t>(fragments.size() / 2), fragments.end());
+            std::rotate(fragments.begin(), fragments.begin() + static_cast<std::ptrdiff_t>(fragments.size() / 2),
+                        fragments.end());
             std::sort(fragments.begin(), fragments.end(), [&](const Particle& a, const Particle& b) {
                 return order == 0 ? a.mass < b.mass : a.mass > b.mass;
             });

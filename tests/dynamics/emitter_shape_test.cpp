@@ -101,7 +101,8 @@ TEST(EmitterShape, AMeshVolumeIsFilledUniformly) {
 }
 
 TEST(EmitterShape, ABallWithAHoleIsFilledByVolumeAndTheHoleStaysEmpty) {
-    const TriangleMesh shell = testing::merged(testing::sphere_mesh({}, 2.0, 3), testing::flipped(testing::sphere_mesh({}, 1.0, 3)));
+    const TriangleMesh shell =
+        testing::merged(testing::sphere_mesh({}, 2.0, 3), testing::flipped(testing::sphere_mesh({}, 1.0, 3)));
     const double outer = signed_volume(testing::sphere_mesh({}, 2.0, 3));
     const double inner = signed_volume(testing::sphere_mesh({}, 1.0, 3));
     const ParityOracle oracle(shell);
@@ -142,7 +143,8 @@ TEST(EmitterShape, AMeshSurfaceIsCoveredByArea) {
             const Vec3 c = stretched.vertices[t[2]];
             const Vec3 n = normalized(cross(b - a, c - a));
             const auto left_of = [&](const Vec3& p, const Vec3& q) { return dot(cross(q - p, place.position - p), n); };
-            const double out = std::max({std::fabs(dot(place.position - a, n)), -left_of(a, b), -left_of(b, c), -left_of(c, a)});
+            const double out =
+                std::max({std::fabs(dot(place.position - a, n)), -left_of(a, b), -left_of(b, c), -left_of(c, a)});
             if (out < nearest) best = k;
             nearest = std::min(nearest, out);
         }

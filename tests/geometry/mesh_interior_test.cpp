@@ -32,9 +32,9 @@ TEST(MeshInterior, OfABoxIsItsInsideWithoutTheSurface) {
 TEST(MeshInterior, AgreesWithAnIndependentOracleEverywhere) {
     TriangleMesh nested = testing::merged(testing::sphere_mesh({0, 0, 0}, 2.0, 3),
                                           testing::flipped(testing::sphere_mesh({0.3, 0, 0}, 1.0, 2)));
-    for (const auto& mesh :
-         {shared(std::move(nested)), shared(read_mesh(std::string(RICOCHET_SOURCE_DIR) + "/meshes/torus_knot.obj").mesh),
-          shared(read_mesh(std::string(RICOCHET_SOURCE_DIR) + "/meshes/gear.obj").mesh)}) {
+    for (const auto& mesh : {shared(std::move(nested)),
+                             shared(read_mesh(std::string(RICOCHET_SOURCE_DIR) + "/meshes/torus_knot.obj").mesh),
+                             shared(read_mesh(std::string(RICOCHET_SOURCE_DIR) + "/meshes/gear.obj").mesh)}) {
         const MeshInterior interior(mesh);
         const ParityOracle oracle(*mesh);
         const Box3 box = interior.box();
@@ -54,7 +54,8 @@ TEST(MeshInterior, AgreesWithAnIndependentOracleEverywhere) {
 
 // Rays through vertices, along edges and in the planes of faces: whole numbers in a mesh of whole numbers.
 TEST(MeshInterior, RaysThroughVerticesAndAlongEdgesAreCountedRight) {
-    const TriangleMesh boxes = testing::merged(testing::box_mesh({0, 0, 0}, {4, 4, 4}), testing::box_mesh({4, 4, 5}, {8, 8, 8}));
+    const TriangleMesh boxes =
+        testing::merged(testing::box_mesh({0, 0, 0}, {4, 4, 4}), testing::box_mesh({4, 4, 5}, {8, 8, 8}));
     const MeshInterior interior(shared(boxes));
     const ParityOracle oracle(boxes);
     for (int x = -1; x <= 9; ++x) {

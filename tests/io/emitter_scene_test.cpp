@@ -80,30 +80,44 @@ struct Spoiled {
 const Spoiled kSpoiled[] = {
     {R"("plain": {})", R"("mass": {})", "attributes.mass: the name is one of the particles' own"},
     {R"("plain": {})", R"("color": {})", "attributes.color: the name is one of the particles' own"},
-    {R"("components": 1, "default": 300)", R"("components": 2, "default": 300)", "attributes.temperature.components: found 2, expected 1 or 3"},
+    {R"("components": 1, "default": 300)", R"("components": 2, "default": 300)",
+     "attributes.temperature.components: found 2, expected 1 or 3"},
     {R"("default": [1, 2, 3])", R"("default": 4)", "attributes.tint.default: found 4, expected [x, y, z]"},
-    {R"("temperature": [900, 100])", R"("temprature": 5)", "emitters[0].attributes.temprature: there is no attribute \"temprature\"; did you mean \"temperature\"?"},
-    {R"("temperature": [900, 100])", R"("temperature": [1, 2, 3])", "emitters[0].attributes.temperature: found a list of 3, expected a number or [mean, spread]"},
-    {R"("temperature": [900, 100])", R"("temperature": [900, -1])", "emitters[0].attributes.temperature: found -1, expected a spread >= 0"},
+    {R"("temperature": [900, 100])", R"("temprature": 5)",
+     "emitters[0].attributes.temprature: there is no attribute \"temprature\"; did you mean \"temperature\"?"},
+    {R"("temperature": [900, 100])", R"("temperature": [1, 2, 3])",
+     "emitters[0].attributes.temperature: found a list of 3, expected a number or [mean, spread]"},
+    {R"("temperature": [900, 100])", R"("temperature": [900, -1])",
+     "emitters[0].attributes.temperature: found -1, expected a spread >= 0"},
     {R"("plain": 7)", R"("color": 7)", "emitters[0].attributes.color: there is no attribute"},
     {R"([[0.5, 0.25, 1], [0.1, 0.2, 0]])", R"([2, 0, 0])", "emitters[0].color: found 2 in the list, expected"},
     {R"("opacity": [0.5, 0.5])", R"("opacity": 1.5)", "emitters[0].opacity: found 1.5, expected"},
     {R"("particle_size": [0.2, 0.1])", R"("particle_size": [0.2, 0.3])", "emitters[0].particle_size: found [0.2, 0.3]"},
     {R"("lifetime": [2, 0.5], )", "", "emitters[0].over_life: only goes together with the key \"lifetime\""},
-    {R"("vector_attributes": {"tint")", R"("vector_attributes": {"temperature")", "emitters[0].over_life.vector_attributes.temperature: the attribute has 1 components"},
-    {R"("rate_per_frame": [2, 1])", R"("rate_per_frame": [2, 1], "rate": 4)", "emitters[0].rate_per_frame: the emitter has another rate already"},
+    {R"("vector_attributes": {"tint")", R"("vector_attributes": {"temperature")",
+     "emitters[0].over_life.vector_attributes.temperature: the attribute has 1 components"},
+    {R"("rate_per_frame": [2, 1])", R"("rate_per_frame": [2, 1], "rate": 4)",
+     "emitters[0].rate_per_frame: the emitter has another rate already"},
     {R"("angle": 20)", R"("angle": 90)", "emitters[0].angle: found 90, expected"},
     {R"("seed": 12)", R"("seed": -1)", "emitters[0].seed: found -1"},
-    {R"("parent": "shell", "on")", R"("parent": "shel", "on")", "emitters[2].parent: there is no emitter \"shel\"; did you mean \"shell\"?"},
-    {R"("on": "impact")", R"("on": "bounce")", "emitters[2].on: found \"bounce\", expected one of \"life\", \"death\", \"impact\""},
+    {R"("parent": "shell", "on")", R"("parent": "shel", "on")",
+     "emitters[2].parent: there is no emitter \"shel\"; did you mean \"shell\"?"},
+    {R"("on": "impact")", R"("on": "bounce")",
+     "emitters[2].on: found \"bounce\", expected one of \"life\", \"death\", \"impact\""},
     {R"("on": "impact")", R"("on": "life")", "emitters[2].share: a parent that lives on cannot be shared out"},
-    {R"("count": [5, 2])", R"("count": [5, 2], "particle_radius": 1)", "emitters[2].particle_radius: radii follow from the parent's"},
-    {R"("count": [5, 2])", R"("count": [5, 2], "burst": 3)", "emitters[2].burst: is not for emitters of type \"child\""},
-    {R"("parent": "shards", "on": "death")", R"("parent": "shards", "on": "impact")", "emitters[3].parent: another emitter shares out the same parents"},
-    {R"("reference_camera": {"position": [0, 0, 9], "target": [0, 0, 0], "field_of_view": 50, "image_height": 600},)", "", "emitters[1].rate_per_area: only goes together with the scene's \"reference_camera\""},
+    {R"("count": [5, 2])", R"("count": [5, 2], "particle_radius": 1)",
+     "emitters[2].particle_radius: radii follow from the parent's"},
+    {R"("count": [5, 2])", R"("count": [5, 2], "burst": 3)",
+     "emitters[2].burst: is not for emitters of type \"child\""},
+    {R"("parent": "shards", "on": "death")", R"("parent": "shards", "on": "impact")",
+     "emitters[3].parent: another emitter shares out the same parents"},
+    {R"("reference_camera": {"position": [0, 0, 9], "target": [0, 0, 0], "field_of_view": 50, "image_height": 600},)",
+     "", "emitters[1].rate_per_area: only goes together with the scene's \"reference_camera\""},
     {R"("target": [0, 0, 0])", R"("target": [0, 0, 9])", "reference_camera.target: the camera stands on its target"},
-    {R"("position": [0, 0, 9])", R"("position": [0, 0, 0.2])", "emitters[1].rate_per_area: a part of it is not in front of the reference camera"},
-    {R"("temperature": 450)", R"("temperature": [450, 1])", "particles[0].attributes.temperature: found a list of 2, expected a number"},
+    {R"("position": [0, 0, 9])", R"("position": [0, 0, 0.2])",
+     "emitters[1].rate_per_area: a part of it is not in front of the reference camera"},
+    {R"("temperature": 450)", R"("temperature": [450, 1])",
+     "particles[0].attributes.temperature: found a list of 2, expected a number"},
     {R"("opacity": 0.5, "size")", R"("opacity": -1, "size")", "particles[0].opacity: found -1"},
     {R"("frame_rate": 25)", R"("frame_rate": 0)", "simulation.frame_rate: found 0"},
 };
@@ -111,7 +125,8 @@ const Spoiled kSpoiled[] = {
 TEST(EmitterScene, WrongValuesAreNamedByTheirPath) {
     const SampleFolder folder;
     for (const Spoiled& spoiled : kSpoiled) {
-        EXPECT_NE(errors_of(folder, scene_with(spoiled.old_text, spoiled.new_text)).find(spoiled.error), std::string::npos)
+        EXPECT_NE(errors_of(folder, scene_with(spoiled.old_text, spoiled.new_text)).find(spoiled.error),
+                  std::string::npos)
             << spoiled.error << "\n"
             << errors_of(folder, scene_with(spoiled.old_text, spoiled.new_text));
     }
@@ -157,14 +172,16 @@ TEST(EmitterScene, FramesAndTablesCarryTheAttributes) {
 
 TEST(EmitterScene, ColumnsThatNobodyDeclaredAndValuesBeyondTheRangeAreRefused) {
     const auto errors = [](const char* text) {
-        const detail::ParticleTable table = detail::parse_particle_table(text, "t.csv", {{"heat", 1, {}}, {"wind", 3, {}}});
+        const detail::ParticleTable table =
+            detail::parse_particle_table(text, "t.csv", {{"heat", 1, {}}, {"wind", 3, {}}});
         return table.errors.empty() ? std::string() : table.errors[0];
     };
     EXPECT_EQ(errors("x,y,z,heat,wind_x,wind_y,wind_z\n1,2,3,4,5,6,7\n"), "");
     EXPECT_NE(errors("x,y,z,haet\n").find("unknown column \"haet\", did you mean \"heat\"?"), std::string::npos);
     EXPECT_NE(errors("x,y,z,wind\n").find("unknown column \"wind\""), std::string::npos);
     EXPECT_NE(errors("x,y,z,heat_x\n").find("unknown column"), std::string::npos);
-    EXPECT_NE(errors("x,y,z,opacity\n1,2,3,2\n").find("attribute \"opacity\", expected a number from 0 to 1"), std::string::npos);
+    EXPECT_NE(errors("x,y,z,opacity\n1,2,3,2\n").find("attribute \"opacity\", expected a number from 0 to 1"),
+              std::string::npos);
     EXPECT_NE(errors("x,y,z,heat,heat\n").find("appears twice"), std::string::npos);
 }
 

@@ -14,8 +14,9 @@ namespace {
 
 // Arrays of frames, columns of tables, and what pictures make of them.
 constexpr std::array<std::string_view, 22> kOwnArrays = {
-    "id",   "x",        "y",       "z",      "vx",               "vy",   "vz",    "position", "velocity", "mass",  "radius",
-    "age",  "contacts", "resting", "frozen", "unsimulated_time", "spin", "speed", "lifetime", "pinned",   "Points", "TimeValue"};
+    "id",       "x",     "y",        "z",      "vx",       "vy",       "vz",     "position",
+    "velocity", "mass",  "radius",   "age",    "contacts", "resting",  "frozen", "unsimulated_time",
+    "spin",     "speed", "lifetime", "pinned", "Points",   "TimeValue"};
 
 void require(bool condition, const AttributeDescription& column, const char* what) {
     if (!condition) throw InputError(fmt::format("attribute '{}': {}", column.name, what));
@@ -46,7 +47,8 @@ AttributeTable::AttributeTable(std::vector<AttributeDescription> columns)
         require(column.components == 1 || column.components == 3, column, "components must be 1 or 3");
         require(is_finite(column.fallback), column, "the default must be finite");
         const auto looks = looks_attribute(column.name);
-        require(!looks || looks->components == column.components, column, "the name is taken by the looks of particles");
+        require(!looks || looks->components == column.components, column,
+                "the name is taken by the looks of particles");
     }
 }
 

@@ -214,9 +214,9 @@ Particle Emitter::make_particle(std::uint64_t number, double time) const {
     Particle particle = draw(seed_, number);
     particle.birth_time = time;
     particle.origin.emitter = number_;
-    const auto bits = philox4x32({static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32),
-                                  kLineageStream | stream_, 0},
-                                 {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
+    const auto bits = philox4x32(
+        {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},
+        {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
     particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
     return particle;
 }

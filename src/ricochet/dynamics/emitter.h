@@ -41,7 +41,7 @@ struct EmitterDescription {
     MeanSpread rate_per_frame;
     /// Instead: particles a frame for every pixel of the shape's screen_area(). Reeves's second method.
     MeanSpread rate_per_area;
-    double start = 0.0;       ///< s
+    double start = 0.0;                                     ///< s
     double stop = std::numeric_limits<double>::infinity();  ///< s, end of the rate
     /// Launch direction; zero means the shape's own (disk normal, sphere or mesh normal; for point, box and ball a
     /// uniform random direction).
@@ -62,7 +62,7 @@ struct EmitterDescription {
 /// What of its scene an emitter needs.
 struct EmitterSurroundings {
     double frame_rate = 24.0;  ///< frames a second of rates per frame, > 0; neither output nor time step
-    std::optional<ReferenceCamera> camera = std::nullopt;     ///< of rates per screen area
+    std::optional<ReferenceCamera> camera = std::nullopt;   ///< of rates per screen area
     std::span<const AttributeDescription> attributes = {};  ///< columns of the particles
 };
 
@@ -77,8 +77,8 @@ public:
     /// Particles born in [from, to), in birth order, with everything set but the id, which is left 0. None for an
     /// emitter with a parent (child_emitter.h). Calls must go on where the last one ended, the first one begins at 0.
     /// How the time is cut into calls changes no bit. The burst is born at `start`; after that birth k happens when the
-    /// integral of the rate since `start` passes k + 1/2. The rate is drawn anew for every whole second (or frame) since
-    /// `start` (negative draws count as 0).
+    /// integral of the rate since `start` passes k + 1/2. The rate is drawn anew for every whole second (or frame)
+    /// since `start` (negative draws count as 0).
     [[nodiscard]] std::vector<Particle> births(double from, double to);
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }

@@ -34,7 +34,8 @@ struct CheckShape {
     void operator()(const MeshSurfaceShape& surface) const { require(surface.mesh != nullptr, "the mesh is missing"); }
     void operator()(const ConeShape& cone) const {
         require(is_finite(cone.axis) && length(cone.axis) > 0.0, "the cone's axis must not be zero");
-        require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0, "the cone's angle must be 0 to below 90 degrees");
+        require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0,
+                "the cone's angle must be 0 to below 90 degrees");
         require(is_length(cone.height), "the cone's height must be > 0");
     }
     void operator()(const MeshVolumeShape& volume) const { require(volume.mesh != nullptr, "the mesh is missing"); }

@@ -43,7 +43,7 @@ struct MeshSurfaceShape {
 /// Uniform in a cone, launched along the line from the apex.
 struct ConeShape {
     Vec3 apex;
-    Vec3 axis{0, 0, 1};          ///< from the apex into the cone, not zero
+    Vec3 axis{0, 0, 1};           ///< from the apex into the cone, not zero
     double angle_degrees = 20.0;  ///< between the axis and the side, 0 (a line) to below 90
     double height = 1.0;          ///< m, > 0
 };
@@ -80,9 +80,9 @@ private:
     [[nodiscard]] LaunchPlace in_mesh(RandomSequence& random) const;
 
     EmitterShape shape_;
-    std::vector<double> cumulative_area_;        // of a mesh surface's triangles
+    std::vector<double> cumulative_area_;         // of a mesh surface's triangles
     std::shared_ptr<const MeshInterior> inside_;  // of a mesh volume
-    double cone_slope_ = 0.0;                    // tangent of a cone's angle
+    double cone_slope_ = 0.0;                     // tangent of a cone's angle
 };
 
 /// Points whose convex hull is that of the shape; round shapes by `segments` points a circle that touches from inside.

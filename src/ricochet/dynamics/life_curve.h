@@ -1,6 +1,6 @@
 /// \file
-/// Attributes that change with a particle's age: factors keyed over its life, worked out when a state is shown and never
-/// stored, so that they do not depend on the time step.
+/// Attributes that change with a particle's age: factors keyed over its life, worked out when a state is shown and
+/// never stored, so that they do not depend on the time step.
 #pragma once
 
 #include <span>

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kNoEmitter = 0xFFFFFFFFU;
 struct Origin {
     std::uint32_t emitter = kNoEmitter;  ///< its emitter's number in the scene
     std::uint32_t generation = 0;        ///< 0; of particles born of particles one more than the parent's
-    std::uint64_t lineage = 0;  ///< key of its children's random numbers; depends on neither ids nor time steps
+    std::uint64_t lineage = 0;          ///< key of its children's random numbers; depends on neither ids nor time steps
     std::uint32_t birth_impacts = 0;    ///< impacts so far that have given birth
     std::uint32_t impact_children = 0;  ///< and the children born there
 };
@@ -63,7 +63,7 @@ public:
     std::vector<std::uint8_t> held;        ///< 1 while at rest because friction and support hold it
     /// 1 when an impact has removed it, kShattered when its fragments take its place; gone after the step.
     std::vector<std::uint8_t> absorbed;
-    std::vector<std::uint32_t> draws;      ///< random numbers drawn by impacts so far
+    std::vector<std::uint32_t> draws;  ///< random numbers drawn by impacts so far
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.
     std::vector<std::array<std::uint32_t, 3>> support;
     std::vector<double> cascade_left;  ///< s of a bounce cascade that the end of the step has cut in two

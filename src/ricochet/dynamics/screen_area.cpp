@@ -45,7 +45,7 @@ double hull_area(std::vector<Point2> points) {
 
 double screen_area(const EmitterShape& shape, const ReferenceCamera& camera) {
     const Vec3 forward = normalized(camera.target - camera.position);
-    const auto [right, up] = tangent_frame(forward);  // turning the picture does not change areas
+    const auto [right, up] = tangent_frame(forward);                // turning the picture does not change areas
     const double half_view = camera.field_of_view_degrees / 720.0;  // in turns
     const double scale = 0.5 * camera.image_height * sine_of_turns(half_view + 0.25) / sine_of_turns(half_view);
     std::vector<Point2> seen;

@@ -1,7 +1,8 @@
 /// \file
-/// How large an emitter is on the screen of a reference camera: the second way of W. T. Reeves to say how many particles
-/// a frame gives birth to ("Particle Systems", ACM TOG 2(2), 1983, section 2.1: so many a unit of screen area, so that
-/// what is far away costs little). The camera belongs to the scene and never depends on how pictures are made.
+/// How large an emitter is on the screen of a reference camera: the second way of W. T. Reeves to say how many
+/// particles a frame gives birth to ("Particle Systems", ACM TOG 2(2), 1983, section 2.1: so many a unit of screen
+/// area, so that what is far away costs little). The camera belongs to the scene and never depends on how pictures are
+/// made.
 #pragma once
 
 #include "ricochet/core/vec3.h"

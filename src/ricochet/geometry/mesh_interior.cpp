@@ -42,8 +42,8 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 }  // namespace
 
 MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
-    cells_ = static_cast<std::size_t>(
-        std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMostCells));
+    cells_ =
+        static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMostCells));
     fill_columns();
 }
 

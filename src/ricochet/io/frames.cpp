@@ -17,7 +17,8 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::uin
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
 
-VtkArray attribute_array(const AttributeTable& attributes, std::size_t column, const std::vector<std::uint32_t>& order) {
+VtkArray attribute_array(const AttributeTable& attributes, std::size_t column,
+                         const std::vector<std::uint32_t>& order) {
     const AttributeDescription& description = attributes.columns()[column];
     std::vector<Vec3> vectors;
     std::vector<double> numbers;

@@ -64,7 +64,7 @@ void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     if (contacts_) contacts_->write(simulation);
     frames_.submit(simulation.step_index(), particle_frame(simulation.particles(), simulation.shown_attributes(),
-                                                          simulation.time(), has_spheres_));
+                                                           simulation.time(), has_spheres_));
     last_frame_ = simulation.step_index();
 }
 

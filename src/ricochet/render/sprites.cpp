@@ -10,11 +10,11 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kRows = 16;            // rows per unit of parallel work
-constexpr std::size_t kDiscs = 256;          // discs per unit of parallel work
-constexpr double kSmallestRadius = 0.8;      // pixels
-constexpr double kGlowReach = 2.5;           // a glow's radius over the particle's
-constexpr double kDaylight = 1.8;            // light on a haze
+constexpr std::size_t kRows = 16;        // rows per unit of parallel work
+constexpr std::size_t kDiscs = 256;      // discs per unit of parallel work
+constexpr double kSmallestRadius = 0.8;  // pixels
+constexpr double kGlowReach = 2.5;       // a glow's radius over the particle's
+constexpr double kDaylight = 1.8;        // light on a haze
 
 // A disc on the screen, in pixels.
 struct Disc {
@@ -73,7 +73,8 @@ void lay_over(const Disc& disc, bool glow, std::size_t first_row, std::size_t la
             const double rim = 1.0 - dx * dx - dy * dy;
             if (!(rim > 0.0)) continue;
             const double cover = disc.strength * rim * rim * (glow ? rim : 1.0);
-            const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            const std::size_t pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             if (glow) {
                 layer.light[pixel] += cover * disc.color;
             } else {
@@ -98,7 +99,8 @@ SpriteLayer draw_sprites(const Sprites& sprites, const Preview& preview, const C
     std::stable_sort(discs.begin(), discs.end(), [](const Disc& a, const Disc& b) { return a.depth > b.depth; });
     parallel_for_blocks(static_cast<std::size_t>(height), kRows, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (const Disc& disc : discs) {
-            if (disc.y + disc.radius < static_cast<double>(begin) || disc.y - disc.radius > static_cast<double>(end)) continue;
+            if (disc.y + disc.radius < static_cast<double>(begin) || disc.y - disc.radius > static_cast<double>(end))
+                continue;
             lay_over(disc, sprites.glow, begin, end, width, layer);
         }
     });

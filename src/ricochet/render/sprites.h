@@ -2,8 +2,8 @@
 /// Particles as soft discs that face the camera: light that adds up (sparks), or a haze that covers what is behind
 /// (spray, smoke). The same bytes for any thread count: discs are laid over each other from far to near, ties in the
 /// order given.
-/// Method: W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.5 (particles as points of light that add up);
-/// T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984 (the operator "over").
+/// Method: W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.5 (particles as points of light that add
+/// up); T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984 (the operator "over").
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ struct Sprites {
 
 /// What sprites do to each pixel, rows from the top.
 struct SpriteLayer {
-    std::vector<Vec3> light;             ///< linear light added
+    std::vector<Vec3> light;            ///< linear light added
     std::vector<double> transmittance;  ///< part of what is behind that is still seen, 0..1
 };
 

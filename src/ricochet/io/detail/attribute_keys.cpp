@@ -24,15 +24,17 @@ struct Look {
 };
 constexpr Look kEmitterLooks[] = {
     {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"particle_size", kSizeAttribute}};
-constexpr Look kParticleLooks[] = {{"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
+constexpr Look kParticleLooks[] = {
+    {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
 constexpr Look kCurveLooks[] = {{"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
 
 const ObjectSpec& life_curves_spec() {
     static const ObjectSpec spec{
         .title = "curves over life",
-        .description = "Factors for what a particle was born with, as its age goes on; evaluated where a state is "
-                       "written, never stored. In `over_life` a key's `time` is the part of the lifetime that has "
-                       "passed, from 0 to 1; in `over_age` it is the age in s.",
+        .description =
+            "Factors for what a particle was born with, as its age goes on; evaluated where a state is "
+            "written, never stored. In `over_life` a key's `time` is the part of the lifetime that has "
+            "passed, from 0 to 1; in `over_age` it is the age in s.",
         .keys = {
             vector_curve_key("color", "Of the colour, for red, green and blue.", ""),
             number_curve_key("opacity", "Of the opacity.", ""),
@@ -144,8 +146,8 @@ LifeCurve scalar_curve(const SceneContext& context, const ObjectView& view, std:
     return {std::move(name), KeyedCurve<Vec3>(std::move(keys), curve.interpolation(), curve.ends()), of_lifetime};
 }
 
-void read_named_curves(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view, int components,
-                       bool of_lifetime, EmitterDescription& emitter) {
+void read_named_curves(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                       int components, bool of_lifetime, EmitterDescription& emitter) {
     const char* const key = components == 3 ? "vector_attributes" : "attributes";
     const JsonNode::Object* members = view.node(key).object();
     if (members == nullptr) return;
@@ -154,9 +156,10 @@ void read_named_curves(const SceneContext& context, const SimulationSetup& setup
         const auto* attribute = declared(context, setup, member.key_place, path, member.key);
         if (attribute == nullptr || member.value.object() == nullptr) continue;
         if (attribute->components != components) {
-            context.diagnostics().error(member.key_place, path,
-                                        fmt::format("the attribute has {} components, it belongs into \"{}\"",
-                                                    attribute->components, components == 3 ? "attributes" : "vector_attributes"));
+            context.diagnostics().error(
+                member.key_place, path,
+                fmt::format("the attribute has {} components, it belongs into \"{}\"", attribute->components,
+                            components == 3 ? "attributes" : "vector_attributes"));
             continue;
         }
         if (components == 3) {
@@ -290,7 +293,8 @@ void read_looks(const SceneContext& context, const SimulationSetup& setup, const
                 EmitterDescription& emitter) {
     for (const Look& look : kEmitterLooks) {
         if (!view.has(look.key)) continue;
-        AttributeSpread spread = spread_of(view.node(look.key), look.key == "color" ? 3 : 1).value_or(AttributeSpread{});
+        AttributeSpread spread =
+            spread_of(view.node(look.key), look.key == "color" ? 3 : 1).value_or(AttributeSpread{});
         spread.name = look.column;
         emitter.attributes.push_back(std::move(spread));
     }

@@ -146,7 +146,8 @@ private:
 
     // "temperature", or "wind_x" for a vector; those for looks are declared by being there.
     std::optional<AttributePlace> attribute_place(std::string_view cell) {
-        const bool has_end = cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
+        const bool has_end =
+            cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
         const std::string_view stem = has_end ? cell.substr(0, cell.size() - 2) : cell;
         for (const std::string_view name : {cell, stem}) {
             const int components = name == cell ? 1 : 3;
@@ -168,10 +169,10 @@ private:
     void refuse_column(std::string_view cell, std::vector<std::string_view> names) {
         for (const AttributeDescription& attribute : table_.attributes) names.push_back(attribute.name);
         const std::string help = did_you_mean(nearest_names(cell, names));
-        fail(
-            fmt::format("unknown column \"{}\"{}{}; attributes of one's own are declared by the scene's \"attributes\", "
-                        "vectors have the columns NAME_x, NAME_y and NAME_z",
-                        printable(cell, 60), help.empty() ? "" : ", ", help));
+        fail(fmt::format(
+            "unknown column \"{}\"{}{}; attributes of one's own are declared by the scene's \"attributes\", "
+            "vectors have the columns NAME_x, NAME_y and NAME_z",
+            printable(cell, 60), help.empty() ? "" : ", ", help));
     }
 
     void read_particle(std::string_view line) {
@@ -196,7 +197,8 @@ private:
     bool read_attribute(std::string_view cell, const AttributePlace& place, Particle& particle) {
         const AttributeDescription& attribute = table_.attributes[place.column];
         const std::optional<double> value = number_of(cell);
-        const double most = attribute.name == kColorAttribute || attribute.name == kOpacityAttribute ? 1.0 : kLargestCoordinate;
+        const double most =
+            attribute.name == kColorAttribute || attribute.name == kOpacityAttribute ? 1.0 : kLargestCoordinate;
         const double least = looks_attribute(attribute.name) ? 0.0 : -most;
         if (!value || *value < least || *value > most) {
             fail(fmt::format("found \"{}\" for the attribute \"{}\", expected a number from {} to {}",

@@ -173,7 +173,8 @@ Problem spread_problem(const JsonNode& node, const KeySpec& key) {
     }
     const JsonNode& spread = (*items)[1];
     if (((*items)[0].array() == nullptr) != (spread.array() == nullptr)) {
-        return fmt::format("found {}, expected mean and spread alike: two numbers or two of [x, y, z]", described(spread));
+        return fmt::format("found {}, expected mean and spread alike: two numbers or two of [x, y, z]",
+                           described(spread));
     }
     bool negative = spread.number().value_or(0.0) < 0.0;
     if (spread.array() != nullptr) {
@@ -314,7 +315,8 @@ private:
                 check_object(member.value, *key.content, member_path);
             } else if (key.type == ValueType::quantity_table) {
                 const KeySpec value{.name = "", .type = ValueType::quantity, .description = "", .range = key.range};
-                if (const Problem problem = spread_problem(member.value, value)) refuse(member.value, member_path, *problem);
+                if (const Problem problem = spread_problem(member.value, value))
+                    refuse(member.value, member_path, *problem);
             } else {
                 check_value(member.value, text, member_path);
             }

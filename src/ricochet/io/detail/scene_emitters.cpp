@@ -112,7 +112,8 @@ double most_rate(const SceneContext& context, const SimulationSetup& setup, cons
     const int rates = (most_of(emitter.rate) > 0.0) + (most_of(emitter.rate_per_frame) > 0.0) + (per_area > 0.0);
     if (rates > 1) {
         const char* const key = most_of(emitter.rate_per_frame) > 0.0 ? "rate_per_frame" : "rate_per_area";
-        context.error(view, key, "the emitter has another rate already, expected one of rate, rate_per_frame and rate_per_area");
+        context.error(view, key,
+                      "the emitter has another rate already, expected one of rate, rate_per_frame and rate_per_area");
     }
     double per_frame = most_of(emitter.rate_per_frame);
     if (per_area > 0.0 && !setup.reference_camera) {
@@ -172,7 +173,8 @@ ParentRule rule_of(const SceneContext& context, const ObjectView& view, const Em
         if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
     }
     if (rule.share && rule.on == BirthEvent::life) {
-        context.error(view, "share", "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
+        context.error(view, "share",
+                      "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
     }
     if (rule.share && view.has("particle_radius")) {
         context.error(view, "particle_radius", "radii follow from the parent's when it is shared out, leave it out");

@@ -374,8 +374,9 @@ std::vector<KeySpec> schedule_keys() {
          .fallback = "0"},
         {.name = "rate_per_frame",
          .type = ValueType::pair,
-         .description = "Instead of `rate`: particles a frame of `simulation.frame_rate`, evenly spread inside it; drawn "
-                        "anew for every frame.",
+         .description =
+             "Instead of `rate`: particles a frame of `simulation.frame_rate`, evenly spread inside it; drawn "
+             "anew for every frame.",
          .range = {.lower = 0.0, .upper = 1e12},
          .fallback = "0"},
         {.name = "rate_per_area",
@@ -498,7 +499,8 @@ std::vector<KeySpec> child_emitter_keys() {
          .range = kCoordinate,
          .fallback = "1"},
         {.name = "inherit_color",
-         .description = "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken.",
+         .description =
+             "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken.",
          .range = {.lower = 0.0, .upper = 1.0},
          .fallback = "0"},
     };
@@ -593,26 +595,26 @@ const ObjectSpec& emitter_spec() {
 
 std::vector<KeySpec> particle_keys() {
     std::vector<KeySpec> keys = {
-            {.name = "position",
-             .type = ValueType::vector,
-             .description = "Where it starts.",
-             .unit = "m",
-             .range = kCoordinate,
-             .required = true},
-            {.name = "velocity",
-             .type = ValueType::vector,
-             .description = "How it starts.",
-             .unit = "m/s",
-             .range = kCoordinate,
-             .fallback = "[0, 0, 0]"},
-            {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
-            {.name = "radius", .description = "Its radius.", .unit = "m", .range = kNotNegative, .fallback = "0"},
-            {.name = "spin",
-             .type = ValueType::vector,
-             .description = "Its angular velocity; for particles with a radius.",
-             .unit = "rad/s",
-             .range = kCoordinate,
-             .fallback = "[0, 0, 0]"},
+        {.name = "position",
+         .type = ValueType::vector,
+         .description = "Where it starts.",
+         .unit = "m",
+         .range = kCoordinate,
+         .required = true},
+        {.name = "velocity",
+         .type = ValueType::vector,
+         .description = "How it starts.",
+         .unit = "m/s",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
+        {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
+        {.name = "radius", .description = "Its radius.", .unit = "m", .range = kNotNegative, .fallback = "0"},
+        {.name = "spin",
+         .type = ValueType::vector,
+         .description = "Its angular velocity; for particles with a radius.",
+         .unit = "rad/s",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
     };
     for (KeySpec& key : particle_look_keys()) keys.push_back(std::move(key));
     return keys;
@@ -933,7 +935,8 @@ std::string expectation(const KeySpec& key) {
         case ValueType::vector_pair:
             return "[x, y, z] or [[x, y, z], [spread, spread, spread]], each " + range_words(key.range);
         case ValueType::quantity_table:
-            return "an object {\"name\": value}, a value being a number, [mean, spread], [x, y, z] or [[x, y, z], [spread, spread, spread]]";
+            return "an object {\"name\": value}, a value being a number, [mean, spread], [x, y, z] or [[x, y, z], "
+                   "[spread, spread, spread]]";
     }
     return "";
 }

@@ -49,6 +49,8 @@ public:
     [[nodiscard]] const ValueRange& range() const { return range_; }
     /// Array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
+    /// True when the frames themselves say the colours.
+    [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
 
 private:

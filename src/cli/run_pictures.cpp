@@ -28,6 +28,10 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
 constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
 constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
+constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
+constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
+constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
+constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 
 std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
     if (frames.size() <= kSurveyedFrames) return frames;
@@ -180,19 +184,57 @@ std::vector<double> RunPictures::shown_values(const VtkPolyData& frame, const Fr
     return scalar_values(*array);
 }
 
-// The drawn radii. Points have no size: they get one that can be seen, the smaller the more there are.
-std::vector<double> RunPictures::radii(const VtkPolyData& frame) const {
-    const VtkArray* const own = find_array(frame.point_arrays, has_sizes_ ? kSizeAttribute : "radius");
-    std::vector<double> radii = own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
+// Points have no size: they get one that can be seen, the smaller the more there are.
+double RunPictures::visible_radius() const {
     const double view =
         std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
     const double count = std::max(1.0, static_cast<double>(most_particles_));
-    const double visible = view * std::clamp(0.8 / std::sqrt(count), 0.0029, 0.02);
+    return view * std::clamp(0.8 / std::sqrt(count), 0.0029, 0.02);
+}
+
+std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
+    const VtkArray* own = find_array(frame.point_arrays, has_sizes_ ? kSizeAttribute : "radius");
+    std::vector<double> radii = own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
+    const double visible = visible_radius();
     for (double& radius : radii) {
         if (style_.particle_radius) radius = *style_.particle_radius;
         if (!(radius > 0.0) && !has_sizes_) radius = visible;
     }
     return radii;
+}
+
+// Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
+PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& file) const {
+    const std::vector<Vec3> shown = colors(frame, file);
+    const std::vector<double> radii = shown_radii(frame);
+    const VtkArray* own = find_array(frame.point_arrays, "radius");
+    const std::vector<double> own_radii = own == nullptr ? std::vector<double>(radii.size(), 0.0) : scalar_values(*own);
+    std::vector<double> thread(frame.points.size(), 0.0);  // thickest one at the particle
+    PreviewMoving moving;
+    moving.lines.points = frame.points;
+    for (const auto& [a, b] : frame.lines) {
+        const bool have_size = own_radii[a] > 0.0 && own_radii[b] > 0.0;
+        const double radius = std::min(radii[a], radii[b]) * (have_size ? 1.0 : kThreadRadius);
+        moving.lines.ends.push_back({a, b});
+        moving.lines.radii.push_back(radius);
+        moving.lines.colors.push_back(kRopeColor);
+        thread[a] = std::max(thread[a], radius);
+        thread[b] = std::max(thread[b], radius);
+    }
+    std::vector<bool> is_cloth(frame.points.size(), false);
+    for (const Triangle& triangle : frame.triangles) {
+        for (const std::uint32_t corner : triangle) is_cloth[corner] = true;
+    }
+    moving.cloth.mesh = {frame.points, frame.triangles};
+    moving.cloth.color = kClothColor;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const bool is_thread = thread[i] > 0.0 && (own_radii[i] == 0.0 || radii[i] <= kBead * thread[i]);
+        if (is_thread || is_cloth[i]) continue;
+        moving.spheres.centers.push_back(frame.points[i]);
+        moving.spheres.radii.push_back(radii[i]);
+        moving.spheres.colors.push_back(shown[i]);
+    }
+    return moving;
 }
 
 std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile& file) const {
@@ -208,16 +250,19 @@ std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile&
 
 Image RunPictures::picture(const FrameFile& file, const PictureOptions& options) {
     const VtkPolyData frame = read_vtp(file.path);
+    PreviewMoving shown = moving(frame, file);
     if (!draws_sprites()) {
-        preview_->set_spheres({frame.points, radii(frame), colors(frame, file)});
+        preview_->set_moving(shown);
         return render_picture(*preview_, camera_, options);
     }
+    shown.spheres = {};
+    preview_->set_moving(shown);
     const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
     std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     const bool glow = style_.drawing == ParticleDrawing::glow;
     return render_picture(*preview_, camera_, options,
-                          {frame.points, radii(frame), colors(frame, file), std::move(opacities), glow});
+                          {frame.points, shown_radii(frame), colors(frame, file), std::move(opacities), glow});
 }
 
 }  // namespace ricochet::cli

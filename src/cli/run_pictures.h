@@ -60,10 +60,12 @@ private:
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
     void choose_looks(const VtkPolyData& frame);
     [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame, const FrameFile& file) const;
-    [[nodiscard]] std::vector<double> radii(const VtkPolyData& frame) const;
     [[nodiscard]] bool draws_sprites() const {
         return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow;
     }
+    [[nodiscard]] double visible_radius() const;
+    [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
+    [[nodiscard]] PreviewMoving moving(const VtkPolyData& frame, const FrameFile& file) const;
 
     PictureStyle style_;
     ViewSubject subject_;

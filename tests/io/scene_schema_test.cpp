@@ -10,6 +10,7 @@
 #include "io/force_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
+#include "io/spring_scene.h"
 #include "ricochet/core/random.h"
 #include "ricochet/io/detail/json_parser.h"
 #include "ricochet/io/detail/scene_check.h"
@@ -85,6 +86,10 @@ std::vector<Json> samples() {
     for (const Json& emitter : births["emitters"]) scenes.push_back({{"ricochet", 1}, {"emitters", {emitter}}});
     births.erase("emitters");
     scenes.push_back(births);
+    const Json springs = Json::parse(test::kSpringScene);
+    for (const Json& body : springs["springs"]) {
+        scenes.push_back({{"ricochet", 1}, {"particles", springs["particles"]}, {"springs", {body}}});
+    }
     return scenes;
 }
 
@@ -257,7 +262,7 @@ void expect_agreement_on_random_changes(const Json& sample) {
 }
 
 TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
-    for (const char* sample : {test::kSampleScene, test::kForceScene, test::kEmitterScene}) {
+    for (const char* sample : {test::kSampleScene, test::kForceScene, test::kEmitterScene, test::kSpringScene}) {
         expect_agreement_on_random_changes(Json::parse(sample));
     }
 }

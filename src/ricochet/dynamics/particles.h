@@ -35,6 +35,7 @@ struct Particle {
     double birth_time = 0.0;                                    ///< s, simulation time
     double lifetime = std::numeric_limits<double>::infinity();  ///< s after birth at which it is retired
     Vec3 spin{};                                                ///< angular velocity, rad/s; spheres only
+    bool pinned = false;                                        ///< it never moves: what springs hang on
     Origin origin{};
     std::vector<AttributeValue> attributes = {};  ///< one a column of Particles::attributes; fewer: fallbacks
 };
@@ -67,6 +68,7 @@ public:
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.
     std::vector<std::array<std::uint32_t, 3>> support;
     std::vector<double> cascade_left;  ///< s of a bounce cascade that the end of the step has cut in two
+    std::vector<std::uint8_t> pinned;  ///< 1 when it never moves
     std::vector<double> booked_until;  ///< s, simulation time up to which surfaces have carried a sleeping particle
     AttributeTable attributes;         ///< set its columns before the first particle is appended
     std::vector<Origin> origin;        ///< empty unless keeps_origin

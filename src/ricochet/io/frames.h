@@ -18,6 +18,13 @@ namespace ricochet {
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
                                          bool has_spheres = false);
 
+/// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
+/// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for
+/// triangles and points) and stretch (length over rest length minus 1; of a triangle the largest of its springs; 0
+/// where there is no rest length).
+void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
+                 const std::vector<SpringFace>& faces);
+
 /// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);
 

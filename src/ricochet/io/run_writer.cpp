@@ -63,8 +63,12 @@ void RunWriter::add_step(const Simulation& simulation) {
 void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     if (contacts_) contacts_->write(simulation);
-    frames_.submit(simulation.step_index(), particle_frame(simulation.particles(), simulation.shown_attributes(),
-                                                           simulation.time(), has_spheres_));
+    VtkPolyData frame =
+        particle_frame(simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
+    if (!simulation.springs().empty()) {
+        add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
+    }
+    frames_.submit(simulation.step_index(), std::move(frame));
     last_frame_ = simulation.step_index();
 }
 

@@ -101,7 +101,12 @@ std::string variant_section(const Variant& variant) {
         }
         text += " must be there.\n";
     }
-    return text + key_table(variant.keys);
+    text += key_table(variant.keys);
+    for (const KeySpec& key : variant.keys) {
+        if (key.type != ValueType::list || key.content == nullptr) continue;
+        text += fmt::format("\nEach of `{}`: {}\n{}", key.name, key.content->description, key_table(key.content->keys));
+    }
+    return text;
 }
 
 // Objects within an object that only it has.

@@ -122,6 +122,9 @@ struct MovingParticle {
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
     /// N s: an impact that changes its momentum by as much ends its way there, as if it were absorbed.
     double shatter_impulse = std::numeric_limits<double>::infinity();
+    /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
+    /// own integrator says it. It must outlive the move.
+    const Flight* planned = nullptr;
 };
 
 /// What happened to one particle in one step.
@@ -148,6 +151,10 @@ struct ResponseRules {
     std::span<const Material> materials;
     ResponseSettings settings;
 };
+
+/// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle
+/// yet, else that of its integrator.
+[[nodiscard]] Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration);
 
 /// Moves particles one at a time. Safe from any number of threads.
 class Response {

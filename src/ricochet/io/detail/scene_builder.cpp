@@ -104,6 +104,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_reference_camera(context, scene.setup);
     build_emitters(context, scene.setup);
     build_particles(context, scene.setup);
+    build_springs(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const ObjectView output = context.root().object("output");
     scene.output = {output.text("format"), output.whole_number("every")};

@@ -8,6 +8,7 @@
 #include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/force_keys.h"
 #include "ricochet/io/detail/key_ranges.h"
+#include "ricochet/io/detail/spring_keys.h"
 #include "ricochet/io/detail/suggestion.h"
 
 namespace ricochet::detail {
@@ -116,6 +117,9 @@ const ObjectSpec& simulation_spec() {
              .fallback = "\"ballistic\"",
              .choices = {{"forward_euler", "straight lines; the velocity changes afterwards: first order"},
                          {"symplectic_euler", "the step's force first, then a straight line"},
+                         {"implicit_euler",
+                          "the force of the step's end first, then a straight line: first order, stable "
+                          "however stiff springs and forces are"},
                          {"ballistic", "a parabola: exact when the acceleration is constant"},
                          {"midpoint", "the explicit midpoint method: second order"},
                          {"velocity_verlet",
@@ -243,6 +247,8 @@ const ObjectSpec& rotation_spec() {
     return spec;
 }
 
+}  // namespace
+
 std::vector<KeySpec> placement_keys(std::string_view needs) {
     return {
         {.name = "position",
@@ -266,6 +272,8 @@ std::vector<KeySpec> placement_keys(std::string_view needs) {
          .needs = needs},
     };
 }
+
+namespace {
 
 KeySpec center_key() {
     return {.name = "center",
@@ -615,6 +623,10 @@ std::vector<KeySpec> particle_keys() {
          .unit = "rad/s",
          .range = kCoordinate,
          .fallback = "[0, 0, 0]"},
+        {.name = "pinned",
+         .type = ValueType::boolean,
+         .description = "true: it never moves, for springs to hang on.",
+         .fallback = "false"},
     };
     for (KeySpec& key : particle_look_keys()) keys.push_back(std::move(key));
     return keys;
@@ -776,6 +788,11 @@ std::vector<KeySpec> scene_keys() {
          .description = "Particles that are there from the start, one by one or from a table.",
          .fallback = "[]",
          .content = &particle_spec()},
+        {.name = "springs",
+         .type = ValueType::list,
+         .description = "Springs between particles; ropes, chains and cloth with particles of their own.",
+         .fallback = "[]",
+         .content = &springs_spec()},
         {.name = "attributes",
          .type = ValueType::table,
          .description = "Values of your own that particles carry, by name.",

@@ -101,6 +101,9 @@ struct ObjectSpec {
 /// {"file": ...} in the place of a particle list.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 
+/// Where a shape stands: position, rotation and scale. needs: the key that must stand beside them, or none.
+[[nodiscard]] std::vector<KeySpec> placement_keys(std::string_view needs);
+
 /// The object's keys with those of the variant (null pointer: without), in the order of the table.
 [[nodiscard]] std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant);
 [[nodiscard]] const Variant* find_variant(const ObjectSpec& object, std::string_view name);

@@ -61,6 +61,7 @@ void build_particles(SceneContext& context, SimulationSetup& setup) {
         particle.radius = view.number("radius");
         particle.spin = view.vector("spin");
         particle.attributes = particle_values(context, setup, view);
+        particle.pinned = view.boolean("pinned");
         setup.particles.push_back(particle);
     }
     warn_about_particles_outside(context, setup);

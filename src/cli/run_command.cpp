@@ -121,6 +121,9 @@ void print_warnings(const SimulationStatistics& statistics) {
     warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
     warn(statistics.started_inside, "particles were born exactly on a surface (started_inside)");
     warn(statistics.stayed, "impacts left the particle where it was (stayed)");
+    warn(statistics.births_refused_by_depth, "births were refused beyond max_depth (births_refused_by_depth)");
+    warn(statistics.births_refused_by_population,
+         "births were refused beyond most_particles (births_refused_by_population)");
     warn(statistics.lost_impulses, "impulses were too large to be added to a triangle's total (lost_impulses)");
 }
 
@@ -172,7 +175,8 @@ int run(const RunArguments& arguments) {
     const auto diverged = step_and_write(simulation, writer, scene.output.every, arguments.quiet);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
-        write_state_csv(arguments.output_state, simulation.particles(), simulation.time());
+        write_state_csv(arguments.output_state, simulation.particles(), simulation.shown_attributes(),
+                        simulation.time());
     }
     summary.version = info.version;
     summary.scene = info.scene;

@@ -23,6 +23,10 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["expired"] = statistics.expired;
     json["absorbed"] = statistics.absorbed;
     json["out_of_bounds"] = statistics.out_of_bounds;
+    json["shattered"] = statistics.shattered;
+    json["children"] = statistics.children;
+    json["births_refused_by_depth"] = statistics.births_refused_by_depth;
+    json["births_refused_by_population"] = statistics.births_refused_by_population;
     json["frozen"] = statistics.frozen;
     json["particle_steps"] = statistics.particle_steps;
     json["contacts"] = statistics.contacts;

@@ -19,7 +19,9 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/peak_memory.h"
+#include "ricochet/io/checkpoint.h"
 #include "ricochet/io/output_directory.h"
+#include "ricochet/io/run_files.h"
 #include "ricochet/io/run_writer.h"
 #include "ricochet/io/state_csv.h"
 
@@ -42,10 +44,6 @@ struct RunArguments {
 };
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-void refuse_what_is_not_built(const RunArguments& arguments) {
-    if (arguments.resume) throw InputError("--resume is not built yet; leave it out");
-}
 
 Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     try {
@@ -93,10 +91,22 @@ private:
     double seconds_per_step_ = 0.0;
 };
 
+// What a run needs to know on its way.
+struct RunPlan {
+    OutputOptions output;
+    std::uint64_t fingerprint = 0;
+    double earlier_seconds = 0.0;  // wall time before it was resumed
+    Clock::time_point start = Clock::now();
+    bool quiet = false;
+
+    [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
+};
+
 // Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why.
-std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, std::uint64_t every, bool quiet) {
-    RunProgress progress(quiet);
+std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
+    RunProgress progress(plan.quiet);
     writer.write_frame(simulation);
+    std::uint64_t last_checkpoint = simulation.step_index();
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
         try {
             simulation.step();
@@ -104,10 +114,25 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
             return error.what();
         }
         writer.add_step(simulation);
-        if (simulation.step_index() % every == 0) writer.write_frame(simulation);
         progress.show(simulation);
+        const std::uint64_t step = simulation.step_index();
+        if (step % plan.output.every != 0) continue;
+        writer.write_frame(simulation);
+        if (plan.output.checkpoint_every == 0 || step - last_checkpoint < plan.output.checkpoint_every) continue;
+        writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
+        last_checkpoint = step;
     }
     return std::nullopt;
+}
+
+// An interrupted run leaves what it takes to go on; a finished one needs nothing.
+void settle_checkpoint(const Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
+    if (simulation.finished()) {
+        writer.remove_checkpoint();
+    } else {
+        writer.write_frame(simulation);
+        writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
+    }
 }
 
 void print_warnings(const SimulationStatistics& statistics) {
@@ -152,38 +177,62 @@ bool print_violations(const Simulation& simulation) {
     return !lines.empty();
 }
 
-int run(const RunArguments& arguments) {
-    refuse_what_is_not_built(arguments);
-    const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
+// Puts the simulation where the interrupted run in the folder has stopped.
+std::optional<Checkpoint> resume(const RunArguments& arguments, const OutputDirectory& folder, Simulation& simulation,
+                                 RunPlan& plan) {
+    if (!arguments.resume) return std::nullopt;
+    Checkpoint checkpoint = read_checkpoint(folder.path() / kCheckpointFile, plan.fingerprint, simulation);
+    folder.remove_after(simulation.step_index());
+    plan.earlier_seconds = checkpoint.wall_seconds;
+    if (!arguments.quiet) {
+        fmt::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
+                   simulation.time());
+    }
+    return checkpoint;
+}
+
+SceneDescription load_scene(const RunArguments& arguments) {
     SceneArguments wanted = arguments.scene;
     if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
     SceneDescription scene = load_scene(wanted);
+    scene.setup.options.verify = arguments.verify;
+    return scene;
+}
+
+void complete(RunSummary& summary, const RunInfo& info, const RunPlan& plan) {
+    summary.version = info.version;
+    summary.scene = info.scene;
+    summary.threads = thread_count();
+    summary.peak_memory_bytes = peak_memory_bytes();
+    summary.wall_seconds = plan.seconds();
+}
+
+int run(const RunArguments& arguments) {
+    const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
+    SceneDescription scene = load_scene(arguments);
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);
-    scene.setup.options.verify = arguments.verify;
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
-
     for (const std::string& warning : simulation.warnings()) {
         fmt::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
     const InterruptGuard guard;
-    const OutputDirectory folder(arguments.output);
+    using Earlier = OutputDirectory::Earlier;
+    const OutputDirectory folder(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
     check_writable(arguments.output_state);
-    const Clock::time_point start = Clock::now();
-    RunWriter writer(folder.path(), info, simulation, region);
-    const auto diverged = step_and_write(simulation, writer, scene.output.every, arguments.quiet);
+    RunPlan plan{.output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet};
+    const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
+    RunWriter writer(folder.path(), info, simulation, region, resumed);
+    const auto diverged = step_and_write(simulation, writer, plan);
+    if (!diverged) settle_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
         write_state_csv(arguments.output_state, simulation.particles(), simulation.shown_attributes(),
                         simulation.time());
     }
-    summary.version = info.version;
-    summary.scene = info.scene;
-    summary.threads = thread_count();
+    complete(summary, info, plan);
     summary.interrupted = !simulation.finished() && !diverged;
-    summary.peak_memory_bytes = peak_memory_bytes();
-    summary.wall_seconds = seconds_since(start);
     writer.write_summary(summary);
     if (!arguments.quiet) print_report(summary, arguments.output);
     if (diverged) throw RunError(fmt::format("{}: stopped after {} frames: {}", info.scene, summary.frames, *diverged));
@@ -206,8 +255,8 @@ void add_options(CLI::App& command, RunArguments& a) {
     command.add_flag(
         "--verify", a.verify,
         "Also check every leg, side and distance by independent exact code; leaks are listed and end with 1");
-    // Of the contract, not built yet: refused by name.
-    command.add_flag("--resume", a.resume)->group("");
+    command.add_flag("--resume", a.resume,
+                     "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
 }
 
 }  // namespace

@@ -39,6 +39,18 @@ public:
     /// After the move: breaks what is overstretched.
     void settle(const Particles& particles);
 
+    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h. Call bind after it.
+    template <class Archive>
+    void archive(Archive& a) {
+        springs_.archive(a);
+        a(first_try_);
+        a(unsolved_steps_);
+        a(given_);
+        a(gained_);
+        a(energy_after_plan_);
+        a(watching_);
+    }
+
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
     /// Steps whose implicit equations were not solved to the tolerance.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }

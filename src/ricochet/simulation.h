@@ -11,6 +11,7 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/box3.h"
+#include "ricochet/core/byte_stream.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
@@ -122,6 +123,15 @@ public:
     [[nodiscard]] double time() const;               ///< s
     [[nodiscard]] std::uint64_t step_index() const;  ///< steps done
     [[nodiscard]] std::uint64_t step_count() const;  ///< steps in all
+
+    /// Writes everything that the steps so far have left behind, so that another simulation of the same setup can go on
+    /// from here to the same bits. The bytes are those of this version of the library and this kind of machine.
+    void save(const ByteSink& sink) const;
+    /// Takes such a state over. To be called before the first step() of a simulation made from the same setup (threads
+    /// and options.verify may differ). Throws InputError when the bytes are not such a state or belong to another
+    /// setup; the simulation cannot be used then. What options.verify found before it is not known, and particles are
+    /// watched from where they are.
+    void restore(const ByteSource& source);
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;

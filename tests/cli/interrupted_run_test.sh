@@ -56,6 +56,53 @@ steps="$(sed -nE 's/^ *"steps": ([0-9]+),$/\1/p' "$folder/interrupted/summary.js
 [[ -f "$folder/interrupted/particles_$(printf '%06d' "$steps").vtp" ]] || fail "the final state is no frame"
 open_with_vtk interrupted
 
+# A run that was interrupted twice and killed once ends as one that never stopped, to the bit.
+cat >"$folder/resumed.json" <<'SCENE'
+{
+  "ricochet": 1,
+  "simulation": {"time_step": 0.001, "duration": 1.5, "seed": 5},
+  "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+  "attributes": {"charge": {"default": 1.5}},
+  "materials": {"plain": {"restitution": 0.8, "diffuse": 0.3}},
+  "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "plain"}],
+  "emitters": [{"type": "box", "center": [0, 0, 0.5], "size": [1, 1, 0.4], "burst": 500, "rate": 400}],
+  "output": {"every": 50, "contacts": true, "checkpoint_every": 100}
+}
+SCENE
+"$ricochet" run "$folder/resumed.json" --output "$folder/whole" --output-state "$folder/whole.csv" --quiet
+[[ ! -e "$folder/whole/checkpoint.bin" ]] || fail "a finished run leaves a checkpoint"
+more=()
+for signal in INT KILL INT; do
+    before="$(compgen -G "$folder/resumed/particles_*.vtp" | wc -l || true)"
+    "$ricochet" run "$folder/resumed.json" --output "$folder/resumed" "${more[@]}" --quiet 2>"$folder/resumed.err" &
+    run=$!
+    until (($(compgen -G "$folder/resumed/particles_*.vtp" | wc -l) > before + 3)) || ! kill -0 "$run" 2>/dev/null; do
+        sleep 0.01
+    done
+    kill "-$signal" "$run" 2>/dev/null || true
+    wait "$run" || true
+    [[ -f "$folder/resumed/checkpoint.bin" ]] || break
+    more=(--resume)
+done
+if [[ -f "$folder/resumed/checkpoint.bin" ]]; then
+    "$ricochet" run "$folder/resumed.json" --output "$folder/resumed" --resume --output-state "$folder/resumed.csv" \
+        --quiet --threads 1
+    cmp "$folder/whole.csv" "$folder/resumed.csv" || fail "a resumed run ends in another state"
+    cmp "$folder/whole/particles_001500.vtp" "$folder/resumed/particles_001500.vtp" || fail "the last frames differ"
+    for frame in "$folder"/whole/particles_*.vtp; do
+        cmp "$frame" "$folder/resumed/$(basename "$frame")" || fail "a frame of a resumed run differs"
+        grep -q "$(basename "$frame")" "$folder/resumed/particles.pvd" || fail "a frame is missing in the series"
+    done
+    grep -q '"interrupted": false' "$folder/resumed/summary.json" || fail "the resumed run was not finished"
+    open_with_vtk resumed
+else
+    echo "the run was too fast to be interrupted: resuming was not tried"
+fi
+code=0
+"$ricochet" run "$folder/resumed.json" --output "$folder/interrupted" --resume 2>"$folder/other.err" || code=$?
+((code == 2)) || fail "exit code $code after resuming with another scene"
+grep -q 'the scene is not the one that was interrupted' "$folder/other.err" || fail "$(cat "$folder/other.err")"
+
 run_and_signal terminated TERM
 ((code == 143)) || fail "exit code $code after SIGTERM"
 open_with_vtk terminated

@@ -181,10 +181,16 @@ TEST(RunCommand, RefusesThreadCountsThatMakeNoSense) {
     EXPECT_FALSE(files.exists("out"));
 }
 
-TEST(RunCommand, RefusesWhatIsNotBuiltYetByName) {
+TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     const RunFiles files;
-    expect_refused(files.run({"--resume"}), 2, "--resume is not built yet");
+    expect_refused(files.run({"--resume"}), 2, "no run was here that could be resumed");
     EXPECT_FALSE(files.exists("out"));
+    ASSERT_EQ(files.run().exit_code, 0);
+    EXPECT_FALSE(files.exists("out/checkpoint.bin"));
+    expect_refused(files.run({"--resume"}), 2, "there is no checkpoint to resume from");
+    EXPECT_TRUE(files.exists("out/summary.json"));
+    (void)files.folder.write("out/checkpoint.bin", "not a checkpoint at all");
+    expect_refused(files.run({"--resume"}), 2, "not a checkpoint that this version can read");
 }
 
 TEST(RunCommand, RefusesOutputFoldersThatAreNotItsOwn) {

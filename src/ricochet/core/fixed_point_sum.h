@@ -2,6 +2,7 @@
 /// A sum whose bits do not depend on the order of its terms, added to from any number of threads.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -40,6 +41,15 @@ public:
         }
         const double magnitude = static_cast<double>(high) * 0x1p64 + static_cast<double>(low);
         return (negative ? -magnitude : magnitude) * unit;
+    }
+
+    /// The counter itself, low word first; not while others are adding.
+    [[nodiscard]] std::array<std::uint64_t, 2> words() const {
+        return {low_.load(std::memory_order_relaxed), high_.load(std::memory_order_relaxed)};
+    }
+    void set_words(const std::array<std::uint64_t, 2>& words) {
+        low_.store(words[0], std::memory_order_relaxed);
+        high_.store(words[1], std::memory_order_relaxed);
     }
 
 private:

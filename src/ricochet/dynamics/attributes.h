@@ -65,6 +65,12 @@ public:
     /// All values of entry i; empty without columns.
     [[nodiscard]] std::vector<AttributeValue> at(std::size_t i) const;
 
+    /// Saves or restores the values; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        for (std::vector<double>& column : values_) a(column);
+    }
+
 private:
     std::vector<AttributeDescription> columns_;
     std::vector<std::vector<double>> values_;  // one list a column, components side by side

@@ -84,6 +84,14 @@ public:
     /// many.
     std::size_t break_overstretched(std::span<const Vec3> position);
 
+    /// Saves or restores which springs are broken or lost; a: an archive of core/binary_archive.h. Call bind after it.
+    template <class Archive>
+    void archive(Archive& a) {
+        a(states_);
+        a(broken_);
+        a(lost_);
+    }
+
     /// Springs that have broken so far.
     [[nodiscard]] std::size_t broken() const { return broken_; }
     /// Springs that have been removed so far because a particle at an end was gone.

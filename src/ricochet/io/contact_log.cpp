@@ -45,8 +45,10 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
     return frame;
 }
 
-ContactLog::ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows)
-    : files_(folder, kContactSeries), most_rows_(most_rows), step_(simulation.step_index()) {
+ContactLog::ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows,
+                       std::vector<PvdEntry> earlier)
+    : files_(folder, kContactSeries, std::move(earlier)), most_rows_(most_rows), step_(simulation.step_index()) {
+    if (step_ > 0) written_ = step_;  // an interrupted run has written all of its steps
     if (!simulation.options().record_contacts) {
         throw std::logic_error("a contact log needs a simulation that records its contacts");
     }

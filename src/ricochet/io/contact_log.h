@@ -45,13 +45,17 @@ public:
     static constexpr std::size_t kMostRows = std::size_t{1} << 19;
 
     /// The simulation must record its contacts (SimulationOptions::record_contacts); its steps from now on are logged.
-    ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows = kMostRows);
+    /// earlier: the files of an interrupted run that goes on here.
+    ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows = kMostRows,
+               std::vector<PvdEntry> earlier = {});
 
     /// Takes the rows of the last step; to be called after every step (again for the same step: no effect). Throws
     /// std::logic_error when a step was left out, and what an earlier file's writing threw.
     void add_step(const Simulation& simulation);
     /// Writes what has come since the file before, if only to say that nothing has. Throws like add_step().
     void write(const Simulation& simulation);
+    /// Waits until the files so far are on disk; the whole series. Throws what the writing threw.
+    [[nodiscard]] std::vector<PvdEntry> drain() { return files_.drain(); }
     /// Waits until everything is on disk. Throws what the writing threw.
     void finish() { files_.finish(); }
 

@@ -13,8 +13,12 @@ constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files)
-    : folder_(std::move(folder)), files_(files), thread_([this] { work(); }) {}
+FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
+    : folder_(std::move(folder)),
+      files_(files),
+      series_(std::move(earlier)),
+      submitted_(series_.size()),
+      thread_([this] { work(); }) {}
 
 FrameWriter::~FrameWriter() {
     {
@@ -31,6 +35,15 @@ void FrameWriter::submit(std::uint64_t step, VtkPolyData frame) {
     queue_.push_back({step, std::move(frame)});
     ++submitted_;
     changed_.notify_all();
+}
+
+// The list of the series is kept up to date too: what is lost after a checkpoint must not leave it behind.
+std::vector<PvdEntry> FrameWriter::drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return queue_.empty() || error_; });
+    if (error_) std::rethrow_exception(error_);
+    if (listed_ != series_.size()) write_series();
+    return series_;
 }
 
 void FrameWriter::finish() {

@@ -22,7 +22,9 @@ class FrameWriter {
 public:
     static constexpr std::size_t kQueueLength = 2;
 
-    explicit FrameWriter(std::filesystem::path folder, FileSeries files = kParticleSeries);
+    /// earlier: the frames of an interrupted run that goes on here.
+    explicit FrameWriter(std::filesystem::path folder, FileSeries files = kParticleSeries,
+                         std::vector<PvdEntry> earlier = {});
     /// Gives up what is not yet written.
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
@@ -30,6 +32,8 @@ public:
 
     /// Hands over a frame. Throws what an earlier frame's writing threw.
     void submit(std::uint64_t step, VtkPolyData frame);
+    /// Waits until everything handed over so far is on disk; the whole series. Throws what the writing threw.
+    [[nodiscard]] std::vector<PvdEntry> drain();
     /// Waits until everything is on disk. Throws what the writing threw. No submit() after it.
     void finish();
     /// Frames handed over so far.

@@ -80,14 +80,15 @@ void lock_marker(int descriptor, const std::filesystem::path& folder) {
     }
 }
 
-void remove_earlier_run(const std::filesystem::path& folder) {
+template <class Wanted>
+void remove_files(const std::filesystem::path& folder, Wanted&& is_wanted) {
     std::error_code error;
     std::vector<std::filesystem::path> files;
     for (auto entry = std::filesystem::directory_iterator(folder, error);
          !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::filesystem::file_type type = entry->symlink_status().type();
         const bool file = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::symlink;
-        if (file && is_run_file(entry->path().filename().string())) files.push_back(entry->path());
+        if (file && is_wanted(entry->path().filename().string())) files.push_back(entry->path());
     }
     if (error) fail(folder, "look into the output folder", error.message());
     for (const std::filesystem::path& file : files) {
@@ -98,16 +99,28 @@ void remove_earlier_run(const std::filesystem::path& folder) {
 
 }  // namespace
 
-OutputDirectory::OutputDirectory(std::filesystem::path path) : path_(std::move(path)) {
+OutputDirectory::OutputDirectory(std::filesystem::path path, Earlier earlier) : path_(std::move(path)) {
+    std::error_code ignored;
+    if (earlier == Earlier::keep && !std::filesystem::exists(path_ / kRunMarkerFile, ignored)) {
+        throw InputError(fmt::format("{}: no run was here that could be resumed; leave --resume out", path_.string()));
+    }
     make_folder(path_);
     marker_ = open_marker(path_);
     try {
         lock_marker(marker_, path_);
-        remove_earlier_run(path_);
+        if (earlier == Earlier::remove) remove_files(path_, [](const std::string& name) { return is_run_file(name); });
     } catch (...) {
         ::close(marker_);
         throw;
     }
+}
+
+void OutputDirectory::remove_after(std::uint64_t step) const {
+    remove_files(path_, [&](const std::string& name) {
+        const auto frame = step_of_frame_file(name);
+        const auto contacts = step_of_contact_file(name);
+        return (frame && *frame > step) || (contacts && *contacts > step);
+    });
 }
 
 OutputDirectory::~OutputDirectory() { ::close(marker_); }

@@ -89,9 +89,9 @@ std::optional<std::size_t> index_of_collider_file(std::string_view name) {
 bool is_run_file(std::string_view name) {
     const std::string_view finished = without_partial_ending(name);
     if (is_comparison_file(finished)) return true;
-    return finished == kRunInfoFile || finished == kSummaryFile || finished == kParticleSeriesFile ||
-           finished == kColliderSeriesFile || finished == kContactSeriesFile || step_of_frame_file(finished) ||
-           step_of_contact_file(finished) || index_of_collider_file(finished);
+    return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
+           finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
+           step_of_frame_file(finished) || step_of_contact_file(finished) || index_of_collider_file(finished);
 }
 
 }  // namespace ricochet

@@ -10,9 +10,10 @@
 
 namespace ricochet {
 
-inline constexpr const char* kRunMarkerFile = ".ricochet-run";  ///< says that the folder is a run's own
-inline constexpr const char* kRunInfoFile = "run.json";         ///< what is being run; written at the start
-inline constexpr const char* kSummaryFile = "summary.json";     ///< what came out; written at the end
+inline constexpr const char* kRunMarkerFile = ".ricochet-run";    ///< says that the folder is a run's own
+inline constexpr const char* kRunInfoFile = "run.json";           ///< what is being run; written at the start
+inline constexpr const char* kSummaryFile = "summary.json";       ///< what came out; written at the end
+inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< of an interrupted run, to go on from
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";

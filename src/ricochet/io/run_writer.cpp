@@ -40,13 +40,18 @@ Box3 particle_region(const SimulationSetup& setup) {
     return region;
 }
 
-RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region)
+RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
+                     const std::optional<Checkpoint>& resumed)
     : folder_(std::move(folder)),
       info_(std::move(info)),
       region_(region),
       has_spheres_(simulation.has_spheres()),
-      frames_(folder_) {
-    if (simulation.options().record_contacts) contacts_.emplace(folder_, simulation);
+      frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}) {
+    if (resumed) last_frame_ = simulation.step_index();
+    if (simulation.options().record_contacts) {
+        contacts_.emplace(folder_, simulation, ContactLog::kMostRows,
+                          resumed ? resumed->contacts : std::vector<PvdEntry>{});
+    }
     region_.include(mesh_region(simulation));
     info_.colliders = describe_colliders(simulation);
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
@@ -70,6 +75,17 @@ void RunWriter::write_frame(const Simulation& simulation) {
     }
     frames_.submit(simulation.step_index(), std::move(frame));
     last_frame_ = simulation.step_index();
+}
+
+void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds) {
+    Checkpoint checkpoint{scene, wall_seconds, frames_.drain(), {}};
+    if (contacts_) checkpoint.contacts = contacts_->drain();
+    ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
+}
+
+void RunWriter::remove_checkpoint() const {
+    std::error_code ignored;
+    std::filesystem::remove(folder_ / kCheckpointFile, ignored);
 }
 
 RunSummary RunWriter::finish(const Simulation& simulation) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/io/checkpoint.h"
 #include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/run_info.h"
@@ -25,7 +26,9 @@ class RunWriter {
 public:
     /// folder: an OutputDirectory's, which must outlive the writer. region: what a plane has to be large enough for,
     /// besides the meshes. Fills in info.colliders. Throws RunError when the disk does not take it.
-    RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region);
+    /// resumed: of the interrupted run that the simulation goes on with.
+    RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
+              const std::optional<Checkpoint>& resumed = std::nullopt);
 
     /// To be called after every step of a simulation that records its contacts, so that none is lost between frames;
     /// no effect for others. Throws like ContactLog::add_step().
@@ -33,6 +36,11 @@ public:
     /// Hands the present state over as a frame, with the contacts since the one before where the simulation records
     /// them. Throws what an earlier frame's writing threw.
     void write_frame(const Simulation& simulation);
+    /// Writes a checkpoint of the present state, which must be a frame already (write_frame()), and waits until all
+    /// that it names is on disk. scene: the scene's fingerprint; wall_seconds: spent so far. Throws like write_frame().
+    void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds);
+    /// A run that is finished needs no checkpoint.
+    void remove_checkpoint() const;
     /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
     /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
     [[nodiscard]] RunSummary finish(const Simulation& simulation);

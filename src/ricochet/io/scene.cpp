@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ricochet/io/detail/diagnostics.h"
+#include "ricochet/io/detail/fingerprint.h"
 #include "ricochet/io/detail/json_parser.h"
 #include "ricochet/io/detail/scene_builder.h"
 #include "ricochet/io/detail/scene_check.h"
@@ -40,10 +41,12 @@ SceneDescription parse_scene(std::string_view text, const std::filesystem::path&
     std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
     if (!root) throw SceneError(diagnostics.errors());
     for (std::size_t i = 0; i < overrides.size(); ++i) detail::apply_override(*root, i, diagnostics);
+    const std::uint64_t fingerprint = detail::scene_fingerprint(*root);
     detail::check_scene(*root, diagnostics);
     SceneDescription scene = detail::build_scene(*root, file.parent_path(), diagnostics);
     if (diagnostics.failed()) throw SceneError(diagnostics.errors());
     scene.file = file.string();
+    scene.fingerprint = fingerprint;
     scene.warnings = diagnostics.warnings();
     return scene;
 }

@@ -18,7 +18,8 @@ namespace ricochet {
 /// What a run writes.
 struct OutputOptions {
     std::string format = "vtp";
-    std::uint64_t every = 1;  ///< steps from one frame to the next, >= 1
+    std::uint64_t every = 1;             ///< steps from one frame to the next, >= 1
+    std::uint64_t checkpoint_every = 0;  ///< steps from one checkpoint to the next, at the frame that follows; 0: none
 };
 
 /// Where a picture is taken from.
@@ -36,6 +37,8 @@ struct SceneDescription {
     std::optional<CameraDescription> camera;
     std::string file;                   ///< as it was named
     std::vector<std::string> warnings;  ///< one line each, with file and place
+    /// Hash of all that decides the run (not of output and camera): a run may be resumed where it is the same.
+    std::uint64_t fingerprint = 0;
 };
 
 /// All that is wrong with a scene.

@@ -107,7 +107,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_springs(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const ObjectView output = context.root().object("output");
-    scene.output = {output.text("format"), output.whole_number("every")};
+    scene.output = {output.text("format"), output.whole_number("every"), output.whole_number("checkpoint_every")};
     scene.setup.options.record_contacts = output.boolean("contacts");
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"));
     if (scene.setup.particles.empty() && scene.setup.emitters.empty()) {

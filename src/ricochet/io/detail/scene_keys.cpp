@@ -703,6 +703,12 @@ const ObjectSpec& output_spec() {
              .description = "Steps from one frame to the next. The last state is always written.",
              .range = {.lower = 1.0, .upper = 4294967295.0},
              .fallback = "1"},
+            {.name = "checkpoint_every",
+             .type = ValueType::integer,
+             .description = "Steps from one checkpoint to the next, each made with the frame that follows. An "
+                            "interrupted run leaves one in any case; `ricochet run --resume` goes on from it.",
+             .range = {.lower = 0.0, .upper = 4294967295.0},
+             .fallback = "0"},
             {.name = "contacts",
              .type = ValueType::boolean,
              .description = "Write every impact, as points with their columns, once a frame.",

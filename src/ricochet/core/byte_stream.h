@@ -1,0 +1,16 @@
+/// \file
+/// Where saved states go to and come from.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+namespace ricochet {
+
+/// Takes the bytes, in order; throws when it cannot.
+using ByteSink = std::function<void(std::span<const std::byte>)>;
+/// Gives exactly as many bytes as the span holds, in order; throws when there are not so many.
+using ByteSource = std::function<void(std::span<std::byte>)>;
+
+}  // namespace ricochet

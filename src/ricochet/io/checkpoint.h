@@ -1,0 +1,32 @@
+/// \file
+/// Checkpoints: an interrupted run as one file, from which it goes on to the same bits.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "ricochet/io/vtk.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// What a run's folder holds besides the simulation's state.
+struct Checkpoint {
+    std::uint64_t scene = 0;         ///< SceneDescription::fingerprint
+    double wall_seconds = 0.0;       ///< spent so far
+    std::vector<PvdEntry> frames;    ///< written so far
+    std::vector<PvdEntry> contacts;  ///< the same of the contact log
+};
+
+/// Writes state and checkpoint; an older file stays until the new one is complete. Throws RunError when the disk does
+/// not take it.
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation);
+
+/// Puts a simulation, which has not made a step yet, where the checkpoint was made. scene: the fingerprint of the scene
+/// that it was made from. Throws InputError, naming the file and what to do, when there is no such file, when it is
+/// damaged, of another version, or of another scene.
+[[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene,
+                                         Simulation& simulation);
+
+}  // namespace ricochet

@@ -1,0 +1,144 @@
+/// \file
+/// Private to the simulation: what a running simulation is made of.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ricochet/collision/collision_world.h"
+#include "ricochet/core/fixed_point_sum.h"
+#include "ricochet/coupled_motion.h"
+#include "ricochet/offspring.h"
+#include "ricochet/run_check.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// Particles per unit of parallel work.
+inline constexpr std::size_t kParticleBlock = 256;
+
+/// Totals of one surface.
+struct SurfaceTotals {
+    std::atomic<std::uint64_t> hits{0};
+    FixedPointSum x;
+    FixedPointSum y;
+    FixedPointSum z;
+};
+
+/// What a block of particles adds to the statistics; blocks are added in order.
+struct BlockCounts {
+    std::uint64_t contacts = 0;
+    std::uint64_t budget_exhausted = 0;
+    std::uint64_t stayed = 0;
+    std::uint64_t frozen = 0;
+    std::uint64_t lost_impulses = 0;
+    std::uint32_t bounces_max = 0;
+    std::uint64_t trials = 0;
+    std::uint64_t penetrations = 0;
+    double unsimulated = 0.0;
+    double penetration_sum = 0.0;
+    double penetration_deepest = 0.0;
+    std::vector<ContactRecord> records;
+    std::vector<Violation> violations;
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
+
+    void add(const MoveOutcome& outcome) {
+        contacts += outcome.bounces;
+        stayed += outcome.stayed;
+        frozen += outcome.frozen ? 1 : 0;
+        budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
+        unsimulated += outcome.unsimulated_time;
+        bounces_max = std::max(bounces_max, outcome.bounces);
+        trials += outcome.trials;
+        penetrations += outcome.depth > 0.0 ? 1 : 0;
+        penetration_sum += outcome.depth;
+        penetration_deepest = std::max(penetration_deepest, outcome.depth);
+    }
+    void add_to(SimulationStatistics& statistics) const {
+        statistics.contacts += contacts;
+        statistics.budget_exhausted += budget_exhausted;
+        statistics.stayed += stayed;
+        statistics.frozen += frozen;
+        statistics.lost_impulses += lost_impulses;
+        statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
+        statistics.unsimulated_time += unsimulated;
+        statistics.trials += trials;
+        statistics.penetrations += penetrations;
+        statistics.penetration_sum += penetration_sum;
+        statistics.penetration_deepest = std::max(statistics.penetration_deepest, penetration_deepest);
+    }
+};
+
+struct Simulation::Impl {
+    explicit Impl(SimulationSetup setup);
+
+    [[nodiscard]] bool has_energy(std::size_t i) const;
+    void emit(double from, double to);
+    void add(Particle particle);
+    void move_all(double from, double to);
+    void move_from(std::size_t first, double from, double to);
+    void bear_children(double from, double to);
+    [[nodiscard]] bool keeps_records() const { return options.record_contacts || offspring; }
+    void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
+    void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
+    void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
+    void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
+    void collect_records(std::vector<BlockCounts>& blocks);
+    void sort_records();
+    // What holds a particle under steady forces holds it for good, so asking again is not needed.
+    [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
+    [[nodiscard]] MovingParticle moving(std::size_t i, double start);
+    [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
+    void move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
+    void compact(const std::vector<std::uint8_t>& keep);
+    void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
+    void add_weights_of_sleepers(double sign);
+    void collect_violations(const std::vector<BlockCounts>& blocks);
+    void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
+    void retire(double now);
+    template <class Archive>
+    void archive(Archive& a);
+    [[nodiscard]] std::uint64_t collider_hash() const;
+    void replay_emitters();
+    [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
+    [[nodiscard]] double time_at(std::uint64_t step) const {
+        return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
+    }
+    [[nodiscard]] ForceInput input(std::size_t i, double now) const {
+        return {particles.position[i], particles.velocity[i], particles.mass[i], particles.radius[i], now,
+                particles.id[i]};
+    }
+
+    SimulationOptions options;
+    std::vector<std::string> warnings;
+    ForceField forces;
+    std::vector<Material> materials;
+    CollisionWorld world;
+    CoupledMotion coupled;
+    std::vector<Emitter> emitters;
+    std::optional<Box3> bounds;
+    std::unique_ptr<Response> response;
+    std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
+    Particles particles;
+    std::vector<SpringFace> spring_faces;
+    SimulationStatistics statistics;
+    std::vector<SurfaceTotals> totals;
+    std::vector<ContactRecord> records;       ///< of the step
+    std::vector<ContactRecord> pass_records;  ///< of the particles that were moved last, for their children
+    std::unique_ptr<Offspring> offspring;     ///< where particles are born of particles
+    std::unique_ptr<RunCheck> check;          ///< with options.verify
+    std::vector<Violation> violations;
+    std::vector<Violation> last_violations;
+    std::uint64_t steps;
+    std::uint64_t next_id = 0;
+    bool may_sleep;
+    bool has_spheres = false;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,292 @@
+// One step: emit, move, give birth, retire.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/rollback.h"
+#include "ricochet/simulation_impl.h"
+
+namespace ricochet {
+
+void Simulation::step() {
+    if (finished()) return;
+    const double from = impl_->time_at(impl_->statistics.steps);
+    const double to = impl_->time_at(impl_->statistics.steps + 1);
+    impl_->emit(from, to);
+    if (impl_->check) impl_->check->watch_newborn(impl_->particles);
+    impl_->move_all(from, to);
+    impl_->retire(to);
+    ++impl_->statistics.steps;
+}
+
+// Particles that are born of particles inside the step are moved from their births to its end, with their own children
+// in turn.
+void Simulation::Impl::move_all(double from, double to) {
+    records.clear();
+    last_violations.clear();
+    std::size_t first = 0;
+    const std::uint64_t emitted_before = statistics.emitted;
+    do {
+        const std::size_t end = particles.size();
+        if (offspring) offspring->before_move(particles, first);
+        move_from(first, from, to);
+        if (offspring) bear_children(from, to);
+        if (check) check->watch_newborn(particles);
+        first = end;
+    } while (first < particles.size());
+    if (statistics.emitted > emitted_before && coupled.is_active()) coupled.bind(particles);
+    if (options.record_contacts) sort_records();
+}
+
+void Simulation::Impl::bear_children(double from, double to) {
+    OffspringCounts counts;
+    for (Particle& child : offspring->after_move(world, particles, from, to, std::move(pass_records), counts)) {
+        add(std::move(child));
+    }
+    statistics.children += counts.children;
+    statistics.births_refused_by_depth += counts.refused_by_depth;
+    statistics.births_refused_by_population += counts.refused_by_population;
+}
+
+// Particles that act on each other are planned together first; an adaptive plan may cut the step into parts. The
+// newborn join them with the next step.
+void Simulation::Impl::move_from(std::size_t first, double from, double to) {
+    const std::size_t count = particles.size() - first;
+    std::vector<BlockCounts> blocks((count + kParticleBlock - 1) / kParticleBlock);
+    const bool is_planned = coupled.is_active() && first == 0;
+    for (double now = from; now < to;) {
+        const double whole = to - now;
+        const double planned = is_planned ? coupled.plan(particles, now, whole) : whole;
+        const double next = planned < whole ? now + planned : to;
+        move_part(first, now, next, blocks);
+        now = next;
+    }
+    stop_runaways(blocks, to);
+    if (is_planned) coupled.settle(particles);
+    for (const BlockCounts& block : blocks) block.add_to(statistics);
+    statistics.particle_steps += count;
+    statistics.unsolved_steps = coupled.unsolved_steps();
+    if (keeps_records()) collect_records(blocks);
+    if (check) collect_violations(blocks);
+}
+
+void Simulation::Impl::move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    if (options.response == ResponseKind::rollback && options.rollback.global) {
+        move_system(first, from, to, blocks);
+        return;
+    }
+    parallel_for_blocks(particles.size() - first, kParticleBlock,
+                        [&](std::size_t block, std::size_t begin, std::size_t end) {
+                            move_block(first + begin, first + end, from, to, blocks[block]);
+                        });
+}
+
+void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, double to) const {
+    const auto found = std::find_if(blocks.begin(), blocks.end(), [](const auto& block) { return block.runaway; });
+    if (found == blocks.end()) return;
+    const std::size_t i = *found->runaway;
+    throw DivergedError(fmt::format(
+        "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
+        "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
+        to, particles.id[i], length(particles.velocity[i])));
+}
+
+void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
+    for (const BlockCounts& block : blocks) {
+        statistics.violations += block.violations.size();
+        last_violations.insert(last_violations.end(), block.violations.begin(), block.violations.end());
+        const std::size_t kept = std::min(block.violations.size(), kMostViolations - violations.size());
+        violations.insert(violations.end(), block.violations.begin(),
+                          block.violations.begin() + static_cast<std::ptrdiff_t>(kept));
+    }
+}
+
+void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
+    pass_records.clear();
+    for (const BlockCounts& block : blocks) {
+        pass_records.insert(pass_records.end(), block.records.begin(), block.records.end());
+    }
+    if (options.record_contacts) records.insert(records.end(), pass_records.begin(), pass_records.end());
+}
+
+// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
+void Simulation::Impl::sort_records() {
+    std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
+        return a.time != b.time ? a.time < b.time : a.particle < b.particle;
+    });
+}
+
+void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts) {
+    thread_local MoveScratch scratch;
+    scratch.hits.clear();
+    scratch.records.clear();
+    scratch.record_contacts = keeps_records();
+    scratch.record_legs = check != nullptr;
+    for (std::size_t i = begin; i < end; ++i) {
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0) continue;
+        const double start = std::max(from, particles.birth_time[i]);
+        const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
+        if (stop <= start || is_asleep(i)) continue;
+        MovingParticle particle = moving(i, start);
+        scratch.legs.clear();
+        // A planned flight's duration need not be the difference of the clock's times to the last bit.
+        const bool as_planned = particle.planned != nullptr && start == from && stop == to;
+        const double duration = as_planned ? particle.planned->path.duration : stop - start;
+        const MoveOutcome outcome = response->move(particle, duration, scratch);
+        if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
+        const bool was_slow = length_squared(particles.velocity[i]) <= kFastestSpeed * kFastestSpeed;
+        store(i, particle, outcome);
+        if (was_slow && length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed && !counts.runaway) {
+            counts.runaway = i;
+        }
+        particles.booked_until[i] = stop;
+        counts.add(outcome);
+    }
+    if (!totals.empty()) add_hits(scratch.hits, counts);
+    counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
+}
+
+// All particles go back together: see rollback.h.
+void Simulation::Impl::move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    std::vector<SystemParticle> system(particles.size() - first);
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
+        const double start = std::max(from, particles.birth_time[i]);
+        const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
+        system[k].particle = moving(i, start);
+        system[k].start = start;
+        system[k].stop = stop;
+        system[k].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
+    }
+    std::vector<MoveScratch> scratch(blocks.size());
+    for (MoveScratch& block : scratch) {
+        block.record_contacts = keeps_records();
+        block.record_legs = check != nullptr;
+    }
+    move_together(response->rules(), system, from, to, scratch, kParticleBlock);
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
+        SystemParticle& moved = system[k];
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || moved.stop <= moved.start) continue;
+        BlockCounts& counts = blocks[k / kParticleBlock];
+        if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
+        store(i, moved.particle, moved.outcome);
+        particles.booked_until[i] = moved.stop;
+        counts.add(moved.outcome);
+    }
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        if (!totals.empty()) add_hits(scratch[k].hits, blocks[k]);
+        if (keeps_records()) blocks[k].records = std::move(scratch[k].records);
+    }
+}
+
+MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
+    MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
+    Support& support = particle.support;
+    for (const SurfaceId surface : particles.support[i]) {
+        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
+    }
+    support.cascade_left = particles.cascade_left[i];
+    particle.sides = sides_of(i);
+    if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);
+    particle.planned = coupled.flight_of(i);
+    particle.state.coupling = coupled.coupling_of(i);
+    return particle;
+}
+
+std::span<SideMemory> Simulation::Impl::sides_of(std::size_t i) {
+    if (sides.empty()) return {};
+    const std::size_t colliders = world.colliders().size();
+    return {sides.data() + i * colliders, colliders};
+}
+
+void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
+    particles.position[i] = moving.state.position;
+    particles.velocity[i] = moving.state.velocity;
+    particles.spin[i] = moving.spin;
+    particles.draws[i] = moving.draws;
+    particles.unsimulated_time[i] += outcome.unsimulated_time;
+    particles.contacts[i] += outcome.bounces;
+    particles.resting[i] = outcome.resting ? 1 : 0;
+    particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
+    particles.frozen[i] = outcome.frozen ? 1 : 0;
+    particles.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
+    particles.support[i].fill(kNoSupport);
+    std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
+    particles.cascade_left[i] = moving.support.cascade_left;
+}
+
+void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts) {
+    for (const SurfaceHit& hit : hits) {
+        SurfaceTotals& total = totals[hit.surface];
+        if (hit.impact) total.hits.fetch_add(1, std::memory_order_relaxed);
+        const bool x = total.x.add(hit.impulse.x, kImpulseUnit);
+        const bool y = total.y.add(hit.impulse.y, kImpulseUnit);
+        const bool z = total.z.add(hit.impulse.z, kImpulseUnit);
+        counts.lost_impulses += x && y && z ? 0 : 1;
+    }
+}
+
+// The impulse of a sleeping particle's weight since it was last moved, or (sign -1) exactly that taken back.
+void Simulation::Impl::add_weight(std::size_t i, double until, double sign, BlockCounts& counts) {
+    const double elapsed = until - particles.booked_until[i];
+    if (totals.empty() || !is_asleep(i) || !(elapsed > 0.0)) return;
+    std::vector<SurfaceHit> hits;
+    response->add_weight(moving(i, until), elapsed, hits);
+    for (SurfaceHit& hit : hits) hit.impulse *= sign;
+    add_hits(hits, counts);
+}
+
+void Simulation::Impl::add_weights_of_sleepers(double sign) {
+    const double now = time_at(statistics.steps);
+    BlockCounts counts;  // an overflow is counted when the weight is booked for good
+    for (std::size_t i = 0; i < particles.size(); ++i) add_weight(i, now, sign, counts);
+}
+
+void Simulation::Impl::retire(double now) {
+    std::vector<std::uint8_t> keep(particles.size(), 1);
+    bool any = false;
+    BlockCounts counts;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
+        const bool outside = bounds && !bounds->contains(particles.position[i]);
+        const bool absorbed = particles.absorbed[i] != 0;
+        const bool shattered = particles.absorbed[i] == kShattered;
+        statistics.absorbed += absorbed && !shattered ? 1 : 0;
+        statistics.shattered += shattered ? 1 : 0;
+        statistics.expired += !absorbed && expired ? 1 : 0;
+        statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
+        keep[i] = absorbed || expired || outside ? 0 : 1;
+        if (keep[i] == 0) add_weight(i, std::min(now, particles.birth_time[i] + particles.lifetime[i]), 1.0, counts);
+        any = any || keep[i] == 0;
+    }
+    statistics.lost_impulses += counts.lost_impulses;
+    if (any) compact(keep);
+    if (any && coupled.is_active()) coupled.bind(particles);
+    statistics.springs_broken = coupled.springs().broken();
+    statistics.springs_lost = coupled.springs().lost();
+    statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
+    const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
+    statistics.asleep = may_sleep ? held : 0;
+}
+
+void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
+    if (!sides.empty()) {
+        const auto colliders = static_cast<std::ptrdiff_t>(world.colliders().size());
+        auto kept = sides.begin();
+        for (std::size_t i = 0; i < keep.size(); ++i) {
+            const auto first = sides.begin() + static_cast<std::ptrdiff_t>(i) * colliders;
+            if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
+        }
+        sides.erase(kept, sides.end());
+    }
+    particles.compact(keep);
+    if (check) check->compact(keep);
+}
+
+}  // namespace ricochet

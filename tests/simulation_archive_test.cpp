@@ -1,0 +1,144 @@
+// A simulation that is saved, restored in another one and run on gives the same bits as one that was never stopped.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/simulation.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+/// Everything at once: emitters with rates, children, attributes, springs, resting, random walls, totals.
+SimulationSetup busy_setup(ResponseKind response = ResponseKind::exact) {
+    SimulationSetup setup;
+    setup.options.time_step = 0.01;
+    setup.options.duration = 1.5;
+    setup.options.seed = 11;
+    setup.options.response = response;
+    setup.forces.push_back(make_gravity({0, 0, -9.81}));
+    Material rough;
+    rough.restitution = 0.4;
+    rough.friction = 0.3;
+    rough.diffuse = 0.2;
+    rough.absorption = 0.01;
+    setup.materials.push_back(rough);
+    setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
+    setup.attributes.push_back({"temperature", 1, {300.0, 0, 0}});
+    setup.attributes.push_back({"mood", 3, {1, 2, 3}});
+    EmitterDescription emitter;
+    emitter.shape = DiskShape{{0, 0, 1}, {0, 0, -1}, 0.5};
+    emitter.rate = {300.0, 60.0};
+    emitter.lifetime = {0.9, 0.3};
+    emitter.radius = {0.01, 0.005};
+    emitter.attributes.push_back({"temperature", {400.0, 0, 0}, {50.0, 0, 0}});
+    setup.emitters.push_back(emitter);
+    for (int i = 0; i < 6; ++i) {
+        Particle particle;
+        particle.position = {0.2 * i, 1.0, 0.4};
+        particle.mass = 0.1;
+        particle.pinned = i == 0;
+        particle.attributes = {{100.0 + i, 0, 0}};
+        setup.particles.push_back(particle);
+        if (i == 0) continue;
+        Spring spring{static_cast<std::uint64_t>(i - 1), static_cast<std::uint64_t>(i), 0.2, 60.0, 0.2};
+        if (i == 3) spring.breaking_stretch = 0.05;
+        setup.springs.push_back(spring);
+    }
+    return setup;
+}
+
+std::vector<std::byte> saved(const Simulation& simulation) {
+    std::vector<std::byte> bytes;
+    simulation.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    return bytes;
+}
+
+void restore(Simulation& simulation, const std::vector<std::byte>& bytes) {
+    std::size_t at = 0;
+    simulation.restore([&](std::span<std::byte> part) {
+        if (bytes.size() - at < part.size()) throw InputError("the file ends too early");
+        std::memcpy(part.data(), bytes.data() + at, part.size());
+        at += part.size();
+    });
+    EXPECT_EQ(at, bytes.size());
+}
+
+void run_to(Simulation& simulation, std::uint64_t step) {
+    while (simulation.step_index() < step) simulation.step();
+}
+
+TEST(SavedSimulation, GoesOnToTheSameBitsWhateverTheResponseAndTheThreads) {
+    for (const ResponseKind kind : response_kinds()) {
+        SCOPED_TRACE(name_of(kind));
+        Simulation whole(busy_setup(kind));
+        run_to(whole, 60);
+        const std::vector<std::byte> bytes = saved(whole);
+        run_to(whole, 150);
+        EXPECT_GT(whole.statistics().contacts, 50U);
+
+        const ThreadLimit limit(3);
+        Simulation resumed(busy_setup(kind));
+        restore(resumed, bytes);
+        EXPECT_EQ(resumed.step_index(), 60U);
+        EXPECT_EQ(saved(resumed), bytes);
+        run_to(resumed, 150);
+        EXPECT_EQ(resumed.state_hash(), whole.state_hash());
+        // Every column, counter and total, and not only what the hash looks at.
+        EXPECT_EQ(saved(resumed), saved(whole));
+    }
+}
+
+TEST(SavedSimulation, KeepsAttributesAndBrokenSprings) {
+    Simulation whole(busy_setup());
+    run_to(whole, 100);
+    EXPECT_EQ(whole.statistics().springs_broken, 1U);
+    Simulation resumed(busy_setup());
+    restore(resumed, saved(whole));
+    EXPECT_FALSE(resumed.springs().is_intact(2));
+    ASSERT_EQ(resumed.particles().size(), whole.particles().size());
+    for (std::size_t i = 0; i < whole.particles().size(); ++i) {
+        EXPECT_EQ(resumed.particles().attributes.at(i), whole.particles().attributes.at(i));
+    }
+    EXPECT_EQ(resumed.particles().attributes.value(0, 1).x, 101.0);
+    EXPECT_EQ(resumed.triangle_totals(0).hits, whole.triangle_totals(0).hits);
+    EXPECT_EQ(resumed.triangle_totals(0).impulse, whole.triangle_totals(0).impulse);
+}
+
+TEST(SavedSimulation, IsWatchedFromWhereItIs) {
+    Simulation whole(busy_setup());
+    run_to(whole, 60);
+    SimulationSetup setup = busy_setup();
+    setup.options.verify = true;
+    Simulation resumed(std::move(setup));
+    restore(resumed, saved(whole));
+    run_to(resumed, 150);
+    run_to(whole, 150);
+    EXPECT_EQ(resumed.statistics().violations, 0U);
+    EXPECT_EQ(resumed.state_hash(), whole.state_hash());
+}
+
+TEST(SavedSimulation, IsRefusedByAnotherSetupAndWhenItIsCutShort) {
+    Simulation whole(busy_setup());
+    run_to(whole, 20);
+    std::vector<std::byte> bytes = saved(whole);
+    SimulationSetup other = busy_setup();
+    other.options.time_step = 0.02;
+    Simulation with_other_step(std::move(other));
+    EXPECT_THROW(restore(with_other_step, bytes), InputError);
+    SimulationSetup fewer = busy_setup();
+    fewer.springs.pop_back();
+    Simulation with_fewer_springs(std::move(fewer));
+    EXPECT_THROW(restore(with_fewer_springs, bytes), InputError);
+    bytes.pop_back();
+    Simulation same(busy_setup());
+    EXPECT_THROW(restore(same, bytes), InputError);
+}
+
+}  // namespace
+}  // namespace ricochet

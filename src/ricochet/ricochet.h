@@ -33,6 +33,8 @@
 #include "ricochet/dynamics/field_force.h"
 #include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/frame_launch.h"
+#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/grid_flow.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/keyed_curve.h"

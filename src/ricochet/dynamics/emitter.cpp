@@ -8,6 +8,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/frame_launch.h"
 #include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
@@ -53,6 +54,7 @@ void check(const EmitterDescription& emitter) {
     require(
         std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) && emitter.radius.mean >= emitter.radius.spread,
         emitter, "every radius must be >= 0 m");
+    require(emitter.frames == nullptr || emitter.frame < emitter.frames->size(), emitter, "there is no such frame");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
 }
 
@@ -169,6 +171,7 @@ Particle Emitter::make_particle(std::uint64_t number, double time) const {
     particle.radius = radius;
     particle.birth_time = time;
     particle.lifetime = random.uniform_around(description_.lifetime.mean, description_.lifetime.spread);
+    if (description_.frames) return launched_from(*description_.frames, description_.frame, particle);
     return particle;
 }
 

@@ -5,6 +5,7 @@
 /// (mean and spread for every attribute).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -14,6 +15,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/triangle_mesh.h"
 
@@ -70,6 +72,10 @@ struct EmitterDescription {
     MeanSpread radius;          ///< m, mean - spread >= 0; 0 is a point
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
+    /// Null pointer: shape, direction and velocity are in world coordinates. Otherwise they are in those of the frame
+    /// of that number at the time of birth, and particles are let go from it, see launched_from().
+    std::shared_ptr<const FrameTree> frames = nullptr;
+    std::size_t frame = 0;
 };
 
 /// The births of one emitter in time order.

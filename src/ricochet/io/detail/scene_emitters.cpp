@@ -86,6 +86,26 @@ EmitterDescription emitter_of(const ObjectView& view) {
     return emitter;
 }
 
+// Lets the emitter stand in the frame that its key "frame" names.
+void attach(const SceneContext& context, const ObjectView& view, const std::shared_ptr<const FrameTree>& frames,
+            EmitterDescription& emitter) {
+    if (!view.has("frame")) return;
+    if (view.type() == "mesh" && view.has("collider")) {
+        context.error(view, "frame",
+                      "a collider's surface stands still, expected an emitter of another kind or a file");
+        return;
+    }
+    const std::string name = view.text("frame");
+    if (const auto frame = frames->find(name)) {
+        emitter.frames = frames;
+        emitter.frame = *frame;
+        return;
+    }
+    std::vector<std::string_view> names;
+    for (std::size_t k = 0; k < frames->size(); ++k) names.push_back(frames->description(k).name);
+    context.error(view, "frame", unknown_name("frame", name, names));
+}
+
 // Reports contradictions; returns the most births there can be.
 double checked_births(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter,
                       double duration) {
@@ -108,12 +128,14 @@ double checked_births(const SceneContext& context, const ObjectView& view, const
 }  // namespace
 
 void build_emitters(SceneContext& context, SimulationSetup& setup) {
+    const std::shared_ptr<const FrameTree> frames = frames_of(context);
     std::set<std::string> taken;
     double births = 0.0;
     for (const ObjectView& view : context.objects("emitters")) {
         EmitterDescription emitter = emitter_of(view);
         emitter.name = context.unique_name(view, setup.emitters.size(), "emitter", taken);
         emitter.shape = shape_of(context, setup, view);
+        attach(context, view, frames, emitter);
         births += checked_births(context, view, emitter, setup.options.duration);
         if (births > kMostParticles) {
             context.diagnostics().error(

@@ -6,6 +6,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/io/detail/force_keys.h"
+#include "ricochet/io/detail/frame_keys.h"
 #include "ricochet/io/detail/key_ranges.h"
 #include "ricochet/io/detail/suggestion.h"
 
@@ -212,21 +213,6 @@ const ObjectSpec& material_spec() {
     return spec;
 }
 
-const ObjectSpec& rotation_spec() {
-    static const ObjectSpec spec{.title = "rotation",
-                                 .description = "A turn about an axis through the own origin, by the right-hand rule.",
-                                 .keys = {
-                                     {.name = "axis",
-                                      .type = ValueType::vector,
-                                      .description = "Direction of the axis, of any length.",
-                                      .range = kCoordinate,
-                                      .required = true,
-                                      .not_zero = true},
-                                     {.name = "degrees", .description = "Angle.", .unit = "degrees", .required = true},
-                                 }};
-    return spec;
-}
-
 std::vector<KeySpec> placement_keys(std::string_view needs) {
     return {
         {.name = "position",
@@ -413,6 +399,11 @@ std::vector<KeySpec> launch_keys() {
          .range = kNotNegative,
          .low_end = kNotNegative,
          .fallback = "0"},
+        {.name = "frame",
+         .type = ValueType::text,
+         .description = "One of the names in `frames`: shape, direction and velocity are in its coordinates, and "
+                        "particles are let go with its velocity at the time and place of their birth.",
+         .without = "the world"},
     };
 }
 
@@ -618,6 +609,11 @@ std::vector<KeySpec> scene_keys() {
          .description = "What particles bounce off.",
          .fallback = "[]",
          .content = &collider_spec()},
+        {.name = "frames",
+         .type = ValueType::table,
+         .description = "Moving frames of reference by name.",
+         .fallback = "{}",
+         .content = &frame_spec()},
         {.name = "emitters",
          .type = ValueType::list,
          .description = "Where particles are born.",
@@ -680,6 +676,21 @@ std::string choice_words(const KeySpec& key) {
 }
 
 }  // namespace
+
+const ObjectSpec& rotation_spec() {
+    static const ObjectSpec spec{.title = "rotation",
+                                 .description = "A turn about an axis through the own origin, by the right-hand rule.",
+                                 .keys = {
+                                     {.name = "axis",
+                                      .type = ValueType::vector,
+                                      .description = "Direction of the axis, of any length.",
+                                      .range = kCoordinate,
+                                      .required = true,
+                                      .not_zero = true},
+                                     {.name = "degrees", .description = "Angle.", .unit = "degrees", .required = true},
+                                 }};
+    return spec;
+}
 
 const ObjectSpec& scene_spec() {
     static const ObjectSpec spec{.title = "scene", .description = "A whole scene.", .keys = scene_keys()};

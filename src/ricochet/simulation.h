@@ -12,6 +12,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
@@ -40,6 +41,10 @@ struct SimulationOptions {
     RollbackSettings rollback = {};               ///< of the rollback response
     ProjectSettings project = {};                 ///< of the project response
     PenaltySettings penalty = {};                 ///< of the penalty response
+    /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t), see
+    /// response/advect.h): with an integrator of flow_path.h, the exact response and no forces, else an InputError.
+    FlowPointer flow = nullptr;
+    WallRule walls = WallRule::slide;  ///< what walls do to particles that the flow carries into them
 };
 
 /// Everything a simulation is made from.

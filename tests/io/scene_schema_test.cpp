@@ -72,6 +72,8 @@ TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
 // all of a scene for every value that is spoiled in it.
 std::vector<Json> samples() {
     std::vector<Json> scenes = {Json::parse(test::kSampleScene), Json::parse(test::kFrameScene)};
+    scenes.push_back(Json::parse(R"({"ricochet": 1, "simulation": {"motion": "flow", "walls": "stop",
+        "flow": {"type": "uniform", "velocity": [1, 0, 0]}}})"));
     const Json all = Json::parse(test::kForceScene);
     for (const Json& force : all["forces"]) scenes.push_back({{"ricochet", 1}, {"forces", {force}}});
     for (const auto& [name, flow] : all["flows"].items()) {

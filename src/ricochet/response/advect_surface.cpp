@@ -31,7 +31,7 @@ Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     const CollisionWorld& world = rules_.world;
     Path of_contact_point = path;
     of_contact_point.c[0] -= state_.radius * support.normal;
-    const double reach = kTouchingGaps * parking_gap(state_.position);
+    const double reach = kRimGaps * parking_gap(state_.position);
     const double on = world.time_over(support.surface, of_contact_point, reach);
     if (on < path.duration) {
         path.end = path.position(on);
@@ -45,7 +45,10 @@ Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     // height above a large triangle can be all rounding.
     const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) &&
                              height <= 2.0 * kTouchingGaps * parking_gap(path.end);
-    if (is_rounding) path.end = flush_tiny(path.end + lift * support.normal);
+    if (is_rounding) {
+        path.end = flush_tiny(path.end + lift * support.normal);
+        path.c[1] += (lift / path.duration) * support.normal;  // a start nearer than the gap must not meet the surface
+    }
     return path;
 }
 
@@ -59,15 +62,21 @@ Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const
     const double speed = length(along);
     double duration = path.duration;
     if (speed > 0.0) duration = std::min(duration, kStretchAngle * bend / speed);
-    Path tangent = line_path(state_.position, along, duration);
-    const CollisionWorld::Nearest there = world.nearest(support.surface, tangent.end);
+    if (duration < path.duration) {
+        path.end = path.position(duration);
+        path.duration = duration;
+    }
+    if (!(duration > 0.0)) return path;
+    const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
     const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
-    const double lift = state_.radius + parking_gap(tangent.end) - side * there.distance;
-    if (!(lift > 0.0) || !(duration > 0.0)) return tangent;
-    const Vec3 end = flush_tiny(tangent.end + (side * lift) * there.normal);
-    tangent = line_path(state_.position, (end - state_.position) / duration, duration);
-    tangent.end = end;
-    return tangent;
+    const double gap = parking_gap(path.end);
+    const double lift = state_.radius + gap - side * there.distance;
+    if (!(lift > 0.0)) return path;
+    const Vec3 end = flush_tiny(path.end + (side * lift) * there.normal);
+    // Over the seam of a flat surface the height differs by rounding only.
+    if (lift > kTouchingGaps * gap) path = line_path(state_.position, (end - state_.position) / duration, duration);
+    path.end = end;
+    return path;
 }
 
 /// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
@@ -81,10 +90,14 @@ std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
     const CollisionWorld& world = rules_.world;
     const double reach = kTouchingGaps * parking_gap(state_.position);
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
-    if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;
+    const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
+    if (std::fabs(nearest.distance - state_.radius) > (beside_rim ? kRimGaps / kTouchingGaps : 1.0) * reach) {
+        return std::nullopt;
+    }
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
     // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
     const double distance = world.signed_distance_from(surface, state_.position);
+    if (std::fabs(distance) > reach) return std::nullopt;
     const Vec3 normal = world.unit_normal_of(surface, state_.position);
     return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
 }

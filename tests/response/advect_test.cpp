@@ -191,7 +191,7 @@ TEST(Advect, LeaksNothingFromClosedMeshesSlidingAndStopping) {
             run(simulation);
             EXPECT_GT(simulation.statistics().contacts, simulation.particles().size() / 4);
             EXPECT_LT(static_cast<double>(simulation.statistics().budget_exhausted),
-                      1e-3 * static_cast<double>(simulation.statistics().particle_steps));
+                      3e-3 * static_cast<double>(simulation.statistics().particle_steps));
             for (const Vec3& p : simulation.particles().position) {
                 EXPECT_LE(box ? max_abs(p) : length(p), 1.0);
             }
@@ -202,7 +202,7 @@ TEST(Advect, LeaksNothingFromClosedMeshesSlidingAndStopping) {
 TEST(Advect, SlidesRoundABodyAndLeavesItBehind) {
     for (const double radius : {0.0, 0.02}) {
         for (const bool mesh : {true, false}) {
-            std::vector<Particle> particles = cloud(test::scaled(40), 0.8, radius, 7);
+            std::vector<Particle> particles = cloud(test::scaled(20), 0.8, radius, 7);
             for (Particle& p : particles) p.position.x = -1.5;
             std::vector<ColliderDescription> body;
             if (mesh) {
@@ -245,8 +245,8 @@ TEST(Advect, GivesTheSameBitsForAnyNumberOfThreads) {
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 3}) {
         const ThreadLimit limit(threads);
-        Simulation simulation(
-            carried(flow, {mesh_collider(sphere_mesh({}, 1.0, 2))}, cloud(3000, 0.5, 0.03, 5), WallRule::slide));
+        Simulation simulation(carried(flow, {mesh_collider(sphere_mesh({}, 1.0, 2))},
+                                      cloud(test::scaled(300), 0.5, 0.03, 5), WallRule::slide));
         run(simulation);
         hashes.push_back(simulation.state_hash());
     }

@@ -50,6 +50,7 @@ void Advector::go_on() {
     const auto pressed = can_be_followed(path) ? hardest_pressed() : std::nullopt;
     if (pressed) {
         ++stretches_;
+        if (touched_[*pressed].flat) path = held_down(path, normals_[*pressed], along);
         path = stretch_on(touched_[*pressed], path);
         if (!(path.duration > 0.0)) {  // it is past that surface's end
             forget(*pressed);
@@ -60,6 +61,25 @@ void Advector::go_on() {
     if (outcome_.frozen) return;
     touch_again();
     if (contact) answer(*contact);
+}
+
+/// A path along a flat surface, up to where the flow turns away from it. The cubic through both ends would dip into the
+/// surface before an end that leaves it; up to there it has no part along the normal.
+Path Advector::held_down(const Path& path, const Vec3& normal, const FlowField& along) const {
+    Path held = path;
+    const auto leaves = [&](double s) { return dot(flow_.velocity(path.position(s), state_.time + s), normal) > 0.0; };
+    if (leaves(path.duration)) {
+        double before = 0.0;
+        double after = path.duration;
+        for (int k = 0; k < kReleaseHalvings; ++k) {
+            const double middle = 0.5 * (before + after);
+            (leaves(middle) ? after : before) = middle;
+        }
+        held = flow_path(rules_.settings.integrator, along, state_.position, state_.time, after, after).path;
+    }
+    for (std::size_t k = 1; k < held.c.size(); ++k) held.c[k] -= dot(held.c[k], normal) * normal;
+    held.end -= dot(held.end - held.c[0], normal) * normal;
+    return held;
 }
 
 /// Time passes at a wall, until the flow turns away.

@@ -90,8 +90,9 @@ std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
     const CollisionWorld& world = rules_.world;
     const double reach = kTouchingGaps * parking_gap(state_.position);
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
+    // Half of what a stretch goes beyond the rim, so that at its end the surface is surely left.
     const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
-    if (std::fabs(nearest.distance - state_.radius) > (beside_rim ? kRimGaps / kTouchingGaps : 1.0) * reach) {
+    if (std::fabs(nearest.distance - state_.radius) > (beside_rim ? 0.5 * kRimGaps / kTouchingGaps : 1.0) * reach) {
         return std::nullopt;
     }
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};

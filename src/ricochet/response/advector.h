@@ -51,6 +51,7 @@ public:
 private:
     // On the way (advect.cpp).
     void go_on();
+    [[nodiscard]] Path held_down(const Path& path, const Vec3& normal, const FlowField& along) const;
     void wait();
     [[nodiscard]] double time_to_release() const;
     [[nodiscard]] bool is_pressed_at(double time) const;

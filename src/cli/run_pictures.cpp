@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/attributes.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
@@ -27,6 +28,10 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
 constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
 constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
+constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
+constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
+constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
+constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 
 std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
     if (frames.size() <= kSurveyedFrames) return frames;
@@ -111,6 +116,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     std::vector<double> values;
     for (const FrameFile& file : spread_sample(chosen)) {
         const VtkPolyData frame = read_vtp(file.path);
+        choose_looks(frame);
         const std::vector<double> here = shown_values(frame, file);
         values.insert(values.end(), here.begin(), here.end());
         subject_.particles.insert(subject_.particles.end(), frame.points.begin(), frame.points.end());
@@ -118,6 +124,21 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     }
     range_ = style_.range ? *style_.range : robust_range(std::move(values));
     if (!style_.range && style_.color_by == kSpeed) range_.low = 0.0;
+}
+
+// Settles what was left to the frames, and notes whether any particle has a size of its own.
+void RunPictures::choose_looks(const VtkPolyData& frame) {
+    const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
+    if (style_.color_by.empty()) style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
+    own_colors_ = style_.color_by == kColorAttribute;
+    if (style_.drawing == ParticleDrawing::automatic) {
+        const bool soft = find_array(frame.point_arrays, kOpacityAttribute) != nullptr;
+        style_.drawing = soft ? ParticleDrawing::soft : ParticleDrawing::spheres;
+    }
+    const VtkArray* const sizes = find_array(frame.point_arrays, kSizeAttribute);
+    if (sizes == nullptr) return;
+    const std::vector<double> values = scalar_values(*sizes);
+    has_sizes_ = has_sizes_ || std::any_of(values.begin(), values.end(), [](double size) { return size > 0.0; });
 }
 
 void RunPictures::load_colliders(const RunFolder& folder) {
@@ -163,30 +184,85 @@ std::vector<double> RunPictures::shown_values(const VtkPolyData& frame, const Fr
     return scalar_values(*array);
 }
 
-PreviewSpheres RunPictures::spheres(const VtkPolyData& frame, const FrameFile& file) const {
-    const std::vector<double> values = shown_values(frame, file);
-    const VtkArray* own = find_array(frame.point_arrays, "radius");
-    const std::vector<double> radii =
-        own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
-    // Points have no size: they get one that can be seen, the smaller the more there are.
+// Points have no size: they get one that can be seen, the smaller the more there are.
+double RunPictures::visible_radius() const {
     const double view =
         std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
     const double count = std::max(1.0, static_cast<double>(most_particles_));
-    const double visible = view * std::clamp(0.8 / std::sqrt(count), 0.0029, 0.02);
-    PreviewSpheres spheres;
-    spheres.centers = frame.points;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double radius = style_.particle_radius ? *style_.particle_radius : radii[i];
-        spheres.radii.push_back(radius > 0.0 ? radius : visible);
-        spheres.colors.push_back(kParticleAlbedo *
-                                 map_color(style_.map, (values[i] - range_.low) / (range_.high - range_.low)));
-    }
-    return spheres;
+    return view * std::clamp(0.8 / std::sqrt(count), 0.0029, 0.02);
 }
 
-Image RunPictures::picture(const FrameFile& frame, const PictureOptions& options) {
-    preview_->set_spheres(spheres(read_vtp(frame.path), frame));
-    return render_picture(*preview_, camera_, options);
+std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
+    const VtkArray* own = find_array(frame.point_arrays, has_sizes_ ? kSizeAttribute : "radius");
+    std::vector<double> radii = own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
+    const double visible = visible_radius();
+    for (double& radius : radii) {
+        if (style_.particle_radius) radius = *style_.particle_radius;
+        if (!(radius > 0.0) && !has_sizes_) radius = visible;
+    }
+    return radii;
+}
+
+// Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
+PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& file) const {
+    const std::vector<Vec3> shown = colors(frame, file);
+    const std::vector<double> radii = shown_radii(frame);
+    const VtkArray* own = find_array(frame.point_arrays, "radius");
+    const std::vector<double> own_radii = own == nullptr ? std::vector<double>(radii.size(), 0.0) : scalar_values(*own);
+    std::vector<double> thread(frame.points.size(), 0.0);  // thickest one at the particle
+    PreviewMoving moving;
+    moving.lines.points = frame.points;
+    for (const auto& [a, b] : frame.lines) {
+        const bool have_size = own_radii[a] > 0.0 && own_radii[b] > 0.0;
+        const double radius = std::min(radii[a], radii[b]) * (have_size ? 1.0 : kThreadRadius);
+        moving.lines.ends.push_back({a, b});
+        moving.lines.radii.push_back(radius);
+        moving.lines.colors.push_back(kRopeColor);
+        thread[a] = std::max(thread[a], radius);
+        thread[b] = std::max(thread[b], radius);
+    }
+    std::vector<bool> is_cloth(frame.points.size(), false);
+    for (const Triangle& triangle : frame.triangles) {
+        for (const std::uint32_t corner : triangle) is_cloth[corner] = true;
+    }
+    moving.cloth.mesh = {frame.points, frame.triangles};
+    moving.cloth.color = kClothColor;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const bool is_thread = thread[i] > 0.0 && (own_radii[i] == 0.0 || radii[i] <= kBead * thread[i]);
+        if (is_thread || is_cloth[i]) continue;
+        moving.spheres.centers.push_back(frame.points[i]);
+        moving.spheres.radii.push_back(radii[i]);
+        moving.spheres.colors.push_back(shown[i]);
+    }
+    return moving;
+}
+
+std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile& file) const {
+    const VtkArray* const own = own_colors_ ? find_array(frame.point_arrays, kColorAttribute) : nullptr;
+    const auto* const vectors = own == nullptr ? nullptr : std::get_if<std::vector<Vec3>>(&own->values);
+    if (vectors != nullptr) return *vectors;
+    std::vector<Vec3> colors;
+    for (const double value : shown_values(frame, file)) {
+        colors.push_back(kParticleAlbedo * map_color(style_.map, (value - range_.low) / (range_.high - range_.low)));
+    }
+    return colors;
+}
+
+Image RunPictures::picture(const FrameFile& file, const PictureOptions& options) {
+    const VtkPolyData frame = read_vtp(file.path);
+    PreviewMoving shown = moving(frame, file);
+    if (!draws_sprites()) {
+        preview_->set_moving(shown);
+        return render_picture(*preview_, camera_, options);
+    }
+    shown.spheres = {};
+    preview_->set_moving(shown);
+    const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
+    std::vector<double> opacities =
+        own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
+    const bool glow = style_.drawing == ParticleDrawing::glow;
+    return render_picture(*preview_, camera_, options,
+                          {frame.points, shown_radii(frame), colors(frame, file), std::move(opacities), glow});
 }
 
 }  // namespace ricochet::cli

@@ -13,8 +13,11 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/coupled_motion.h"
+#include "ricochet/dynamics/spring_stability.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/shape_mesh.h"
+#include "ricochet/offspring.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/response/rollback.h"
 #include "ricochet/run_check.h"
@@ -41,6 +44,9 @@ SimulationOptions checked(const SimulationOptions& options) {
     }
     if (options.duration / options.time_step > 1e15) throw InputError("duration / time_step exceeds 1e15 steps");
     if (!(options.resting_speed >= 0.0)) throw InputError("resting_speed must be at least 0 m/s");
+    if (!(options.frame_rate > 0.0) || !std::isfinite(options.frame_rate)) {
+        throw InputError("frame_rate must be a finite number above 0 frames a second");
+    }
     if (options.bounce_budget == 0) throw InputError("bounce_budget must be at least 1");
     return options;
 }
@@ -91,6 +97,7 @@ struct BlockCounts {
     double penetration_deepest = 0.0;
     std::vector<ContactRecord> records;
     std::vector<Violation> violations;
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
 
     void add(const MoveOutcome& outcome) {
         contacts += outcome.bounces;
@@ -146,7 +153,7 @@ double least_restitution(const SimulationSetup& setup) {
 }
 
 /// The sub-step against the stability bound of the lightest particle on the dampest of the surfaces.
-std::vector<std::string> warnings_of(const SimulationSetup& setup) {
+std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);
     if (options.response != ResponseKind::penalty || setup.colliders.empty() || !std::isfinite(mass)) return {};
@@ -166,6 +173,23 @@ std::vector<std::string> warnings_of(const SimulationSetup& setup) {
                     substep, bound, spring.stiffness, mass, restitution, advice)};
 }
 
+std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
+    if (setup.solver) return {};
+    const IntegratorKind kind = setup.options.integrator.kind;
+    const double bound = longest_stable_step(kind, setup.springs, setup.particles);
+    if (setup.options.time_step <= bound) return {};
+    return {
+        fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
+                    "springs: they may explode; use a shorter step or the integrator implicit_euler",
+                    setup.options.time_step, bound, name_of(kind))};
+}
+
+std::vector<std::string> warnings_of(const SimulationSetup& setup) {
+    std::vector<std::string> warnings = penalty_warnings(setup);
+    for (std::string& warning : spring_warnings(setup)) warnings.push_back(std::move(warning));
+    return warnings;
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -175,14 +199,20 @@ struct Simulation::Impl {
     void emit(double from, double to);
     void add(Particle particle);
     void move_all(double from, double to);
+    void move_from(std::size_t first, double from, double to);
+    void bear_children(double from, double to);
+    [[nodiscard]] bool keeps_records() const { return options.record_contacts || offspring; }
+    void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
+    void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
+    void sort_records();
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
     [[nodiscard]] MovingParticle moving(std::size_t i, double start);
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
-    void move_system(double from, double to, std::vector<BlockCounts>& blocks);
+    void move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void compact(const std::vector<std::uint8_t>& keep);
     void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
     void add_weights_of_sleepers(double sign);
@@ -203,15 +233,19 @@ struct Simulation::Impl {
     ForceField forces;
     std::vector<Material> materials;
     CollisionWorld world;
+    CoupledMotion coupled;
     std::vector<Emitter> emitters;
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
+    std::vector<SpringFace> spring_faces;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
-    std::vector<ContactRecord> records;
-    std::unique_ptr<RunCheck> check;  ///< with options.verify
+    std::vector<ContactRecord> records;       ///< of the step
+    std::vector<ContactRecord> pass_records;  ///< of the particles that were moved last, for their children
+    std::unique_ptr<Offspring> offspring;     ///< where particles are born of particles
+    std::unique_ptr<RunCheck> check;          ///< with options.verify
     std::vector<Violation> violations;
     std::vector<Violation> last_violations;
     std::uint64_t steps;
@@ -226,6 +260,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       forces(std::move(setup.forces)),
       materials(checked_materials(std::move(setup.materials), setup.colliders)),
       world(std::move(setup.colliders)),
+      coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, response_settings(options)})),
       totals(options.triangle_totals ? world.surface_count() : 0),
@@ -233,16 +268,30 @@ Simulation::Impl::Impl(SimulationSetup setup)
       may_sleep(options.sleeping && forces.is_steady()) {
     world.set_culling(options.culling);
     has_spheres = makes_spheres(setup);
+    particles.attributes = AttributeTable(setup.attributes);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
-        emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
+        const EmitterDescription& emitter = setup.emitters[k];
+        particles.keeps_origin = particles.keeps_origin || emitter.parent || !emitter.curves.empty();
+        emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k),
+                              EmitterSurroundings{options.frame_rate, setup.reference_camera, setup.attributes});
     }
+    offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
+    if (offspring->empty()) offspring.reset();
     for (const Particle& particle : setup.particles) add(particle);
+    spring_faces = std::move(setup.spring_faces);
+    if (coupled.is_active()) coupled.bind(particles);
     if (options.verify) check = std::make_unique<RunCheck>(world);
 }
 
 void Simulation::Impl::add(Particle particle) {
     particle.id = next_id++;
     particle.position = flush_tiny(particle.position);
+    const auto size = particles.attributes.find(kSizeAttribute);
+    if (size) {
+        particle.attributes.resize(particles.attributes.columns().size(), missing_attribute());
+        if (is_missing(particle.attributes[*size])) particle.attributes[*size] = {particle.radius, 0.0, 0.0};
+    }
+    if (particle.pinned) particle.velocity = particle.spin = Vec3{};
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
@@ -270,27 +319,86 @@ void Simulation::Impl::emit(double from, double to) {
     }
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    for (const Particle& particle : born) add(particle);
+    const std::uint64_t room =
+        options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
+    const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
+    statistics.births_refused_by_population += born.size() - allowed;
+    for (std::size_t k = 0; k < allowed; ++k) add(born[k]);
+    if (allowed > 0 && coupled.is_active()) coupled.bind(particles);
 }
 
+// Particles that are born of particles inside the step are moved from their births to its end, with their own children
+// in turn.
 void Simulation::Impl::move_all(double from, double to) {
-    const std::size_t count = particles.size();
-    std::vector<BlockCounts> blocks((count + kBlock - 1) / kBlock);
-    if (options.response == ResponseKind::rollback && options.rollback.global) {
-        move_system(from, to, blocks);
-    } else {
-        parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-            move_block(begin, end, from, to, blocks[block]);
-        });
+    records.clear();
+    last_violations.clear();
+    std::size_t first = 0;
+    const std::uint64_t emitted_before = statistics.emitted;
+    do {
+        const std::size_t end = particles.size();
+        if (offspring) offspring->before_move(particles, first);
+        move_from(first, from, to);
+        if (offspring) bear_children(from, to);
+        if (check) check->watch_newborn(particles);
+        first = end;
+    } while (first < particles.size());
+    if (statistics.emitted > emitted_before && coupled.is_active()) coupled.bind(particles);
+    if (options.record_contacts) sort_records();
+}
+
+void Simulation::Impl::bear_children(double from, double to) {
+    OffspringCounts counts;
+    for (Particle& child : offspring->after_move(world, particles, from, to, std::move(pass_records), counts)) {
+        add(std::move(child));
     }
+    statistics.children += counts.children;
+    statistics.births_refused_by_depth += counts.refused_by_depth;
+    statistics.births_refused_by_population += counts.refused_by_population;
+}
+
+// Particles that act on each other are planned together first; an adaptive plan may cut the step into parts. The
+// newborn join them with the next step.
+void Simulation::Impl::move_from(std::size_t first, double from, double to) {
+    const std::size_t count = particles.size() - first;
+    std::vector<BlockCounts> blocks((count + kBlock - 1) / kBlock);
+    const bool is_planned = coupled.is_active() && first == 0;
+    for (double now = from; now < to;) {
+        const double whole = to - now;
+        const double planned = is_planned ? coupled.plan(particles, now, whole) : whole;
+        const double next = planned < whole ? now + planned : to;
+        move_part(first, now, next, blocks);
+        now = next;
+    }
+    stop_runaways(blocks, to);
+    if (is_planned) coupled.settle(particles);
     for (const BlockCounts& block : blocks) block.add_to(statistics);
     statistics.particle_steps += count;
-    if (options.record_contacts) collect_records(blocks);
+    statistics.unsolved_steps = coupled.unsolved_steps();
+    if (keeps_records()) collect_records(blocks);
     if (check) collect_violations(blocks);
 }
 
+void Simulation::Impl::move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    if (options.response == ResponseKind::rollback && options.rollback.global) {
+        move_system(first, from, to, blocks);
+        return;
+    }
+    parallel_for_blocks(particles.size() - first, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        move_block(first + begin, first + end, from, to, blocks[block]);
+    });
+}
+
+void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, double to) const {
+    const auto found = std::find_if(blocks.begin(), blocks.end(), [](const auto& block) { return block.runaway; });
+    if (found == blocks.end()) return;
+    const std::size_t i = *found->runaway;
+    throw DivergedError(fmt::format(
+        "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
+        "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
+        to, particles.id[i], length(particles.velocity[i])));
+}
+
 void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
-    last_violations.clear();
     for (const BlockCounts& block : blocks) {
         statistics.violations += block.violations.size();
         last_violations.insert(last_violations.end(), block.violations.begin(), block.violations.end());
@@ -300,10 +408,16 @@ void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks
     }
 }
 
-// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
 void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
-    records.clear();
-    for (const BlockCounts& block : blocks) records.insert(records.end(), block.records.begin(), block.records.end());
+    pass_records.clear();
+    for (const BlockCounts& block : blocks) {
+        pass_records.insert(pass_records.end(), block.records.begin(), block.records.end());
+    }
+    if (options.record_contacts) records.insert(records.end(), pass_records.begin(), pass_records.end());
+}
+
+// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
+void Simulation::Impl::sort_records() {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
@@ -313,46 +427,55 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     thread_local MoveScratch scratch;
     scratch.hits.clear();
     scratch.records.clear();
-    scratch.record_contacts = options.record_contacts;
+    scratch.record_contacts = keeps_records();
     scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
-        if (particles.frozen[i] != 0) continue;
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
         if (stop <= start || is_asleep(i)) continue;
         MovingParticle particle = moving(i, start);
         scratch.legs.clear();
-        const MoveOutcome outcome = response->move(particle, stop - start, scratch);
+        // A planned flight's duration need not be the difference of the clock's times to the last bit.
+        const bool as_planned = particle.planned != nullptr && start == from && stop == to;
+        const double duration = as_planned ? particle.planned->path.duration : stop - start;
+        const MoveOutcome outcome = response->move(particle, duration, scratch);
         if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
+        const bool was_slow = length_squared(particles.velocity[i]) <= kFastestSpeed * kFastestSpeed;
         store(i, particle, outcome);
+        if (was_slow && length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed && !counts.runaway) {
+            counts.runaway = i;
+        }
         particles.booked_until[i] = stop;
         counts.add(outcome);
     }
     if (!totals.empty()) add_hits(scratch.hits, counts);
-    if (options.record_contacts) counts.records = scratch.records;
+    counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
 }
 
 // All particles go back together: see rollback.h.
-void Simulation::Impl::move_system(double from, double to, std::vector<BlockCounts>& blocks) {
-    std::vector<SystemParticle> system(particles.size());
-    for (std::size_t i = 0; i < system.size(); ++i) {
+void Simulation::Impl::move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    std::vector<SystemParticle> system(particles.size() - first);
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
-        system[i].particle = moving(i, start);
-        system[i].start = start;
-        system[i].stop = stop;
-        system[i].is_out = particles.frozen[i] != 0;
+        system[k].particle = moving(i, start);
+        system[k].start = start;
+        system[k].stop = stop;
+        system[k].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
     }
     std::vector<MoveScratch> scratch(blocks.size());
     for (MoveScratch& block : scratch) {
-        block.record_contacts = options.record_contacts;
+        block.record_contacts = keeps_records();
         block.record_legs = check != nullptr;
     }
     move_together(response->rules(), system, from, to, scratch, kBlock);
-    for (std::size_t i = 0; i < system.size(); ++i) {
-        SystemParticle& moved = system[i];
-        if (particles.frozen[i] != 0 || moved.stop <= moved.start) continue;
-        BlockCounts& counts = blocks[i / kBlock];
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
+        SystemParticle& moved = system[k];
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || moved.stop <= moved.start) continue;
+        BlockCounts& counts = blocks[k / kBlock];
         if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
         store(i, moved.particle, moved.outcome);
         particles.booked_until[i] = moved.stop;
@@ -360,7 +483,7 @@ void Simulation::Impl::move_system(double from, double to, std::vector<BlockCoun
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         if (!totals.empty()) add_hits(scratch[k].hits, blocks[k]);
-        if (options.record_contacts) blocks[k].records = std::move(scratch[k].records);
+        if (keeps_records()) blocks[k].records = std::move(scratch[k].records);
     }
 }
 
@@ -372,6 +495,9 @@ MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
     }
     support.cascade_left = particles.cascade_left[i];
     particle.sides = sides_of(i);
+    if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);
+    particle.planned = coupled.flight_of(i);
+    particle.state.coupling = coupled.coupling_of(i);
     return particle;
 }
 
@@ -389,9 +515,9 @@ void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const 
     particles.unsimulated_time[i] += outcome.unsimulated_time;
     particles.contacts[i] += outcome.bounces;
     particles.resting[i] = outcome.resting ? 1 : 0;
-    particles.held[i] = outcome.held ? 1 : 0;
+    particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
     particles.frozen[i] = outcome.frozen ? 1 : 0;
-    particles.absorbed[i] = outcome.absorbed ? 1 : 0;
+    particles.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
     particles.support[i].fill(kNoSupport);
     std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
     particles.cascade_left[i] = moving.support.cascade_left;
@@ -432,7 +558,9 @@ void Simulation::Impl::retire(double now) {
         const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
         const bool outside = bounds && !bounds->contains(particles.position[i]);
         const bool absorbed = particles.absorbed[i] != 0;
-        statistics.absorbed += absorbed ? 1 : 0;
+        const bool shattered = particles.absorbed[i] == kShattered;
+        statistics.absorbed += absorbed && !shattered ? 1 : 0;
+        statistics.shattered += shattered ? 1 : 0;
         statistics.expired += !absorbed && expired ? 1 : 0;
         statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
         keep[i] = absorbed || expired || outside ? 0 : 1;
@@ -441,6 +569,9 @@ void Simulation::Impl::retire(double now) {
     }
     statistics.lost_impulses += counts.lost_impulses;
     if (any) compact(keep);
+    if (any && coupled.is_active()) coupled.bind(particles);
+    statistics.springs_broken = coupled.springs().broken();
+    statistics.springs_lost = coupled.springs().lost();
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
     const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
     statistics.asleep = may_sleep ? held : 0;
@@ -482,8 +613,26 @@ std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
 std::uint64_t Simulation::step_count() const { return impl_->steps; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
+AttributeTable Simulation::shown_attributes() const {
+    const Particles& particles = impl_->particles;
+    AttributeTable shown = particles.attributes;
+    if (!particles.keeps_origin || shown.empty()) return shown;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (particles.origin[i].emitter == kNoEmitter) continue;
+        const auto& curves = impl_->emitters[particles.origin[i].emitter].description().curves;
+        if (curves.empty()) continue;
+        for (std::size_t k = 0; k < shown.columns().size(); ++k) {
+            const double age = time() - particles.birth_time[i];
+            shown.set(k, i,
+                      shown_value(curves, shown.columns()[k].name, shown.value(k, i), age, particles.lifetime[i]));
+        }
+    }
+    return shown;
+}
+const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
+const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
     const ColliderShape& shape = impl_->world.colliders()[i].shape;
     if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
@@ -564,7 +713,8 @@ std::optional<double> Simulation::potential_energy() const {
         }
         return partial;
     });
-    return defined ? std::optional(sum) : std::nullopt;
+    const double stored = impl_->coupled.springs().potential_energy(particles().position);
+    return defined ? std::optional(sum + stored) : std::nullopt;
 }
 
 std::uint64_t Simulation::state_hash() const {

@@ -15,7 +15,10 @@
 #include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/spring_makers.h"
+#include "ricochet/dynamics/spring_network.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/response.h"
 #include "ricochet/verify/violation.h"
@@ -44,7 +47,10 @@ struct SimulationOptions {
     /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t), see
     /// response/advect.h): with an integrator of flow_path.h, the exact response and no forces, else an InputError.
     FlowPointer flow = nullptr;
-    WallRule walls = WallRule::slide;  ///< what walls do to particles that the flow carries into them
+    WallRule walls = WallRule::slide;            ///< what walls do to particles that the flow carries into them
+    double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
+    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time; births beyond are refused and counted
 };
 
 /// Everything a simulation is made from.
@@ -54,19 +60,30 @@ struct SimulationSetup {
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
     std::vector<EmitterDescription> emitters;
-    std::vector<Particle> particles;  ///< present at time 0; ids are given by the simulation in this order
-    std::optional<Box3> bounds;       ///< particles outside are retired
+    std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
+    std::vector<Spring> springs;           ///< between these particles: their ids are places in the list
+    std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
+    /// An own method for all particles together, in place of options.integrator, which then says only how particles go
+    /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
+    SystemSolver solver = {};
+    std::optional<Box3> bounds;                       ///< particles outside are retired
+    std::vector<AttributeDescription> attributes;     ///< what particles carry of the user's own, and for looks
+    std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
 struct SimulationStatistics {
     std::uint64_t steps = 0;
-    std::uint64_t particle_steps = 0;  ///< sum over steps of the particles alive, resting ones too
-    std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
-    std::uint64_t expired = 0;         ///< retired at the end of their lifetime
-    std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces
-    std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
-    std::uint64_t contacts = 0;        ///< impacts
+    std::uint64_t particle_steps = 0;                ///< sum over steps of the particles alive, resting ones too
+    std::uint64_t emitted = 0;                       ///< particles ever created, explicit ones included
+    std::uint64_t expired = 0;                       ///< retired at the end of their lifetime
+    std::uint64_t absorbed = 0;                      ///< removed by absorbing surfaces
+    std::uint64_t shattered = 0;                     ///< replaced by fragments at an impact
+    std::uint64_t children = 0;                      ///< of the emitted ones those born of particles
+    std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
+    std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
+    std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
+    std::uint64_t contacts = 0;                      ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
     double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
@@ -80,6 +97,9 @@ struct SimulationStatistics {
     std::uint64_t penetrations = 0;      ///< particle-steps in which a particle was seen behind a surface
     double penetration_sum = 0.0;        ///< m, sum of their depths, before anything put them right
     double penetration_deepest = 0.0;    ///< m
+    std::uint64_t springs_broken = 0;    ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;      ///< removed because a particle at an end was gone
+    std::uint64_t unsolved_steps = 0;    ///< steps whose implicit equations were not solved to the tolerance
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 
@@ -99,7 +119,9 @@ public:
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
 
-    /// Advances by one time step (the last one may be shorter). No effect when finished().
+    /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
+    /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
+    /// follow them with this step. The simulation cannot go on then, and its particles are somewhere inside the step.
     void step();
     [[nodiscard]] bool finished() const;
     [[nodiscard]] double time() const;               ///< s
@@ -108,6 +130,12 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
+    /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
+    [[nodiscard]] AttributeTable shown_attributes() const;
+    /// The springs of the setup, bound to the order of particles().
+    [[nodiscard]] const SpringNetwork& springs() const;
+    /// The cloth of the setup, torn parts included.
+    [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no

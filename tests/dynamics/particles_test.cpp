@@ -27,6 +27,7 @@ TEST(Particles, GiveBackWhatWasAppended) {
     EXPECT_EQ(second.radius, 1.5);
     EXPECT_EQ(second.birth_time, 0.75);
     EXPECT_EQ(second.lifetime, 13.0);
+    EXPECT_FALSE(second.pinned);
 }
 
 TEST(Particles, StartWithoutAHistory) {
@@ -42,10 +43,12 @@ TEST(Particles, CompactKeepsTheFlaggedOnesInTheirOrderInEveryArray) {
         particles.contacts[i] = static_cast<std::uint32_t>(10 + i);
         particles.resting[i] = static_cast<std::uint8_t>(i);
         particles.unsimulated_time[i] = static_cast<double>(i);
+        particles.pinned[i] = static_cast<std::uint8_t>(i % 2);
     }
     particles.compact({0, 1, 0, 1, 1});
     ASSERT_EQ(particles.id, (std::vector<std::uint64_t>{1, 3, 4}));
     EXPECT_EQ(particles.contacts, (std::vector<std::uint32_t>{11, 13, 14}));
+    EXPECT_EQ(particles.pinned, (std::vector<std::uint8_t>{1, 1, 0}));
     EXPECT_EQ(particles.resting, (std::vector<std::uint8_t>{1, 3, 4}));
     EXPECT_EQ(particles.unsimulated_time, (std::vector<double>{1, 3, 4}));
     EXPECT_EQ(particles.position[1].x, 3.0);

@@ -52,6 +52,37 @@ TEST(MeshTopology, FindsTheLoopOfAMissingFace) {
     EXPECT_EQ(loop, (std::vector<std::uint32_t>{0, 3, 2, 1}));
 }
 
+TEST(MeshTopology, ListsEveryEdgeOnceWithTheCornersAcrossIt) {
+    const std::vector<MeshEdge> edges = MeshTopology(faces(4, {{0, 1, 2}, {2, 1, 3}})).edges();
+    ASSERT_EQ(edges.size(), 5U);
+    const auto is = [&](std::size_t i, std::uint32_t first, std::uint32_t second, std::set<std::uint32_t> across) {
+        EXPECT_EQ(edges[i].first, first);
+        EXPECT_EQ(edges[i].second, second);
+        EXPECT_EQ((std::set<std::uint32_t>{edges[i].opposite[0], edges[i].opposite[1]}), across) << first << second;
+    };
+    is(0, 0, 1, {2, kNoVertex});
+    is(1, 0, 2, {1, kNoVertex});
+    is(2, 1, 2, {0, 3});
+    is(3, 1, 3, {2, kNoVertex});
+    is(4, 2, 3, {1, kNoVertex});
+}
+
+TEST(MeshTopology, ListsAnEdgeOfThreeFacesOnceAndWithoutNeighbours) {
+    const std::vector<MeshEdge> edges = MeshTopology(faces(5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}})).edges();
+    ASSERT_EQ(edges.size(), 7U);
+    EXPECT_EQ(edges[0].first, 0U);
+    EXPECT_EQ(edges[0].second, 1U);
+    EXPECT_EQ(edges[0].opposite, (std::array<std::uint32_t, 2>{kNoVertex, kNoVertex}));
+}
+
+TEST(MeshTopology, EdgesOfQuadsHaveNoCornersAcross) {
+    const std::vector<MeshEdge> edges = MeshTopology(faces(8, kCube)).edges();
+    EXPECT_EQ(edges.size(), 12U);
+    for (const MeshEdge& edge : edges) {
+        EXPECT_EQ(edge.opposite, (std::array<std::uint32_t, 2>{kNoVertex, kNoVertex}));
+    }
+}
+
 TEST(MeshTopology, SeparatesLoopsThatTouchAtAVertex) {
     // Two triangles that share only vertex 2.
     const MeshTopology topology(faces(5, {{0, 1, 2}, {2, 3, 4}}));

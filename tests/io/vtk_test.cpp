@@ -73,6 +73,72 @@ TEST(Vtk, SixtyFourBitConnectivityOfPointsReadsBack) {
     EXPECT_TRUE(written_and_read(frame, VtkIndexWidth::bits64).points == frame.points);
 }
 
+/// A rope of three particles, one triangle of cloth and a loose particle, in an order that is not that of ids.
+struct SpringFrame {
+    SpringFrame() {
+        const std::vector<Vec3> places{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {0, 5, 0}, {1, 5, 0}, {0, 6, 0}, {9, 9, 9}};
+        for (std::uint64_t id = places.size(); id-- > 0;) {
+            Particle particle;
+            particle.id = id;
+            particle.position = places[id];
+            particles.append(particle);
+        }
+        network = SpringNetwork({{0, 1, 1.0, 1.0, 0.0},
+                                 {1, 2, 1.0, 1.0, 0.0, 2.0},
+                                 {3, 4, 0.5, 1.0, 0.0},
+                                 {4, 5, 1.0, 1.0, 0.0, 2.0},
+                                 {5, 3, 1.0, 1.0, 0.0},
+                                 {0, 5, 1.0, 1.0, 0.0, std::numeric_limits<double>::infinity(), true}});
+        network.bind(particles.id);
+    }
+    [[nodiscard]] VtkPolyData frame() const {
+        VtkPolyData data = particle_frame(particles, 1.0);
+        add_springs(data, particles, network, {{{3, 4, 5}, {2, 3, 4}}});
+        return data;
+    }
+
+    Particles particles;
+    SpringNetwork network;
+};
+
+TEST(Vtk, SpringsAreLinesAndClothIsTrianglesBetweenTheParticles) {
+    const VtkPolyData frame = SpringFrame().frame();
+    for (const VtkIndexWidth width : {VtkIndexWidth::automatic, VtkIndexWidth::bits64}) {
+        const VtkPolyData read = written_and_read(frame, width);
+        EXPECT_TRUE(read.points == frame.points);
+        EXPECT_EQ(read.lines, (std::vector<VtkLine>{{0, 1}, {1, 2}}));
+        EXPECT_EQ(read.triangles, (std::vector<Triangle>{{3, 4, 5}}));
+        EXPECT_TRUE(read.has_vertices);
+        expect_same_arrays(read.cell_arrays, frame.cell_arrays);
+        // The points' cell, two lines, one triangle.
+        EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(read.cell_arrays, "spring")->values),
+                  (std::vector<std::int64_t>{-1, 0, 1, -1}));
+        EXPECT_EQ(std::get<std::vector<double>>(find_array(read.cell_arrays, "stretch")->values),
+                  (std::vector<double>{0.0, 0.0, 1.0, 1.0}));
+    }
+}
+
+TEST(Vtk, WhatIsLeftOfTornClothIsLines) {
+    SpringFrame scene;
+    auto places = scene.particles.position;
+    places[2] = {1, 50, 0};  // the particle with the id 4
+    EXPECT_EQ(scene.network.break_overstretched(places), 1U);
+    const VtkPolyData read = written_and_read(scene.frame());
+    EXPECT_TRUE(read.triangles.empty());
+    EXPECT_EQ(read.lines, (std::vector<VtkLine>{{0, 1}, {1, 2}, {3, 4}, {5, 3}}));
+    EXPECT_EQ(read.cell_arrays[0].size(), 5U);
+}
+
+TEST(Vtk, FramesOfSpringsWithoutParticlesKeepTheirArrays) {
+    SpringNetwork network({{0, 1, 1.0, 1.0, 0.0}});
+    network.bind({});
+    VtkPolyData frame = particle_frame(Particles{}, 1.0);
+    add_springs(frame, Particles{}, network, {});
+    const VtkPolyData read = written_and_read(frame);
+    EXPECT_EQ(read.cell_arrays.size(), 2U);
+    EXPECT_TRUE(read.lines.empty());
+}
+
 TEST(Vtk, PlanesAreSquaresInTheirPlaneWithItsPointAndNormal) {
     const PlaneShape plane{{0, 0, 2}, {0, 3, 4}};
     Box3 region;
@@ -174,8 +240,8 @@ std::vector<Damage> damages() {
               "NumberOfLines=\"0\" NumberOfStrips=\"0\">"),
          "more than one"},
         {"no piece", swap("<Piece ", "<PolyData "), "no <Piece>"},
-        {"lines", swap("NumberOfLines=\"0\"", "NumberOfLines=\"1\""), "lines or strips"},
-        {"verts and polys", swap("NumberOfVerts=\"0\"", "NumberOfVerts=\"1\""), "both vertices and triangles"},
+        {"lines", swap("NumberOfLines=\"0\"", "NumberOfLines=\"1\""), "both lines and a mesh"},
+        {"verts and polys", swap("NumberOfVerts=\"0\"", "NumberOfVerts=\"1\""), "no array connectivity in <Verts>"},
     };
 }
 

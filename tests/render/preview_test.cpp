@@ -64,6 +64,58 @@ TEST(Preview, MeshesAndSpheresThrowShadows) {
     EXPECT_FALSE(preview.occluded({{5, 0, 1}, {0, 0, -1}}));
 }
 
+TEST(Preview, LinesAreRoundAndHaveRoundEnds) {
+    Preview preview({}, {}, {});
+    PreviewLines lines{{{0, 1}}, {{-1, 0, 0}, {1, 0, 0}}, {0.25}, {{0, 0, 1}}};
+    preview.set_moving({{}, lines, {}});
+    const auto middle = preview.trace({{0, 0, 5}, {0, 0, -1}});
+    ASSERT_TRUE(middle);
+    EXPECT_EQ(middle->kind, PreviewHit::Kind::line);
+    EXPECT_EQ(middle->color, Vec3(0, 0, 1));
+    EXPECT_NEAR(middle->distance, 4.75, 1e-4);
+    EXPECT_NEAR(middle->normal.z, 1.0, 1e-3);
+    const auto edge = preview.trace({{0.5, 0.2, 5}, {0, 0, -1}});
+    ASSERT_TRUE(edge);
+    EXPECT_NEAR(edge->distance, 5.0 - 0.15, 1e-4);
+    EXPECT_NEAR(edge->normal.y, 0.8, 1e-3);
+    EXPECT_TRUE(preview.trace({{1.2, 0, 5}, {0, 0, -1}}));
+    EXPECT_FALSE(preview.trace({{1.3, 0, 5}, {0, 0, -1}}));
+    EXPECT_FALSE(preview.trace({{0, 0.3, 5}, {0, 0, -1}}));
+    EXPECT_TRUE(preview.occluded({{0, 0, 5}, {0, 0, -1}}));
+}
+
+TEST(Preview, ClothIsSeenFromBothSidesAndThrowsShadows) {
+    Preview preview({}, {}, {});
+    preview.set_moving({one_sphere({0, 0, -3}, 0.5), {}, square(0.0)});
+    for (const double side : {1.0, -1.0}) {
+        const auto hit = preview.trace({{0.1, 0.2, side}, {0, 0, -side}});
+        ASSERT_TRUE(hit);
+        EXPECT_EQ(hit->kind, PreviewHit::Kind::cloth);
+        EXPECT_EQ(hit->color, Vec3(0.1, 0.2, 0.3));
+        EXPECT_NEAR(hit->normal.z, side, 1e-9);
+    }
+    EXPECT_TRUE(preview.occluded({{0.1, 0.2, 1}, {0, 0, -1}}));
+    preview.set_moving({});
+    EXPECT_FALSE(preview.occluded({{0.1, 0.2, 1}, {0, 0, -1}}));
+}
+
+TEST(Preview, LeavesOutLinesAndClothThatCannotBeDrawn) {
+    Preview preview({}, {}, {});
+    PreviewMesh cloth = square(0.0);
+    cloth.mesh.vertices.push_back({kNaN, 0, 0});
+    cloth.mesh.triangles.push_back({0, 1, 4});
+    PreviewLines lines{{{0, 1}, {1, 2}, {1, 3}},
+                       {{kNaN, 0, 0}, {3, 0, 0}, {5, 0, 0}, {3, 5, 0}},
+                       {1.0, 0.1, 0.0},
+                       {{}, {0, 1, 0}, {}}};
+    preview.set_moving({{}, lines, cloth});
+    EXPECT_TRUE(preview.trace({{0.9, 0.9, 5}, {0, 0, -1}}));
+    const auto line = preview.trace({{4, 0, 5}, {0, 0, -1}});
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->color, Vec3(0, 1, 0));
+    EXPECT_FALSE(preview.trace({{3, 3, 5}, {0, 0, -1}}));
+}
+
 TEST(Preview, LeavesOutWhatCannotBeDrawnAndKeepsTheRest) {
     PreviewMesh mesh = square(0.0);
     mesh.mesh.vertices.push_back({kNaN, 0, 0});

@@ -68,7 +68,7 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
       steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {}
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
-    Vec3 sum;
+    Vec3 sum = input.coupling;
     for (const auto& force : forces_) sum += force->acceleration(input);
     return sum;
 }

@@ -21,6 +21,8 @@ struct ForceInput {
     double time;    ///< s
     /// Which particle it is, for forces that act on some only.
     std::uint64_t id = 0;
+    /// What other particles do to it, m/s^2: held from a bounce to the end of the step, zero where nothing couples.
+    Vec3 coupling{};
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.

@@ -153,6 +153,7 @@ struct MeshTopology::Impl {
     void add_edges(const FaceList& faces, const EdgeTable& edges);
     void add_faces(const FaceList& faces);
     void close_gaps();
+    [[nodiscard]] std::uint32_t vertex_across(OpenMesh::HalfedgeHandle halfedge) const;
     [[nodiscard]] std::vector<std::uint32_t> loop_from(OpenMesh::HalfedgeHandle start,
                                                        std::vector<char>& visited) const;
 
@@ -249,6 +250,14 @@ std::vector<std::uint32_t> MeshTopology::Impl::loop_from(OpenMesh::HalfedgeHandl
     return loop;
 }
 
+std::uint32_t MeshTopology::Impl::vertex_across(OpenMesh::HalfedgeHandle halfedge) const {
+    if (mesh.is_boundary(halfedge)) return kNoVertex;
+    const OpenMesh::HalfedgeHandle next = mesh.next_halfedge_handle(halfedge);
+    const OpenMesh::HalfedgeHandle after = mesh.next_halfedge_handle(next);
+    if (mesh.next_halfedge_handle(after) != halfedge) return kNoVertex;
+    return vertex_of_fan[static_cast<std::size_t>(mesh.to_vertex_handle(next).idx())];
+}
+
 std::unique_ptr<MeshTopology::Impl> MeshTopology::Impl::of(const FaceList& faces, std::size_t vertex_count) {
     auto impl = std::make_unique<Impl>();
     const EdgeTable edges(faces, vertex_count);
@@ -285,6 +294,35 @@ std::vector<std::vector<std::uint32_t>> MeshTopology::boundary_loops() const {
         if (!loop.empty()) loops.push_back(std::move(loop));
     }
     return loops;
+}
+
+// The half-edge structure has an edge that is cut once for every face along it: those become one without neighbours.
+std::vector<MeshEdge> MeshTopology::edges() const {
+    std::vector<MeshEdge> edges;
+    edges.reserve(impl_->mesh.n_edges());
+    for (std::size_t e = 0; e < impl_->mesh.n_edges(); ++e) {
+        const OpenMesh::HalfedgeHandle along =
+            impl_->mesh.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), 0);
+        const OpenMesh::HalfedgeHandle back = impl_->mesh.opposite_halfedge_handle(along);
+        const std::uint32_t from =
+            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.from_vertex_handle(along).idx())];
+        const std::uint32_t to =
+            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.to_vertex_handle(along).idx())];
+        edges.push_back(
+            {std::min(from, to), std::max(from, to), {impl_->vertex_across(along), impl_->vertex_across(back)}});
+    }
+    const auto key = [](const MeshEdge& edge) { return std::pair(edge.first, edge.second); };
+    std::stable_sort(edges.begin(), edges.end(), [&](const MeshEdge& a, const MeshEdge& b) { return key(a) < key(b); });
+    std::size_t kept = 0;
+    for (const MeshEdge& edge : edges) {
+        if (kept > 0 && key(edges[kept - 1]) == key(edge)) {
+            edges[kept - 1].opposite = {kNoVertex, kNoVertex};
+        } else {
+            edges[kept++] = edge;
+        }
+    }
+    edges.resize(kept);
+    return edges;
 }
 
 std::size_t count_duplicate_faces(const PolygonMesh& mesh) {

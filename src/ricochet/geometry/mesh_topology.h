@@ -2,6 +2,7 @@
 /// How the faces of a mesh hang together: the one place that uses OpenMesh.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -26,6 +27,18 @@ struct TopologyReport {
     std::size_t unused_vertices = 0;       ///< vertices that no face names
 };
 
+/// In place of a vertex number: none.
+inline constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
+
+/// An edge of a mesh, and what lies across it.
+struct MeshEdge {
+    std::uint32_t first;   ///< vertex
+    std::uint32_t second;  ///< vertex, first < second
+    /// Of the triangle on either side the corner that is not on the edge. kNoVertex where there is no face, where the
+    /// face is no triangle, and on both sides of an edge at which the surface is not manifold.
+    std::array<std::uint32_t, 2> opposite;
+};
+
 /// Half-edge structure of a polygon mesh. Where it is not manifold (edges of several faces, vertices that join separate
 /// sheets, neighbours of opposite winding) the structure is cut open, as half-edges cannot say it; the counts of the
 /// report are those of the index list all the same. Time and memory are linear in the number of corners.
@@ -45,6 +58,9 @@ public:
     /// direction opposite to the faces'). A chain that meets cuts of the half-edge structure runs along them; chains of
     /// cuts alone are left out.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops() const;
+
+    /// Every edge of the index list once, in the order of (first, second).
+    [[nodiscard]] std::vector<MeshEdge> edges() const;
 
 private:
     struct Impl;

@@ -14,6 +14,16 @@ namespace ricochet {
 /// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
 /// on it, see Simulation::has_spheres().
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres = false);
+/// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
+[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
+                                         bool has_spheres = false);
+
+/// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
+/// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for
+/// triangles and points) and stretch (length over rest length minus 1; of a triangle the largest of its springs; 0
+/// where there is no rest length).
+void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
+                 const std::vector<SpringFace>& faces);
 
 /// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);

@@ -58,6 +58,23 @@ Json pair_schema(const KeySpec& key) {
     return {{"oneOf", Json::array({mean, pair})}};
 }
 
+Json two_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}, {"minItems", 2}, {"maxItems", 2}}; }
+
+Json quantity_schema(const KeySpec& key) {
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key)})}};
+}
+
+// A number, a vector, or a pair of two alike, the second of which is a spread.
+Json spread_schema(const KeySpec& key) {
+    const Range spread{.lower = 0.0, .upper = key.range.upper};
+    const auto pair = [](Json mean, Json width) {
+        return Json{{"type", "array"}, {"prefixItems", Json::array({mean, width})}, {"minItems", 2}, {"maxItems", 2}};
+    };
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key),
+                                   pair(number_schema(key.range), number_schema(spread)),
+                                   pair(vector_schema(key), three_of(number_schema(spread)))})}};
+}
+
 Json text_schema() { return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^\\u0000-\\u001f\\u007f]*$"}}; }
 
 Json choice_schema(const KeySpec& key) {
@@ -117,6 +134,16 @@ Json value_schema(const KeySpec& key) {
             return {{"type", "object"},
                     {"propertyNames", {{"minLength", 1}}},
                     {"additionalProperties", reference_to(*key.content)}};
+        case ValueType::quantity:
+            return quantity_schema(key);
+        case ValueType::vector_pair: {
+            const Json vector = vector_schema(key);
+            return {{"oneOf", Json::array({vector, two_of(vector)})}};
+        }
+        case ValueType::quantity_table:
+            return {{"type", "object"},
+                    {"propertyNames", {{"minLength", 1}}},
+                    {"additionalProperties", spread_schema(key)}};
         case ValueType::text_table:
             return {{"type", "object"}, {"propertyNames", {{"minLength", 1}}}, {"additionalProperties", text_schema()}};
     }

@@ -94,47 +94,70 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-// Connectivity and offsets of the cells, kept alive until they are written.
-struct Cells {
-    std::vector<std::int32_t> narrow_corners, narrow_offsets;
-    std::vector<std::int64_t> wide_corners, wide_offsets;
+// Connectivity and offsets of the cells of one kind.
+template <typename Index>
+struct CellList {
+    std::vector<Index> corners, offsets;
 };
 
+// The cells of all kinds, kept alive until they are written.
 template <typename Index>
-void fill_cells(const VtkPolyData& data, std::vector<Index>& corners, std::vector<Index>& offsets) {
-    if (data.triangles.empty()) {
-        corners.resize(data.points.size());
-        std::iota(corners.begin(), corners.end(), Index{0});
-        if (!corners.empty()) offsets.push_back(static_cast<Index>(corners.size()));
-        return;
-    }
-    corners.reserve(3 * data.triangles.size());
-    offsets.reserve(data.triangles.size());
-    for (const Triangle& triangle : data.triangles) {
-        for (const std::uint32_t corner : triangle) corners.push_back(static_cast<Index>(corner));
-        offsets.push_back(static_cast<Index>(corners.size()));
-    }
+struct CellLists {
+    CellList<Index> verts, lines, polys;
+};
+
+using Cells = std::variant<CellLists<std::int32_t>, CellLists<std::int64_t>>;
+
+template <typename Index>
+CellList<Index> one_vertex_cell(std::size_t points) {
+    CellList<Index> cells;
+    cells.corners.resize(points);
+    std::iota(cells.corners.begin(), cells.corners.end(), Index{0});
+    if (points > 0) cells.offsets.push_back(static_cast<Index>(points));
+    return cells;
 }
 
-Cells make_cells(const VtkPolyData& data, VtkIndexWidth width) {
-    Cells cells;
-    const std::size_t largest = std::max(data.points.size(), 3 * data.triangles.size());
-    if (width == VtkIndexWidth::bits64 || largest > std::numeric_limits<std::int32_t>::max()) {
-        fill_cells(data, cells.wide_corners, cells.wide_offsets);
-    } else {
-        fill_cells(data, cells.narrow_corners, cells.narrow_offsets);
+template <typename Index, std::size_t kCorners>
+CellList<Index> cells_of(const std::vector<std::array<std::uint32_t, kCorners>>& shapes) {
+    CellList<Index> cells;
+    cells.corners.reserve(kCorners * shapes.size());
+    cells.offsets.reserve(shapes.size());
+    for (const auto& shape : shapes) {
+        for (const std::uint32_t corner : shape) cells.corners.push_back(static_cast<Index>(corner));
+        cells.offsets.push_back(static_cast<Index>(cells.corners.size()));
     }
     return cells;
 }
 
-void lay_out_cells(Layout& layout, const Cells& cells) {
-    if (!cells.wide_corners.empty()) {
-        layout.block("Int64", "connectivity", 1, bytes_of(cells.wide_corners));
-        layout.block("Int64", "offsets", 1, bytes_of(cells.wide_offsets));
-    } else {
-        layout.block("Int32", "connectivity", 1, bytes_of(cells.narrow_corners));
-        layout.block("Int32", "offsets", 1, bytes_of(cells.narrow_offsets));
+template <typename Index>
+CellLists<Index> cell_lists(const VtkPolyData& data) {
+    return {one_vertex_cell<Index>(data.shows_points() ? data.points.size() : 0), cells_of<Index>(data.lines),
+            cells_of<Index>(data.triangles)};
+}
+
+Cells make_cells(const VtkPolyData& data, VtkIndexWidth width) {
+    const std::size_t largest = std::max({data.points.size(), 2 * data.lines.size(), 3 * data.triangles.size()});
+    if (width == VtkIndexWidth::bits64 || largest > std::numeric_limits<std::int32_t>::max()) {
+        return cell_lists<std::int64_t>(data);
     }
+    return cell_lists<std::int32_t>(data);
+}
+
+template <typename Index>
+void lay_out_list(Layout& layout, const char* kind, const CellList<Index>& cells) {
+    constexpr const char* kType = sizeof(Index) == 8 ? "Int64" : "Int32";
+    layout.text(fmt::format("<{}>\n", kind));
+    layout.block(kType, "connectivity", 1, bytes_of(cells.corners));
+    layout.block(kType, "offsets", 1, bytes_of(cells.offsets));
+    layout.text(fmt::format("</{}>\n", kind));
+}
+
+template <typename Index>
+void lay_out_lists(Layout& layout, const CellLists<Index>& cells) {
+    const bool is_mesh = cells.verts.corners.empty() && !cells.polys.corners.empty();
+    if (!is_mesh) lay_out_list(layout, "Verts", cells.verts);
+    if (!cells.lines.corners.empty()) lay_out_list(layout, "Lines", cells.lines);
+    if (!cells.polys.corners.empty()) lay_out_list(layout, "Polys", cells.polys);
 }
 
 void lay_out_fields(Layout& layout, const VtkPolyData& data) {
@@ -151,7 +174,6 @@ void lay_out_fields(Layout& layout, const VtkPolyData& data) {
 }
 
 Layout lay_out(const VtkPolyData& data, const Cells& cells) {
-    const std::size_t vertex_cells = data.triangles.empty() && !data.points.empty() ? 1 : 0;
     Layout layout;
     layout.text(
         "<?xml version=\"1.0\"?>\n"
@@ -159,19 +181,17 @@ Layout lay_out(const VtkPolyData& data, const Cells& cells) {
         "<PolyData>\n");
     lay_out_fields(layout, data);
     layout.text(
-        fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
+        fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" "
                     "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n<PointData>\n",
-                    data.points.size(), vertex_cells, data.triangles.size()));
+                    data.points.size(), data.shows_points() ? 1 : 0, data.lines.size(), data.triangles.size()));
     for (const VtkArray& array : data.point_arrays) layout.array(array);
     layout.text("</PointData>\n<CellData>\n");
     for (const VtkArray& array : data.cell_arrays) layout.array(array);
     layout.text("</CellData>\n<Points>\n");
     layout.block("Float64", "Points", 3, bytes_of(data.points));
     layout.text("</Points>\n");
-    const char* cell_kind = data.triangles.empty() ? "Verts" : "Polys";
-    layout.text(fmt::format("<{}>\n", cell_kind));
-    lay_out_cells(layout, cells);
-    layout.text(fmt::format("</{}>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", cell_kind));
+    std::visit([&](const auto& lists) { lay_out_lists(layout, lists); }, cells);
+    layout.text("</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
     return layout;
 }
 

@@ -4,6 +4,7 @@
 /// Source of the format: VTK File Formats, "XML File Formats", Kitware.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -34,14 +35,27 @@ struct VtkField {
     std::vector<double> values;
 };
 
-/// What one .vtp file holds: points as one poly-vertex cell, or a triangle mesh.
+/// Two indices into the points.
+using VtkLine = std::array<std::uint32_t, 2>;
+
+/// What one .vtp file holds: a triangle mesh, or points as one poly-vertex cell; with the points also lines and, in a
+/// frame of particles, triangles between them. Cells stand in VTK's order: the poly-vertex cell, lines, triangles.
 struct VtkPolyData {
     double time = 0.0;  ///< s; stored as the field TimeValue, which ParaView takes as the file's time
     std::vector<VtkField> fields;
     std::vector<Vec3> points;
     std::vector<VtkArray> point_arrays;  ///< each as long as points
-    std::vector<Triangle> triangles;     ///< empty: the points are one poly-vertex cell
-    std::vector<VtkArray> cell_arrays;   ///< each as long as triangles; none for points
+    std::vector<VtkLine> lines;          ///< every line is a cell of two points
+    std::vector<Triangle> triangles;     ///< alone (without `has_vertices`): a mesh
+    bool has_vertices = false;           ///< the points are a poly-vertex cell although there are triangles
+    std::vector<VtkArray> cell_arrays;   ///< each as long as there are cells; none for points alone
+
+    /// True when the points are one poly-vertex cell.
+    [[nodiscard]] bool shows_points() const { return !points.empty() && (triangles.empty() || has_vertices); }
+    /// Cells of the file.
+    [[nodiscard]] std::size_t cell_count() const {
+        return (shows_points() ? 1U : 0U) + lines.size() + triangles.size();
+    }
 };
 
 /// Integers that list the corners of cells. Automatic: 32 bits while they can count the points.

@@ -67,7 +67,7 @@ struct ArrayHeader {
 };
 
 struct Header {
-    std::uint64_t points = 0, verts = 0, polys = 0;
+    std::uint64_t points = 0, verts = 0, lines = 0, polys = 0;
     double time = 0.0;
     std::vector<VtkField> fields;
     std::vector<ArrayHeader> arrays;
@@ -87,8 +87,8 @@ public:
 
 private:
     void take(const detail::XmlTag& tag) {
-        static constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData",
-                                                         "Points",    "Verts",     "Polys"};
+        static constexpr std::string_view kSections[] = {"FieldData", "PointData", "CellData", "Points",
+                                                         "Verts",     "Lines",     "Polys"};
         if (tag.name.starts_with('/') || tag.name.starts_with('?') || tag.name == "PolyData") return;
         if (tag.name == "VTKFile") {
             expect(tag, "type", "PolyData");
@@ -110,9 +110,8 @@ private:
         header_.points = number(tag, "NumberOfPoints");
         header_.verts = number(tag, "NumberOfVerts");
         header_.polys = number(tag, "NumberOfPolys");
-        if (number(tag, "NumberOfLines") != 0 || number(tag, "NumberOfStrips") != 0) {
-            refuse(path_, "lines or strips in the file");
-        }
+        header_.lines = number(tag, "NumberOfLines");
+        if (number(tag, "NumberOfStrips") != 0) refuse(path_, "strips in the file");
     }
 
     void take_field(const detail::XmlTag& tag) {
@@ -239,32 +238,36 @@ const ArrayHeader& only_array(const std::filesystem::path& path, const Header& h
     return *found;
 }
 
-std::vector<Triangle> read_triangles(const std::filesystem::path& path, const Header& header, BlockReader& blocks) {
-    if (header.polys == 0) return {};
-    if (header.polys > std::numeric_limits<std::uint32_t>::max()) refuse(path, "too many triangles");
-    const auto corners = blocks.indices(only_array(path, header, "Polys", "connectivity"), 3 * header.polys);
-    const auto offsets = blocks.indices(only_array(path, header, "Polys", "offsets"), header.polys);
-    std::vector<Triangle> triangles(offsets.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (offsets[t] != static_cast<std::int64_t>(3 * (t + 1)))
-            refuse(path, fmt::format("cell {} is no triangle", t));
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::int64_t corner = corners[3 * t + k];
+// Cells of one kind that all have the same number of corners.
+template <std::size_t kCorners>
+std::vector<std::array<std::uint32_t, kCorners>> read_cells(const std::filesystem::path& path, const Header& header,
+                                                            BlockReader& blocks, const char* section,
+                                                            std::uint64_t count, std::string_view shape) {
+    if (count == 0) return {};
+    if (count > std::numeric_limits<std::uint32_t>::max()) refuse(path, fmt::format("too many cells in <{}>", section));
+    const auto corners = blocks.indices(only_array(path, header, section, "connectivity"), kCorners * count);
+    const auto offsets = blocks.indices(only_array(path, header, section, "offsets"), count);
+    std::vector<std::array<std::uint32_t, kCorners>> cells(offsets.size());
+    for (std::size_t t = 0; t < cells.size(); ++t) {
+        if (offsets[t] != static_cast<std::int64_t>(kCorners * (t + 1)))
+            refuse(path, fmt::format("cell {} is no {}", t, shape));
+        for (std::size_t k = 0; k < kCorners; ++k) {
+            const std::int64_t corner = corners[kCorners * t + k];
             if (corner < 0 || static_cast<std::uint64_t>(corner) >= header.points ||
                 corner > std::numeric_limits<std::uint32_t>::max()) {
-                refuse(path, fmt::format("corner {} of triangle {} names point {} of {}", k, t, corner, header.points));
+                refuse(path,
+                       fmt::format("corner {} of {} {} names point {} of {}", k, shape, t, corner, header.points));
             }
-            triangles[t][k] = static_cast<std::uint32_t>(corner);
+            cells[t][k] = static_cast<std::uint32_t>(corner);
         }
     }
-    return triangles;
+    return cells;
 }
 
 void check_vertex_cell(const std::filesystem::path& path, const Header& header, BlockReader& blocks) {
-    if (header.polys > 0) {
-        if (header.verts != 0) refuse(path, "both vertices and triangles");
-        return;
-    }
+    const bool is_mesh = header.polys > 0 && header.verts == 0;
+    if (is_mesh && header.lines > 0) refuse(path, "both lines and a mesh");
+    if (is_mesh) return;
     if (header.verts != (header.points == 0 ? 0U : 1U)) refuse(path, "the points are not one poly-vertex cell");
     if (header.points == 0) return;
     const auto corners = blocks.indices(only_array(path, header, "Verts", "connectivity"), header.points);
@@ -283,12 +286,16 @@ VtkPolyData read_vtp(const std::filesystem::path& path) {
     data.time = header.time;
     data.fields = header.fields;
     data.points = blocks.read<Vec3>(only_array(path, header, "Points", "Points"), header.points);
+    std::vector<ArrayHeader> cell_arrays;
     for (const ArrayHeader& array : header.arrays) {
         if (array.section == "PointData") data.point_arrays.push_back(blocks.array(array, header.points));
-        if (array.section == "CellData") data.cell_arrays.push_back(blocks.array(array, header.polys));
+        if (array.section == "CellData") cell_arrays.push_back(array);
     }
     check_vertex_cell(path, header, blocks);
-    data.triangles = read_triangles(path, header, blocks);
+    data.lines = read_cells<2>(path, header, blocks, "Lines", header.lines, "line");
+    data.triangles = read_cells<3>(path, header, blocks, "Polys", header.polys, "triangle");
+    data.has_vertices = header.verts > 0 && header.polys > 0;
+    for (const ArrayHeader& array : cell_arrays) data.cell_arrays.push_back(blocks.array(array, data.cell_count()));
     return data;
 }
 

@@ -14,6 +14,10 @@ namespace {
 // Debian builds Embree with assertions: rays beyond 1.8e18 or not finite end the process.
 constexpr double kLargestCoordinate = 1e15;
 constexpr double kCreaseDegrees = 40.0;
+constexpr double kClothCreaseDegrees = 180.0;  // its folds are round
+
+// Geometries of the scene of what moves.
+enum MovingGeometry : unsigned { kSpheres, kLines, kCloth };
 
 bool drawable(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestCoordinate; }
 
@@ -91,22 +95,27 @@ struct MeshGroup {
 struct Preview::Impl {
     embree::Device device = embree::make_device();
     MeshGroup solid, glass;
-    embree::Scene sphere_scene;
+    embree::Scene moving_scene;
     std::vector<PreviewPlane> planes;
     std::vector<Vec3> sphere_colors;  // in the order of the drawn spheres
-    bool has_spheres = false;
+    std::vector<Vec3> line_colors;    // in the order of the drawn lines
+    DrawnMesh cloth;
+    bool has_moving = false;
     Vec3 origin;
+
+    [[nodiscard]] RTCGeometry triangles_of(const TriangleMesh& mesh) const;
+    void add_spheres(const PreviewSpheres& spheres);
+    void add_lines(const PreviewLines& lines);
+    void add_cloth(PreviewMesh source);
 
     void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
     [[nodiscard]] std::optional<PreviewHit> trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const;
-    [[nodiscard]] static PreviewHit mesh_hit(const MeshGroup& group, const RTCRayHit& hit, const PreviewRay& ray);
-    [[nodiscard]] PreviewHit sphere_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
+    [[nodiscard]] static PreviewHit mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, const PreviewRay& ray);
+    [[nodiscard]] PreviewHit moving_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
     void trace_planes(const PreviewRay& ray, std::optional<PreviewHit>& nearest) const;
 };
 
-void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
-    make_drawable(source.mesh);
-    const TriangleMesh& mesh = source.mesh;
+RTCGeometry Preview::Impl::triangles_of(const TriangleMesh& mesh) const {
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), mesh.vertices.size()));
@@ -117,8 +126,13 @@ void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), corners + 3 * t);
     }
-    attach(group.scene.get(), geometry, static_cast<unsigned>(group.meshes.size()));
-    auto normals = corner_normals(mesh, kCreaseDegrees);
+    return geometry;
+}
+
+void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
+    make_drawable(source.mesh);
+    attach(group.scene.get(), triangles_of(source.mesh), static_cast<unsigned>(group.meshes.size()));
+    auto normals = corner_normals(source.mesh, kCreaseDegrees);
     group.meshes.push_back({std::move(source), std::move(normals)});
 }
 
@@ -128,11 +142,10 @@ std::optional<PreviewHit> Preview::Impl::trace(const MeshGroup& group, const Pre
     embree::init_context(context, nullptr);
     embree::intersect1(group.scene.get(), context, hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return mesh_hit(group, hit, ray);
+    return mesh_hit(group.meshes[hit.hit.geomID], hit, ray);
 }
 
-PreviewHit Preview::Impl::mesh_hit(const MeshGroup& group, const RTCRayHit& hit, const PreviewRay& ray) {
-    const DrawnMesh& mesh = group.meshes[hit.hit.geomID];
+PreviewHit Preview::Impl::mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, const PreviewRay& ray) {
     const auto& corner = mesh.normals[hit.hit.primID];
     const double u = hit.hit.u;
     const double v = hit.hit.v;
@@ -147,14 +160,20 @@ PreviewHit Preview::Impl::mesh_hit(const MeshGroup& group, const RTCRayHit& hit,
     return out;
 }
 
-PreviewHit Preview::Impl::sphere_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
+PreviewHit Preview::Impl::moving_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
     PreviewHit out;
-    out.kind = PreviewHit::Kind::sphere;
+    if (hit.hit.geomID == kCloth) {
+        out = mesh_hit(cloth, hit, ray);
+        out.kind = PreviewHit::Kind::cloth;
+        return out;
+    }
+    const bool is_line = hit.hit.geomID == kLines;
+    out.kind = is_line ? PreviewHit::Kind::line : PreviewHit::Kind::sphere;
     out.distance = hit.ray.tfar;
     out.point = ray.origin + out.distance * ray.direction;
     out.face = towards(normalized(Vec3{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}), ray.direction);
     out.normal = out.face;
-    out.color = sphere_colors[hit.hit.primID];
+    out.color = is_line ? line_colors[hit.hit.primID] : sphere_colors[hit.hit.primID];
     return out;
 }
 
@@ -186,28 +205,78 @@ Preview::~Preview() = default;
 Preview::Preview(Preview&&) noexcept = default;
 Preview& Preview::operator=(Preview&&) noexcept = default;
 
-void Preview::set_spheres(const PreviewSpheres& spheres) {
+void Preview::Impl::add_spheres(const PreviewSpheres& spheres) {
     std::vector<std::size_t> drawn;
     for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
         if (drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 && spheres.radii[i] < kLargestCoordinate)
             drawn.push_back(i);
     }
-    impl_->sphere_scene = new_scene(impl_->device.get());
-    impl_->sphere_colors.clear();
-    impl_->has_spheres = !drawn.empty();
+    sphere_colors.clear();
     if (drawn.empty()) return;
-    RTCGeometry geometry = rtcNewGeometry(impl_->device.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* buffer = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                                                4 * sizeof(float), drawn.size()));
-    embree::check_device(impl_->device.get(), "storing the particles for the picture");
+    embree::check_device(device.get(), "storing the particles for the picture");
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         const Vec3& center = spheres.centers[drawn[k]];
-        store(buffer + 4 * k, center - impl_->origin);
+        store(buffer + 4 * k, center - origin);
         buffer[4 * k + 3] = static_cast<float>(spheres.radii[drawn[k]]);
-        impl_->sphere_colors.push_back(spheres.colors[drawn[k]]);
+        sphere_colors.push_back(spheres.colors[drawn[k]]);
     }
-    attach(impl_->sphere_scene.get(), geometry, 0);
-    rtcCommitScene(impl_->sphere_scene.get());
+    attach(moving_scene.get(), geometry, kSpheres);
+    has_moving = true;
+}
+
+// Every line has two points of its own, since lines that share one may differ in radius.
+void Preview::Impl::add_lines(const PreviewLines& lines) {
+    std::vector<std::size_t> drawn;
+    for (std::size_t i = 0; i < lines.ends.size(); ++i) {
+        const auto [a, b] = lines.ends[i];
+        if (drawable(lines.points[a]) && drawable(lines.points[b]) && lines.radii[i] > 0.0 &&
+            lines.radii[i] < kLargestCoordinate)
+            drawn.push_back(i);
+    }
+    line_colors.clear();
+    if (drawn.empty()) return;
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                               4 * sizeof(float), 2 * drawn.size()));
+    auto* firsts = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), drawn.size()));
+    embree::check_device(device.get(), "storing the springs for the picture");
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+        for (std::size_t end = 0; end < 2; ++end) {
+            float* point = points + 4 * (2 * k + end);
+            store(point, lines.points[lines.ends[drawn[k]][end]] - origin);
+            point[3] = static_cast<float>(lines.radii[drawn[k]]);
+        }
+        firsts[k] = static_cast<std::uint32_t>(2 * k);
+        line_colors.push_back(lines.colors[drawn[k]]);
+    }
+    attach(moving_scene.get(), geometry, kLines);
+    has_moving = true;
+}
+
+void Preview::Impl::add_cloth(PreviewMesh source) {
+    cloth = {};
+    if (source.mesh.triangles.empty()) return;
+    make_drawable(source.mesh);
+    attach(moving_scene.get(), triangles_of(source.mesh), kCloth);
+    auto normals = corner_normals(source.mesh, kClothCreaseDegrees);
+    cloth = {std::move(source), std::move(normals)};
+    has_moving = true;
+}
+
+void Preview::set_spheres(const PreviewSpheres& spheres) { set_moving({spheres, {}, {}}); }
+
+void Preview::set_moving(PreviewMoving moving) {
+    impl_->moving_scene = new_scene(impl_->device.get());
+    impl_->has_moving = false;
+    impl_->add_spheres(moving.spheres);
+    impl_->add_lines(moving.lines);
+    impl_->add_cloth(std::move(moving.cloth));
+    if (!impl_->has_moving) return;
+    rtcCommitScene(impl_->moving_scene.get());
     embree::check_device(impl_->device.get(), "building the picture's particles");
 }
 
@@ -216,12 +285,12 @@ std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
     RTCRayHit hit = embree_query(ray, impl_->origin);
     std::optional<PreviewHit> nearest = impl_->trace(impl_->solid, ray, hit);
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    if (impl_->has_spheres) {
+    if (impl_->has_moving) {
         embree::QueryContext context;
         embree::init_context(context, nullptr);
-        embree::intersect1(impl_->sphere_scene.get(), context, hit);
+        embree::intersect1(impl_->moving_scene.get(), context, hit);
     }
-    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->sphere_hit(hit, ray);
+    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->moving_hit(hit, ray);
     impl_->trace_planes(ray, nearest);
     return nearest;
 }
@@ -238,7 +307,7 @@ bool Preview::occluded(const PreviewRay& ray) const {
     embree::init_context(context, nullptr);
     RTCRay shadow = embree_ray(ray, impl_->origin);
     if (!impl_->solid.empty()) embree::occluded1(impl_->solid.scene.get(), context, shadow);
-    if (shadow.tfar >= 0.0F && impl_->has_spheres) embree::occluded1(impl_->sphere_scene.get(), context, shadow);
+    if (shadow.tfar >= 0.0F && impl_->has_moving) embree::occluded1(impl_->moving_scene.get(), context, shadow);
     return shadow.tfar < 0.0F;
 }
 

@@ -2,6 +2,7 @@
 /// What a picture shows, as a thing that rays can be shot at.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,6 +35,21 @@ struct PreviewSpheres {
     std::vector<Vec3> colors;
 };
 
+/// Straight threads with round ends; all vectors but points have the same length.
+struct PreviewLines {
+    std::vector<std::array<std::uint32_t, 2>> ends;  ///< indices into points
+    std::vector<Vec3> points;
+    std::vector<double> radii;  ///< m, > 0
+    std::vector<Vec3> colors;
+};
+
+/// What moves: changes from picture to picture.
+struct PreviewMoving {
+    PreviewSpheres spheres;
+    PreviewLines lines;
+    PreviewMesh cloth;  ///< shaded smoothly everywhere
+};
+
 /// A ray from a point along a unit vector.
 struct PreviewRay {
     Vec3 origin;
@@ -47,7 +63,7 @@ struct PreviewHit {
     Vec3 normal;  ///< smoothed, of unit length, towards the ray's origin
     Vec3 face;    ///< of the surface itself, of unit length, towards the ray's origin
     Vec3 color;
-    enum class Kind { mesh, plane, sphere } kind = Kind::mesh;
+    enum class Kind { mesh, plane, sphere, line, cloth } kind = Kind::mesh;
 };
 
 /// Colliders and particles behind Embree. Coordinates are single precision about the given origin: good for pictures.
@@ -60,14 +76,16 @@ public:
     Preview(Preview&&) noexcept;
     Preview& operator=(Preview&&) noexcept;
 
-    /// Replaces the spheres. Not while rays are being shot.
+    /// Replaces all that moves by spheres. Not while rays are being shot.
     void set_spheres(const PreviewSpheres& spheres);
+    /// Replaces all that moves. Not while rays are being shot.
+    void set_moving(PreviewMoving moving);
 
     /// The first thing on the ray that is no glass; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace(const PreviewRay& ray) const;
     /// The first glass mesh on the ray; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace_glass(const PreviewRay& ray) const;
-    /// True when a mesh or sphere stands on the ray; planes throw no shadow.
+    /// True when a mesh or something that moves stands on the ray; planes throw no shadow.
     [[nodiscard]] bool occluded(const PreviewRay& ray) const;
     /// The point about which coordinates are rounded.
     [[nodiscard]] const Vec3& origin() const;

@@ -122,6 +122,7 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
             return rk4(now, h);
         case IntegratorKind::forward_euler:
         case IntegratorKind::symplectic_euler:
+        case IntegratorKind::implicit_euler:  // refused by make_response()
             break;
     }
     const ContactPush k = push_at(now, state_.time, seen_, h);
@@ -231,6 +232,9 @@ void PenaltyMover::begin_contacts() {
         } else {
             impact_.push(view.surface, Vec3{}, true);
             impact_.record(surface, state_.velocity);
+            // The contact's impulse is yet to come; what arrives along the normal stands for it.
+            impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
+            if (outcome_.absorbed) return;
         }
     }
 }

@@ -63,6 +63,8 @@ void build_forces(const SceneContext& context, SimulationSetup& setup);
 void build_colliders(SceneContext& context, SimulationSetup& setup);
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 void build_particles(SceneContext& context, SimulationSetup& setup);
+/// After the particles: adds those of ropes, chains and cloth behind them.
+void build_springs(SceneContext& context, SimulationSetup& setup);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 

@@ -14,22 +14,25 @@ namespace ricochet::detail {
 
 /// Kinds of values.
 enum class ValueType {
-    number,        ///< any finite number
-    integer,       ///< whole number >= 0
-    boolean,       ///< true or false
-    text,          ///< a text that is not empty
-    file,          ///< a path, relative to the scene file
-    choice,        ///< one of KeySpec::choices
-    integers,      ///< a list of whole numbers >= 0
-    vector,        ///< [x, y, z]
-    scale,         ///< a number or [x, y, z], no component zero
-    pair,          ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
-    object,        ///< an object of KeySpec::content
-    named_object,  ///< the same, or the name of one in the table KeySpec::table
-    list,          ///< a list of objects of KeySpec::content
-    list_or_file,  ///< the same, or {"file": ...}
-    table,         ///< an object whose keys are names and whose values are objects of KeySpec::content
-    text_table,    ///< an object whose keys are names and whose values are texts that are not empty
+    number,          ///< any finite number
+    integer,         ///< whole number >= 0
+    boolean,         ///< true or false
+    text,            ///< a text that is not empty
+    file,            ///< a path, relative to the scene file
+    choice,          ///< one of KeySpec::choices
+    integers,        ///< a list of whole numbers >= 0
+    vector,          ///< [x, y, z]
+    scale,           ///< a number or [x, y, z], no component zero
+    pair,            ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
+    object,          ///< an object of KeySpec::content
+    named_object,    ///< the same, or the name of one in the table KeySpec::table
+    list,            ///< a list of objects of KeySpec::content
+    list_or_file,    ///< the same, or {"file": ...}
+    table,           ///< an object whose keys are names and whose values are objects of KeySpec::content
+    quantity,        ///< a number or [x, y, z]
+    vector_pair,     ///< [x, y, z], or [[x, y, z], [spread, spread, spread]]
+    quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
+    text_table,      ///< an object whose keys are names and whose values are texts that are not empty
 };
 
 /// Allowed numbers (or vector components).
@@ -99,6 +102,9 @@ struct ObjectSpec {
 [[nodiscard]] const ObjectSpec& rotation_spec();
 /// {"file": ...} in the place of a particle list.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
+
+/// Where a shape stands: position, rotation and scale. needs: the key that must stand beside them, or none.
+[[nodiscard]] std::vector<KeySpec> placement_keys(std::string_view needs);
 
 /// The object's keys with those of the variant (null pointer: without), in the order of the table.
 [[nodiscard]] std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant);

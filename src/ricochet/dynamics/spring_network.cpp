@@ -1,0 +1,162 @@
+#include "ricochet/dynamics/spring_network.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/dynamics/detail/checks.h"
+
+namespace ricochet {
+namespace {
+
+/// Springs per block of the energy's sum.
+constexpr std::size_t kBlock = 1024;
+
+void check(const Spring& spring, std::size_t number) {
+    const std::string name = fmt::format("spring {}: ", number);
+    if (spring.first == spring.second) {
+        throw InputError(fmt::format("{}both ends are particle {}, expected two particles", name, spring.first));
+    }
+    detail::require_not_negative(spring.rest_length, name + "the rest length", "m");
+    detail::require_not_negative(spring.stiffness, name + "the stiffness", "N/m");
+    detail::require_not_negative(spring.damping, name + "the damping", "N s/m");
+    if (!(spring.breaking_stretch > 0.0)) {
+        throw InputError(
+            fmt::format("{}the breaking stretch must be a number > 0, found {}", name, spring.breaking_stretch));
+    }
+    if (spring.rest_length == 0.0 && spring.breaking_stretch < std::numeric_limits<double>::infinity()) {
+        throw InputError(name + "a spring without a rest length has no breaking stretch; leave it out");
+    }
+}
+
+/// Finds places by id.
+class Places {
+public:
+    explicit Places(std::span<const std::uint64_t> ids) : ids_(ids) {
+        if (std::is_sorted(ids.begin(), ids.end())) return;
+        order_.resize(ids.size());
+        std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+        std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+    }
+    [[nodiscard]] std::optional<std::uint32_t> of(std::uint64_t id) const {
+        if (order_.empty()) {
+            const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+            if (found == ids_.end() || *found != id) return std::nullopt;
+            return static_cast<std::uint32_t>(found - ids_.begin());
+        }
+        const auto found = std::lower_bound(order_.begin(), order_.end(), id,
+                                            [&](std::uint32_t i, std::uint64_t wanted) { return ids_[i] < wanted; });
+        if (found == order_.end() || ids_[*found] != id) return std::nullopt;
+        return *found;
+    }
+
+private:
+    std::span<const std::uint64_t> ids_;
+    std::vector<std::uint32_t> order_;  // of ids; empty when they are in order
+};
+
+}  // namespace
+
+// Swapping the ends changes the sign of every difference and of nothing else: the forces are exactly opposite.
+Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
+                  const Vec3& v_second) {
+    const Vec3 d = x_second - x_first;
+    const double distance = length(d);
+    if (distance == 0.0) return {};
+    const Vec3 along = d / distance;
+    const double rate = dot(v_second - v_first, along);
+    return along * (spring.stiffness * (distance - spring.rest_length) + spring.damping * rate);
+}
+
+SpringNetwork::SpringNetwork(std::vector<Spring> springs)
+    : springs_(std::move(springs)), states_(springs_.size(), State::intact) {
+    if (springs_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
+        throw InputError(fmt::format("{} springs are too many, at most 2^31 - 1 can be", springs_.size()));
+    }
+    for (std::size_t i = 0; i < springs_.size(); ++i) check(springs_[i], i);
+    link_begin_.assign(1, 0);
+}
+
+void SpringNetwork::bind(std::span<const std::uint64_t> ids) {
+    particle_count_ = ids.size();
+    bonds_.clear();
+    const Places places(ids);
+    for (std::size_t i = 0; i < springs_.size(); ++i) {
+        if (!is_intact(i)) continue;
+        const auto a = places.of(springs_[i].first);
+        const auto b = places.of(springs_[i].second);
+        if (a && b) {
+            bonds_.push_back({static_cast<std::uint32_t>(i), *a, *b});
+        } else {
+            states_[i] = State::lost;
+            ++lost_;
+        }
+    }
+    compile_links();
+}
+
+// Bonds stand in the order of spring numbers, and a counting sort keeps that order for every particle.
+void SpringNetwork::compile_links() {
+    link_begin_.assign(particle_count_ + 1, 0);
+    for (const Bond& bond : bonds_) {
+        ++link_begin_[bond.a + 1];
+        ++link_begin_[bond.b + 1];
+    }
+    coupled_.clear();
+    for (std::uint32_t i = 0; i < particle_count_; ++i) {
+        if (link_begin_[i + 1] > 0) coupled_.push_back(i);
+        link_begin_[i + 1] += link_begin_[i];
+    }
+    links_.resize(2 * bonds_.size());
+    std::vector<std::uint32_t> next(link_begin_.begin(), link_begin_.end() - 1);
+    for (const Bond& bond : bonds_) {
+        links_[next[bond.a]++] = {bond.spring, bond.b};
+        links_[next[bond.b]++] = {bond.spring, bond.a};
+    }
+}
+
+Vec3 SpringNetwork::force_on(std::uint32_t i, std::span<const Vec3> position, std::span<const Vec3> velocity) const {
+    Vec3 sum;
+    for (const Link& link : links(i)) {
+        sum +=
+            spring_force(springs_[link.spring], position[i], velocity[i], position[link.other], velocity[link.other]);
+    }
+    return sum;
+}
+
+double SpringNetwork::potential_energy(std::span<const Vec3> position) const {
+    return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Bond& bond = bonds_[k];
+            const Spring& spring = springs_[bond.spring];
+            const double stretch = length(position[bond.b] - position[bond.a]) - spring.rest_length;
+            sum += 0.5 * spring.stiffness * stretch * stretch;
+        }
+        return sum;
+    });
+}
+
+std::size_t SpringNetwork::break_overstretched(std::span<const Vec3> position) {
+    const auto holds = [&](const Bond& bond) {
+        const Spring& spring = springs_[bond.spring];
+        const double limit = (1.0 + spring.breaking_stretch) * spring.rest_length;
+        return spring.rest_length == 0.0 || !(length(position[bond.b] - position[bond.a]) > limit);
+    };
+    const auto first_broken = std::stable_partition(bonds_.begin(), bonds_.end(), holds);
+    const auto count = static_cast<std::size_t>(bonds_.end() - first_broken);
+    if (count == 0) return 0;
+    std::for_each(first_broken, bonds_.end(), [&](const Bond& bond) { states_[bond.spring] = State::broken; });
+    bonds_.erase(first_broken, bonds_.end());
+    broken_ += count;
+    compile_links();
+    return count;
+}
+
+}  // namespace ricochet

@@ -13,6 +13,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/byte_stream.h"
 #include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particle_system.h"
@@ -44,9 +45,13 @@ struct SimulationOptions {
     RollbackSettings rollback = {};               ///< of the rollback response
     ProjectSettings project = {};                 ///< of the project response
     PenaltySettings penalty = {};                 ///< of the penalty response
-    double frame_rate = 24.0;                     ///< frames a second of emission rates per frame, > 0
-    std::uint32_t max_depth = 16;                 ///< highest generation of particles born of particles; 0: none are
-    std::uint64_t most_particles = 0xFFFFFFFFU;   ///< living at a time; births beyond are refused and counted
+    /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t), see
+    /// response/advect.h): with an integrator of flow_path.h, the exact response and no forces, else an InputError.
+    FlowPointer flow = nullptr;
+    WallRule walls = WallRule::slide;            ///< what walls do to particles that the flow carries into them
+    double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
+    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time; births beyond are refused and counted
 };
 
 /// Everything a simulation is made from.

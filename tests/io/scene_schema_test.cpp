@@ -8,6 +8,7 @@
 
 #include "io/emitter_scene.h"
 #include "io/force_scene.h"
+#include "io/frame_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
 #include "io/spring_scene.h"
@@ -72,7 +73,9 @@ TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
 // Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema looks at
 // all of a scene for every value that is spoiled in it.
 std::vector<Json> samples() {
-    std::vector<Json> scenes = {Json::parse(test::kSampleScene)};
+    std::vector<Json> scenes = {Json::parse(test::kSampleScene), Json::parse(test::kFrameScene)};
+    scenes.push_back(Json::parse(R"({"ricochet": 1, "simulation": {"motion": "flow", "walls": "stop",
+        "flow": {"type": "uniform", "velocity": [1, 0, 0]}}})"));
     const Json all = Json::parse(test::kForceScene);
     for (const Json& force : all["forces"]) scenes.push_back({{"ricochet", 1}, {"forces", {force}}});
     for (const auto& [name, flow] : all["flows"].items()) {

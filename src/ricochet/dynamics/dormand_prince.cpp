@@ -23,6 +23,12 @@ constexpr std::array<std::array<double, kStages - 1>, kStages> kA{{
 constexpr std::array<double, kStages> kError{71.0 / 57600.0,      0.0,          -71.0 / 16695.0, 71.0 / 1920.0,
                                              -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
 
+/// Weights of the stages at the middle of the step, times 2 (Shampine).
+constexpr std::array<double, kStages> kMiddle{6025192743.0 / 30085553152.0,     0.0,
+                                              51252292925.0 / 65400821598.0,    -2691868925.0 / 45128329728.0,
+                                              187940372067.0 / 1594534317056.0, -1776094331.0 / 19743644256.0,
+                                              11237099.0 / 235043384.0};
+
 /// Second derivative over the step, times its length squared, from values at 0, c and 1.
 Vec3 second_difference(const Vec3& at_0, const Vec3& at_c, const Vec3& at_1, double c) {
     const Vec3 first = (at_c - at_0) / c;
@@ -71,6 +77,27 @@ EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& sta
     }
     step.acceleration = a[0];
     step.errors = estimated_errors(v, a, h);
+    return step;
+}
+
+EmbeddedFlowStep dormand_prince_step(const FlowField& flow, const Vec3& position, double time, double h) {
+    std::array<Vec3, kStages> g;
+    EmbeddedFlowStep step;
+    for (std::size_t i = 0; i < kStages; ++i) {
+        step.end = position;  // the last stage stands at the end
+        for (std::size_t j = 0; j < i; ++j) step.end += (h * kA[i][j]) * g[j];
+        g[i] = flow.velocity(step.end, time + kC[i] * h);
+    }
+    Vec3 error;
+    Vec3 middle = 0.5 * (position - step.end) + (h / 8.0) * (g[kStages - 1] - g[0]);
+    for (std::size_t i = 0; i < kStages; ++i) {
+        error += (h * kError[i]) * g[i];
+        middle += (0.5 * h * kMiddle[i]) * g[i];
+    }
+    step.start_velocity = g[0];
+    step.end_velocity = g[kStages - 1];
+    step.position_error = length(error);
+    step.path_error = length(middle);
     return step;
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 
+#include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/integrator.h"
 
 namespace ricochet {
@@ -48,5 +49,18 @@ struct EmbeddedStep {
 };
 
 [[nodiscard]] EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h);
+
+/// The same of first order, x' = g(x, t).
+struct EmbeddedFlowStep {
+    Vec3 end;             ///< m, of the fifth order
+    Vec3 start_velocity;  ///< of the flow at both ends, m/s
+    Vec3 end_velocity;
+    double position_error = 0.0;  ///< m, by the embedded fourth order
+    /// Distance, m, between the cubic through the ends and the method's interpolant of fourth order in the middle of
+    /// the step (L. F. Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46, 1986).
+    double path_error = 0.0;
+};
+
+[[nodiscard]] EmbeddedFlowStep dormand_prince_step(const FlowField& flow, const Vec3& position, double time, double h);
 
 }  // namespace ricochet

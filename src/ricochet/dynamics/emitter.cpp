@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/frame_launch.h"
 
 namespace ricochet {
 namespace {
@@ -48,6 +49,7 @@ void check(const EmitterDescription& emitter) {
     require(
         std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) && emitter.radius.mean >= emitter.radius.spread,
         emitter, "every radius must be >= 0 m");
+    require(emitter.frames == nullptr || emitter.frame < emitter.frames->size(), emitter, "there is no such frame");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
     for (const AttributeSpread& attribute : emitter.attributes) {
         const Vec3& spread = attribute.spread;
@@ -218,6 +220,7 @@ Particle Emitter::make_particle(std::uint64_t number, double time) const {
         {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},
         {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
     particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
+    if (description_.frames) return launched_from(*description_.frames, description_.frame, particle);
     return particle;
 }
 

@@ -5,6 +5,7 @@
 /// (mean and spread for every attribute).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/attributes.h"
 #include "ricochet/dynamics/emitter_shape.h"
 #include "ricochet/dynamics/life_curve.h"
@@ -53,6 +55,10 @@ struct EmitterDescription {
     MeanSpread radius;          ///< m, mean - spread >= 0; 0 is a point
     MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
     std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
+    /// Null pointer: shape, direction and velocity are in world coordinates. Otherwise they are in those of the frame
+    /// of that number at the time of birth, and particles are let go from it, see launched_from().
+    std::shared_ptr<const FrameTree> frames = nullptr;
+    std::size_t frame = 0;
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
     std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
     std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's place in the scene

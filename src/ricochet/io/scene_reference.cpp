@@ -113,7 +113,9 @@ std::string variant_section(const Variant& variant) {
 std::string nested_sections(const std::string& heading, const std::vector<KeySpec>& keys) {
     std::string text;
     for (const KeySpec& key : keys) {
-        if (key.type != ValueType::object || key.content == nullptr) continue;
+        // Turns have a section of their own.
+        if (key.type != ValueType::object || key.content == nullptr || key.content == &detail::rotation_spec())
+            continue;
         text += fmt::format("\n### `{}.{}`\n\n{}\n", heading, key.name, key.content->description);
         text += key_table(key.content->keys);
     }
@@ -186,6 +188,10 @@ std::string scene_reference() {
     const ObjectSpec* rotation =
         find_content(find_variant(*find_content(scene.keys, "colliders"), "mesh")->keys, "rotation");
     text += object_section("rotation", *rotation);
+    const ObjectSpec& motion = *find_content(find_content(scene.keys, "frames")->keys, "motions");
+    text += object_section("motions of a frame (a list)", motion);
+    text += object_section("curve", *find_content(find_variant(motion, "rotation")->keys, "angle"));
+    text += object_section("vector curve", *find_content(find_variant(motion, "translation")->keys, "way"));
     return text + kTables + not_built_section();
 }
 

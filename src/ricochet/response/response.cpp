@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/response/advect.h"
 #include "ricochet/response/exact.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/response/project.h"
@@ -57,6 +59,24 @@ void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     }
 }
 
+/// First-order motion has integrators of its own, one response, and nothing that accelerates.
+void check_flow(ResponseKind kind, const ResponseRules& rules) {
+    if (kind != ResponseKind::exact) {
+        throw InputError(
+            fmt::format("response: found {}, expected exact: a flow carries the particles", name_of(kind)));
+    }
+    if (!rules.forces.empty()) {
+        throw InputError(
+            "forces: found some, expected none: a flow carries the particles, and forces would do nothing");
+    }
+    const IntegratorKind integrator = rules.settings.integrator.kind;
+    if (carries_along_flows(integrator)) return;
+    throw InputError(
+        fmt::format("integrator: found {}, which has no meaning where a flow carries the particles; "
+                    "expected forward_euler, midpoint, rk4 or dormand_prince",
+                    name_of(integrator)));
+}
+
 }  // namespace
 
 std::optional<ResponseKind> response_from_name(std::string_view name) {
@@ -92,6 +112,10 @@ Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, 
 std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules) {
     check(rules.settings);
     check_integrator(kind, rules.settings);
+    if (rules.settings.flow) {
+        check_flow(kind, rules);
+        return std::make_unique<AdvectResponse>(rules);
+    }
     switch (kind) {
         case ResponseKind::rollback:
             return std::make_unique<RollbackResponse>(rules);

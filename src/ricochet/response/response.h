@@ -13,6 +13,7 @@
 
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/core/leg.h"
+#include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/response/material.h"
@@ -53,6 +54,12 @@ struct PenaltySettings {
     double friction_speed = 1e-3;  ///< m/s, > 0: friction grows linearly with slip up to this speed
 };
 
+/// What a wall does to a particle that a flow carries into it, by the names in scenes.
+enum class WallRule {
+    slide,  ///< it goes on along the wall
+    stop,   ///< it stays there until the flow turns away from the wall
+};
+
 /// The rules of a run that a response needs.
 struct ResponseSettings {
     Integrator integrator = IntegratorKind::ballistic;
@@ -63,6 +70,8 @@ struct ResponseSettings {
     RollbackSettings rollback = {};
     ProjectSettings project = {};
     PenaltySettings penalty = {};
+    FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
+    WallRule walls = WallRule::slide;  ///< only with a flow
 };
 
 /// An impulse that a particle gave to a surface.
@@ -181,7 +190,8 @@ protected:
     ResponseRules rules_;  // NOLINT(misc-non-private-member-variables-in-classes)
 };
 
-/// The response of a kind. Throws InputError for settings out of their range.
+/// The response of a kind; with a flow the one of first-order motion (advect.h), which goes by the name of exact and
+/// takes no forces. Throws InputError for settings out of their range or that do not go together.
 [[nodiscard]] std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules);
 
 }  // namespace ricochet

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ricochet/core/transform.h"
+#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/io/detail/diagnostics.h"
 #include "ricochet/io/detail/object_view.h"
 #include "ricochet/io/detail/scene_files.h"
@@ -57,6 +58,8 @@ private:
 
 /// The parts of a scene, in the order in which they are built.
 void build_forces(const SceneContext& context, SimulationSetup& setup);
+/// The scene's frames; without errors so far only, their parents too.
+[[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const SceneContext& context);
 void build_colliders(SceneContext& context, SimulationSetup& setup);
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 void build_particles(SceneContext& context, SimulationSetup& setup);

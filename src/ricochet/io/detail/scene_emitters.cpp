@@ -103,6 +103,30 @@ EmitterDescription emitter_of(const ObjectView& view) {
     return emitter;
 }
 
+// Lets the emitter stand in the frame that its key "frame" names.
+void attach(const SceneContext& context, const ObjectView& view, const std::shared_ptr<const FrameTree>& frames,
+            EmitterDescription& emitter) {
+    if (!view.has("frame")) return;
+    if (view.type() == "mesh" && view.has("collider")) {
+        context.error(view, "frame",
+                      "a collider's surface stands still, expected an emitter of another kind or a file");
+        return;
+    }
+    if (view.type() == "child") {
+        context.error(view, "frame", "children are born where their parents are, expected an emitter of another kind");
+        return;
+    }
+    const std::string name = view.text("frame");
+    if (const auto frame = frames->find(name)) {
+        emitter.frames = frames;
+        emitter.frame = *frame;
+        return;
+    }
+    std::vector<std::string_view> names;
+    for (std::size_t k = 0; k < frames->size(); ++k) names.push_back(frames->description(k).name);
+    context.error(view, "frame", unknown_name("frame", name, names));
+}
+
 double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
 
 // Most particles a second; reports rates that cannot be.
@@ -222,12 +246,14 @@ void check_shares(const SceneContext& context, const SimulationSetup& setup) {
 }  // namespace
 
 void build_emitters(SceneContext& context, SimulationSetup& setup) {
+    const std::shared_ptr<const FrameTree> frames = frames_of(context);
     std::set<std::string> taken;
     double births = 0.0;
     for (const ObjectView& view : context.objects("emitters")) {
         EmitterDescription emitter = emitter_of(view);
         emitter.name = context.unique_name(view, setup.emitters.size(), "emitter", taken);
         emitter.shape = shape_of(context, setup, view);
+        attach(context, view, frames, emitter);
         check_volume(context, view, emitter.shape);
         read_looks(context, setup, view, emitter);
         if (view.type() == "child") {

@@ -1,4 +1,6 @@
 // Forces and flows of a scene.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "ricochet/dynamics/drag.h"
 #include "ricochet/dynamics/electromagnetic.h"
 #include "ricochet/dynamics/field_force.h"
+#include "ricochet/dynamics/flow_path.h"
 #include "ricochet/dynamics/grid_flow.h"
 #include "ricochet/dynamics/point_gravity.h"
 #include "ricochet/dynamics/radial_force.h"
@@ -34,6 +37,19 @@ public:
     /// Null pointer after reporting why there is none.
     [[nodiscard]] ForcePointer force(const ObjectView& view) const {
         return made(view, [&] { return force_of(view); });
+    }
+
+    // What the key "flow" says: an object, or the name of one.
+    [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const {
+        if (!view.has("flow")) return nullptr;
+        const std::string* name = view.node("flow").text();
+        if (name == nullptr) return flow(view.object("flow"));
+        const auto found = flows_.find(*name);
+        if (found != flows_.end()) return found->second;
+        std::vector<std::string_view> known;
+        for (const auto& entry : flows_) known.push_back(entry.first);
+        context_.error(view, "flow", unknown_name("flow", *name, known));
+        return nullptr;
     }
 
 private:
@@ -106,19 +122,6 @@ private:
         }
     }
 
-    // What the key "flow" says: an object, or the name of one.
-    [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const {
-        if (!view.has("flow")) return nullptr;
-        const std::string* name = view.node("flow").text();
-        if (name == nullptr) return flow(view.object("flow"));
-        const auto found = flows_.find(*name);
-        if (found != flows_.end()) return found->second;
-        std::vector<std::string_view> known;
-        for (const auto& entry : flows_) known.push_back(entry.first);
-        context_.error(view, "flow", unknown_name("flow", *name, known));
-        return nullptr;
-    }
-
     [[nodiscard]] ForcePointer force_of(const ObjectView& view) const {
         const std::string_view type = view.type();
         if (type == "gravity") return make_gravity(view.vector("acceleration"));
@@ -179,10 +182,42 @@ bool grows_with_radius(const ObjectView& view) {
            (type == "quadratic_drag" && !view.has("coefficient"));
 }
 
+// First-order motion: the flow that carries the particles, and what does not go with it.
+void build_motion(const SceneContext& context, const ForceBuilder& builder, SimulationOptions& options) {
+    const ObjectView view = context.root().object("simulation");
+    const bool is_carried = view.text("motion") == "flow";
+    const FlowPointer flow = builder.flow_at(view);
+    if (!is_carried) {
+        for (const char* key : {"flow", "walls"}) {
+            if (view.has(key)) context.error(view, key, "only goes together with \"motion\": \"flow\"");
+        }
+        return;
+    }
+    options.flow = flow;
+    options.walls = view.text("walls") == "stop" ? WallRule::stop : WallRule::slide;
+    if (!view.has("flow")) context.error(view, "flow", "missing, expected the flow that carries the particles");
+    if (!view.has("integrator")) options.integrator.kind = IntegratorKind::rk4;
+    if (!carries_along_flows(options.integrator.kind)) {
+        context.error(view, "integrator",
+                      fmt::format("found \"{}\", which has no meaning where a flow carries the particles, expected "
+                                  "\"forward_euler\", \"midpoint\", \"rk4\" or \"dormand_prince\"",
+                                  name_of(options.integrator.kind)));
+    }
+    if (options.response != ResponseKind::exact) {
+        context.error(
+            view, "response",
+            fmt::format("found \"{}\", expected \"exact\": a flow carries the particles", name_of(options.response)));
+    }
+    if (!context.objects("forces").empty()) {
+        context.error(context.root(), "forces", "a flow carries the particles, forces would do nothing: expected none");
+    }
+}
+
 }  // namespace
 
 void build_forces(const SceneContext& context, SimulationSetup& setup) {
     const ForceBuilder builder(context);
+    build_motion(context, builder, setup.options);
     for (const ObjectView& view : context.objects("forces")) {
         if (ForcePointer force = builder.force(view)) setup.forces.push_back(std::move(force));
     }

@@ -7,6 +7,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/force_keys.h"
+#include "ricochet/io/detail/frame_keys.h"
 #include "ricochet/io/detail/key_ranges.h"
 #include "ricochet/io/detail/spring_keys.h"
 #include "ricochet/io/detail/suggestion.h"
@@ -113,8 +114,9 @@ const ObjectSpec& simulation_spec() {
              .fallback = "1"},
             {.name = "integrator",
              .type = ValueType::choice,
-             .description = "How particles move inside a step.",
-             .fallback = "\"ballistic\"",
+             .description = "How particles move inside a step. Of these only `forward_euler`, `midpoint`, `rk4` and "
+                            "`dormand_prince` have a meaning where a flow carries the particles.",
+             .without = "`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`",
              .choices = {{"forward_euler", "straight lines; the velocity changes afterwards: first order"},
                          {"symplectic_euler", "the step's force first, then a straight line"},
                          {"implicit_euler",
@@ -142,6 +144,26 @@ const ObjectSpec& simulation_spec() {
                          {"rollback", "finds a collision after the step and goes back to it"},
                          {"project", "tests at the end of the step and puts the particle back"},
                          {"penalty", "a spring and damper on the penetration"}}},
+            {.name = "motion",
+             .type = ValueType::choice,
+             .description = "What moves the particles.",
+             .fallback = "\"forces\"",
+             .choices = {{"forces", "the forces, by Newton's second law"},
+                         {"flow",
+                          "the flow that `flow` says carries them: their velocity is the flow's. Forces, "
+                          "materials and responses other than `exact` have no part in it"}}},
+            {.name = "flow",
+             .type = ValueType::named_object,
+             .description = "What carries the particles where `motion` is `flow`: a flow, or the name of one in "
+                            "`flows`.",
+             .without = "none",
+             .content = &flow_spec(),
+             .table = "flows"},
+            {.name = "walls",
+             .type = ValueType::choice,
+             .description = "What happens to particles that the flow carries into a wall.",
+             .fallback = "\"slide\"",
+             .choices = {{"slide", "they go on along it"}, {"stop", "they stay there until the flow turns away"}}},
             {.name = "seed",
              .type = ValueType::integer,
              .description = "Start of all random numbers: the same seed gives the same run, to the bit.",
@@ -232,6 +254,8 @@ const ObjectSpec& material_spec() {
     return spec;
 }
 
+}  // namespace
+
 const ObjectSpec& rotation_spec() {
     static const ObjectSpec spec{.title = "rotation",
                                  .description = "A turn about an axis through the own origin, by the right-hand rule.",
@@ -246,8 +270,6 @@ const ObjectSpec& rotation_spec() {
                                  }};
     return spec;
 }
-
-}  // namespace
 
 std::vector<KeySpec> placement_keys(std::string_view needs) {
     return {
@@ -456,6 +478,11 @@ std::vector<KeySpec> launch_keys() {
          .range = kNotNegative,
          .low_end = kNotNegative,
          .fallback = "0"},
+        {.name = "frame",
+         .type = ValueType::text,
+         .description = "One of the names in `frames`: shape, direction and velocity are in its coordinates, and "
+                        "particles are let go with its velocity at the time and place of their birth.",
+         .without = "the world"},
     };
 }
 
@@ -784,6 +811,11 @@ std::vector<KeySpec> scene_keys() {
          .description = "What particles bounce off.",
          .fallback = "[]",
          .content = &collider_spec()},
+        {.name = "frames",
+         .type = ValueType::table,
+         .description = "Moving frames of reference by name.",
+         .fallback = "{}",
+         .content = &frame_spec()},
         {.name = "emitters",
          .type = ValueType::list,
          .description = "Where particles are born.",

@@ -98,6 +98,8 @@ struct ObjectSpec {
 
 /// The whole scene.
 [[nodiscard]] const ObjectSpec& scene_spec();
+/// A turn about an axis.
+[[nodiscard]] const ObjectSpec& rotation_spec();
 /// {"file": ...} in the place of a particle list.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 

@@ -1,0 +1,78 @@
+#include "ricochet/dynamics/flow_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/core/error.h"
+#include "ricochet/dynamics/dormand_prince.h"
+
+namespace ricochet {
+namespace {
+
+/// As for the second-order methods, see integrator.cpp.
+constexpr int kMostHalvings = 48;
+constexpr double kErrorToDouble = 1.0 / 64.0;
+
+FlowPath through(const FlowField& flow, const Vec3& x0, const Vec3& g0, const Vec3& x1, double time, double h) {
+    return {hermite_path(x0, g0, x1, flow.velocity(x1, time + h), h), 0.0};
+}
+
+FlowPath midpoint_path(const FlowField& flow, const Vec3& x, double time, double h) {
+    const Vec3 g0 = flow.velocity(x, time);
+    const Vec3 middle = flow.velocity(x + (0.5 * h) * g0, time + 0.5 * h);
+    return through(flow, x, g0, x + h * middle, time, h);
+}
+
+FlowPath rk4_path(const FlowField& flow, const Vec3& x, double time, double h) {
+    const double half = 0.5 * h;
+    const Vec3 g1 = flow.velocity(x, time);
+    const Vec3 g2 = flow.velocity(x + half * g1, time + half);
+    const Vec3 g3 = flow.velocity(x + half * g2, time + half);
+    const Vec3 g4 = flow.velocity(x + h * g3, time + h);
+    return through(flow, x, g1, x + (h / 6.0) * (g1 + 2.0 * (g2 + g3) + g4), time, h);
+}
+
+// Halving, not a formula of the error: its powers would differ between systems in their last bits.
+FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, double time, double duration,
+                       double first) {
+    double h = std::min(first > 0.0 ? first : duration, duration);
+    double next = h;
+    EmbeddedFlowStep step;
+    for (int halvings = 0;; ++halvings, h *= 0.5) {
+        step = dormand_prince_step(flow, x, time, h);
+        const double error = std::max(step.position_error, step.path_error) / tolerance;
+        next = error < kErrorToDouble ? 2.0 * h : h;
+        if (error <= 1.0 || halvings == kMostHalvings) break;
+    }
+    if (h >= duration && first > h) next = first;  // the step ended here, not the method
+    return {hermite_path(x, step.start_velocity, step.end, step.end_velocity, h), next};
+}
+
+}  // namespace
+
+bool carries_along_flows(IntegratorKind kind) {
+    return kind == IntegratorKind::forward_euler || kind == IntegratorKind::midpoint || kind == IntegratorKind::rk4 ||
+           kind == IntegratorKind::dormand_prince;
+}
+
+FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
+                   double duration, double first) {
+    switch (integrator.kind) {
+        case IntegratorKind::forward_euler:
+            return {line_path(position, flow.velocity(position, time), duration), 0.0};
+        case IntegratorKind::midpoint:
+            return midpoint_path(flow, position, time, duration);
+        case IntegratorKind::rk4:
+            return rk4_path(flow, position, time, duration);
+        case IntegratorKind::dormand_prince:
+            return adaptive_path(integrator.tolerance.position, flow, position, time, duration, first);
+        default:
+            throw InputError(
+                fmt::format("integrator: found {}, which has no meaning where a flow carries particles; expected "
+                            "forward_euler, midpoint, rk4 or dormand_prince",
+                            name_of(integrator.kind)));
+    }
+}
+
+}  // namespace ricochet

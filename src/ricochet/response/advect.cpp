@@ -1,0 +1,185 @@
+#include "ricochet/response/advect.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ricochet/collision/parking.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/advector.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings of a step in search of the time at which the flow turns away from a wall: to the last bit of the time.
+constexpr int kReleaseHalvings = 60;
+
+}  // namespace
+
+MoveOutcome AdvectResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
+    return Advector(rules_, particle, duration, scratch).run();
+}
+
+MoveOutcome Advector::run() {
+    for (std::size_t k = 0; k < particle_.support.count; ++k) {
+        if (const auto surface = touching(particle_.support.surfaces[k])) remember(*surface);
+    }
+    particle_.support = {};
+    while (remaining_ > 0.0 && !outcome_.frozen) {
+        if (outcome_.bounces + stretches_ >= rules_.settings.bounce_budget) {
+            outcome_.unsimulated_time = remaining_;
+            break;
+        }
+        const bool is_stopped = rules_.settings.walls == WallRule::stop && is_pressed_at(state_.time);
+        if (is_stopped) {
+            wait();
+        } else {
+            go_on();
+        }
+    }
+    if (!outcome_.frozen) finish();
+    return outcome_;
+}
+
+/// One piece of way: to the end of the step or of the surface under it, or to the next contact.
+void Advector::go_on() {
+    const FlowAlong along(flow_, touched_normals());
+    const FlowPath way =
+        flow_path(rules_.settings.integrator, along, state_.position, state_.time, remaining_, next_duration_);
+    next_duration_ = way.next_duration;
+    Path path = way.path;
+    const auto pressed = can_be_followed(path) ? hardest_pressed() : std::nullopt;
+    if (pressed) {
+        ++stretches_;
+        if (touched_[*pressed].flat) path = held_down(path, normals_[*pressed], along);
+        path = stretch_on(touched_[*pressed], path);
+        if (!(path.duration > 0.0)) {  // it is past that surface's end
+            forget(*pressed);
+            return;
+        }
+    }
+    const auto contact = follow(path);
+    if (outcome_.frozen) return;
+    touch_again();
+    if (contact) answer(*contact);
+}
+
+/// A path along a flat surface, up to where the flow turns away from it. The cubic through both ends would dip into the
+/// surface before an end that leaves it; up to there it has no part along the normal.
+Path Advector::held_down(const Path& path, const Vec3& normal, const FlowField& along) const {
+    Path held = path;
+    const auto leaves = [&](double s) { return dot(flow_.velocity(path.position(s), state_.time + s), normal) > 0.0; };
+    if (leaves(path.duration)) {
+        double before = 0.0;
+        double after = path.duration;
+        for (int k = 0; k < kReleaseHalvings; ++k) {
+            const double middle = 0.5 * (before + after);
+            (leaves(middle) ? after : before) = middle;
+        }
+        held = flow_path(rules_.settings.integrator, along, state_.position, state_.time, after, after).path;
+    }
+    for (std::size_t k = 1; k < held.c.size(); ++k) held.c[k] -= dot(held.c[k], normal) * normal;
+    held.end -= dot(held.end - held.c[0], normal) * normal;
+    return held;
+}
+
+/// Time passes at a wall, until the flow turns away.
+void Advector::wait() {
+    const double release = time_to_release();
+    state_.time += release;
+    remaining_ = std::max(0.0, remaining_ - release);
+    if (remaining_ > 0.0) count_ = 0;  // it is free
+}
+
+bool Advector::is_pressed_at(double time) const {
+    const Vec3 g = flow_.velocity(state_.position, time);
+    return std::any_of(touched_.begin(), touched_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [&](const ContactSurface& surface) { return dot(g, surface.normal) < 0.0; });
+}
+
+double Advector::time_to_release() const {
+    if (flow_.is_steady() || is_pressed_at(state_.time + remaining_)) return remaining_;
+    double held = 0.0;
+    double free = remaining_;
+    for (int k = 0; k < kReleaseHalvings; ++k) {
+        const double middle = 0.5 * (held + free);
+        (is_pressed_at(state_.time + middle) ? held : free) = middle;
+    }
+    return free;
+}
+
+/// Moves the particle along the path: to its end, or to the contact that is returned.
+std::optional<Contact> Advector::follow(const Path& path) {
+    if (!can_be_followed(path)) {
+        outcome_.frozen = true;
+        return std::nullopt;
+    }
+    std::optional<Contact> contact = search_.search(path, state_.radius);
+    const bool starts_there = contact ? contact->time == 0.0 : state_.radius > 0.0 && search_.starts_in_overlap();
+    if (starts_there && !search_.surfaces_at(path.c[0]).empty()) {
+        leave_surface();
+        return std::nullopt;
+    }
+    if (contact) {
+        const Parking parking = park(search_, path, *contact);
+        outcome_.stayed += parking.stayed ? 1 : 0;
+        state_.position = parking.position;
+    } else {
+        const Travel travelled = travel(search_, path, path.duration, path.end);
+        state_.position = travelled.reached;
+        if (travelled.blocker) contact = contact_of_blocker(search_, path, travelled);
+    }
+    accept_chain();
+    const double elapsed = contact ? contact->time : path.duration;
+    state_.velocity = path.velocity(elapsed);
+    state_.time += elapsed;
+    remaining_ = std::max(0.0, remaining_ - elapsed);
+    return contact;
+}
+
+/// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
+void Advector::leave_surface() {
+    if (const auto place = step_off(search_, state_.position)) {
+        if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
+        state_.position = *place;
+        return;
+    }
+    outcome_.unsimulated_time = remaining_;
+    remaining_ = 0.0;
+}
+
+void Advector::accept_chain() {
+    if (!scratch_.record_legs) return;
+    const std::vector<Vec3>& chain = search_.chain();
+    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.legs.push_back({chain[k - 1], chain[k], state_.time});
+}
+
+/// Counts an impact; the surfaces met come first among those touched.
+void Advector::answer(const Contact& contact) {
+    ++outcome_.bounces;
+    const std::array<ContactSurface, 3> before = touched_;
+    const std::size_t count = std::exchange(count_, 0);
+    for (const ContactSurface& surface : contact.all()) remember(surface);
+    for (std::size_t k = 0; k < count; ++k) remember(before[k]);
+    const Vec3 arriving = state_.velocity;
+    const bool stops = rules_.settings.walls == WallRule::stop && is_pressed_at(state_.time);
+    state_.velocity = stops ? Vec3{} : project_off(flow_now(), touched_normals());
+    for (const ContactSurface& surface : contact.all()) {
+        impact_.push(surface.surface, Vec3{}, true);
+        impact_.record(surface, arriving);
+    }
+}
+
+/// The velocity that the particle goes on with, and what it is pressed onto.
+void Advector::finish() {
+    const bool pressed = is_pressed_at(state_.time);
+    const bool stopped = pressed && rules_.settings.walls == WallRule::stop;
+    state_.velocity = stopped ? Vec3{} : FlowAlong(flow_, touched_normals()).velocity(state_.position, state_.time);
+    outcome_.resting = pressed && state_.velocity == Vec3{};
+    // In a steady flow what does not move never will.
+    outcome_.held = outcome_.resting && flow_.is_steady() && outcome_.unsimulated_time == 0.0;
+    if (!pressed) return;
+    for (std::size_t k = 0; k < count_; ++k) particle_.support.surfaces[k] = touched_[k].surface;
+    particle_.support.count = static_cast<std::uint8_t>(count_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates.h"
+#include "ricochet/response/advector.h"
+
+namespace ricochet {
+
+/// The touched surface that the flow presses the particle onto most; nothing when it presses on none.
+std::optional<std::size_t> Advector::hardest_pressed() const {
+    const Vec3 g = flow_now();
+    std::optional<std::size_t> hardest;
+    double most = 0.0;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const double pressing = -dot(g, normals_[k]);
+        if (!(pressing > most)) continue;
+        most = pressing;
+        hardest = k;
+    }
+    return hardest;
+}
+
+/// The part of a path along a support that stays on it.
+Path Advector::stretch_on(const ContactSurface& support, Path path) const {
+    return support.flat ? stretch_on_flat(support, path) : stretch_on_curved(support, path);
+}
+
+/// Up to the surface's rim; the end keeps the parking gap.
+Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
+    const CollisionWorld& world = rules_.world;
+    Path of_contact_point = path;
+    of_contact_point.c[0] -= state_.radius * support.normal;
+    const double reach = kRimGaps * parking_gap(state_.position);
+    const double on = world.time_over(support.surface, of_contact_point, reach);
+    if (on < path.duration) {
+        path.end = path.position(on);
+        path.duration = on;
+    }
+    if (!(path.duration > 0.0)) return path;
+    const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
+    const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
+    const double lift = parking_gap(path.end) - height;
+    // Where the flow has turned away the particle is above the surface by more than rounding. Next to the origin a
+    // height above a large triangle can be all rounding.
+    const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) &&
+                             height <= 2.0 * kTouchingGaps * parking_gap(path.end);
+    if (is_rounding) {
+        path.end = flush_tiny(path.end + lift * support.normal);
+        path.c[1] += (lift / path.duration) * support.normal;  // a start nearer than the gap must not meet the surface
+    }
+    return path;
+}
+
+/// A straight stretch that turns by at most kStretchAngle: a tangent where the surface bends away, from whose end the
+/// flow presses the particle on again; a chord where it bends towards the particle.
+Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const {
+    const CollisionWorld& world = rules_.world;
+    const double size = world.size_of(support.surface);
+    const double bend = state_.radius > 0.0 ? std::min(size, state_.radius) : size;
+    const Vec3 along = path.c[1];
+    const double speed = length(along);
+    double duration = path.duration;
+    if (speed > 0.0) duration = std::min(duration, kStretchAngle * bend / speed);
+    if (duration < path.duration) {
+        path.end = path.position(duration);
+        path.duration = duration;
+    }
+    if (!(duration > 0.0)) return path;
+    const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
+    const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
+    const double gap = parking_gap(path.end);
+    const double lift = state_.radius + gap - side * there.distance;
+    if (!(lift > 0.0)) return path;
+    const Vec3 end = flush_tiny(path.end + (side * lift) * there.normal);
+    // Over the seam of a flat surface the height differs by rounding only.
+    if (lift > kTouchingGaps * gap) path = line_path(state_.position, (end - state_.position) / duration, duration);
+    path.end = end;
+    return path;
+}
+
+/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
+double Advector::seam_turn() const {
+    if (state_.radius == 0.0) return kSameNormal;
+    return kSeamTurn + 2.0 * kTouchingGaps * parking_gap(state_.position) / state_.radius;
+}
+
+/// The surface as the particle touches it now; nothing when it does not.
+std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
+    const CollisionWorld& world = rules_.world;
+    const double reach = kTouchingGaps * parking_gap(state_.position);
+    const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
+    // Half of what a stretch goes beyond the rim, so that at its end the surface is surely left.
+    const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
+    if (std::fabs(nearest.distance - state_.radius) > (beside_rim ? 0.5 * kRimGaps / kTouchingGaps : 1.0) * reach) {
+        return std::nullopt;
+    }
+    if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
+    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
+    const double distance = world.signed_distance_from(surface, state_.position);
+    if (std::fabs(distance) > reach) return std::nullopt;
+    const Vec3 normal = world.unit_normal_of(surface, state_.position);
+    return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
+}
+
+/// At most three surfaces matter. An edge beside a face within the reach of touching is that face's own seam.
+void Advector::remember(const ContactSurface& surface) {
+    for (std::size_t k = 0; k < count_; ++k) {
+        const double turn = 1.0 - dot(normals_[k], surface.normal);
+        const bool is_seam = touched_[k].flat != surface.flat && turn <= seam_turn();
+        if (turn > kSameNormal && !is_seam) continue;
+        if (surface.flat && !touched_[k].flat) {
+            touched_[k] = surface;
+            normals_[k] = surface.normal;
+        }
+        return;
+    }
+    if (count_ == touched_.size()) return;
+    touched_[count_] = surface;
+    normals_[count_++] = surface.normal;
+}
+
+/// What was touched and still is, as it is touched here.
+void Advector::touch_again() {
+    const std::array<ContactSurface, 3> before = touched_;
+    const std::size_t count = count_;
+    count_ = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (const auto surface = touching(before[k].surface)) remember(*surface);
+    }
+}
+
+void Advector::forget(std::size_t k) {
+    for (--count_; k < count_; ++k) {
+        touched_[k] = touched_[k + 1];
+        normals_[k] = normals_[k + 1];
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,93 @@
+/// \file
+/// Private to first-order motion: one particle on its way with the flow through one step.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/response/bounce.h"
+#include "ricochet/response/impact.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// Parking gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a gap
+/// above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then hold.
+/// Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond convex
+/// edges by that distance (some 1e-12 of the coordinates).
+inline constexpr double kRimGaps = 256.0;
+
+/// A flow without its part into surfaces.
+class FlowAlong final : public FlowField {
+public:
+    FlowAlong(const FlowField& flow, std::span<const Vec3> normals) : flow_(flow), normals_(normals) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        const Vec3 free = flow_.velocity(position, time);
+        return normals_.empty() ? free : project_off(free, normals_);
+    }
+    [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
+
+private:
+    const FlowField& flow_;
+    std::span<const Vec3> normals_;
+};
+
+class Advector {
+public:
+    Advector(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
+        : rules_(rules),
+          flow_(*rules.settings.flow),
+          particle_(particle),
+          state_(particle.state),
+          scratch_(scratch),
+          search_(rules.world, scratch.contacts),
+          impact_(rules, particle, scratch, outcome_),
+          remaining_(duration) {}
+
+    MoveOutcome run();
+
+private:
+    // On the way (advect.cpp).
+    void go_on();
+    [[nodiscard]] Path held_down(const Path& path, const Vec3& normal, const FlowField& along) const;
+    void wait();
+    [[nodiscard]] double time_to_release() const;
+    [[nodiscard]] bool is_pressed_at(double time) const;
+    std::optional<Contact> follow(const Path& path);
+    void leave_surface();
+    void accept_chain();
+    void answer(const Contact& contact);
+    void finish();
+
+    // Along surfaces (advect_surface.cpp).
+    [[nodiscard]] std::optional<std::size_t> hardest_pressed() const;
+    [[nodiscard]] Path stretch_on(const ContactSurface& support, Path path) const;
+    [[nodiscard]] Path stretch_on_flat(const ContactSurface& support, Path path) const;
+    [[nodiscard]] Path stretch_on_curved(const ContactSurface& support, Path path) const;
+    [[nodiscard]] double seam_turn() const;
+    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
+    void remember(const ContactSurface& surface);
+    void touch_again();
+    void forget(std::size_t k);
+    [[nodiscard]] std::span<const Vec3> touched_normals() const { return {normals_.data(), count_}; }
+    [[nodiscard]] Vec3 flow_now() const { return flow_.velocity(state_.position, state_.time); }
+
+    const ResponseRules& rules_;
+    const FlowField& flow_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    MoveScratch& scratch_;
+    ContactSearch search_;
+    MoveOutcome outcome_;
+    ImpactAnswer impact_;
+    double remaining_;
+    double next_duration_ = 0.0;   // s, of an adaptive method
+    std::uint32_t stretches_ = 0;  // along surfaces; they share the budget with the impacts
+    std::array<ContactSurface, 3> touched_{};
+    std::array<Vec3, 3> normals_{};
+    std::size_t count_ = 0;
+};
+
+}  // namespace ricochet

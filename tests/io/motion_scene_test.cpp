@@ -1,0 +1,80 @@
+// Scenes whose particles are carried by a flow.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ricochet/io/scene.h"
+
+namespace ricochet {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string scene_of(const std::string& simulation, const std::string& more = "") {
+    return R"({"ricochet": 1, "flows": {"stream": {"type": "uniform", "velocity": [1, 2, 3]}},
+  "particles": [{"position": [0, 0, 1]}],
+  "simulation": {)" +
+           simulation + "}" + more + "}";
+}
+
+Lines errors_of(const std::string& scene) {
+    try {
+        (void)parse_scene(scene, "s.json");
+    } catch (const SceneError& error) {
+        Lines lines = error.messages();
+        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
+        return lines;
+    }
+    return {};
+}
+
+TEST(MotionScene, AFlowByNameOrInPlaceCarriesTheParticles) {
+    for (const char* flow : {R"("stream")", R"({"type": "uniform", "velocity": [1, 2, 3]})"}) {
+        const SceneDescription scene =
+            parse_scene(scene_of(std::string(R"("motion": "flow", "flow": )") + flow), "s.json");
+        const SimulationOptions& options = scene.setup.options;
+        ASSERT_NE(options.flow, nullptr);
+        EXPECT_EQ(options.flow->velocity({}, 0.0), Vec3(1, 2, 3));
+        EXPECT_EQ(options.walls, WallRule::slide);
+        EXPECT_EQ(options.integrator.kind, IntegratorKind::rk4);  // where none is named
+        EXPECT_NO_THROW(Simulation(parse_scene(scene_of(R"("motion": "flow", "flow": "stream")"), "s.json").setup));
+    }
+    const SceneDescription stop = parse_scene(
+        scene_of(R"("motion": "flow", "flow": "stream", "walls": "stop", "integrator": "midpoint")"), "s.json");
+    EXPECT_EQ(stop.setup.options.walls, WallRule::stop);
+    EXPECT_EQ(stop.setup.options.integrator.kind, IntegratorKind::midpoint);
+}
+
+TEST(MotionScene, ForcesMoveTheParticlesUnlessToldOtherwise) {
+    for (const char* simulation : {"", R"("motion": "forces")"}) {
+        const SceneDescription scene = parse_scene(scene_of(simulation), "s.json");
+        EXPECT_EQ(scene.setup.options.flow, nullptr);
+        EXPECT_EQ(scene.setup.options.integrator.kind, IntegratorKind::ballistic);
+    }
+}
+
+TEST(MotionScene, SaysWhatDoesNotGoWithAFlow) {
+    const std::string carried = R"("motion": "flow", "flow": "stream")";
+    EXPECT_EQ(errors_of(scene_of(R"("motion": "flow")")),
+              (Lines{"simulation.flow: missing, expected the flow that carries the particles"}));
+    EXPECT_EQ(errors_of(scene_of(R"("motion": "flow", "flow": "steam")")),
+              (Lines{"simulation.flow: there is no flow \"steam\"; did you mean \"stream\"?"}));
+    for (const std::string kind : {"ballistic", "symplectic_euler", "velocity_verlet"}) {
+        EXPECT_EQ(errors_of(scene_of(carried + R"(, "integrator": ")" + kind + "\"")),
+                  (Lines{"simulation.integrator: found \"" + kind +
+                         "\", which has no meaning where a flow carries the particles, expected \"forward_euler\", "
+                         "\"midpoint\", \"rk4\" or \"dormand_prince\""}));
+    }
+    EXPECT_EQ(errors_of(scene_of(carried + R"(, "response": "penalty")")),
+              (Lines{"simulation.response: found \"penalty\", expected \"exact\": a flow carries the particles"}));
+    EXPECT_EQ(errors_of(scene_of(carried, R"(, "forces": [{"type": "gravity", "acceleration": [0, 0, -1]}])")),
+              (Lines{"forces: a flow carries the particles, forces would do nothing: expected none"}));
+    EXPECT_EQ(errors_of(scene_of(R"("walls": "stop")")),
+              (Lines{"simulation.walls: only goes together with \"motion\": \"flow\""}));
+    EXPECT_EQ(errors_of(scene_of(R"("motion": "forces", "flow": "stream")")),
+              (Lines{"simulation.flow: only goes together with \"motion\": \"flow\""}));
+}
+
+}  // namespace
+}  // namespace ricochet

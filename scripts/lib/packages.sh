@@ -8,6 +8,7 @@ packages_build=(
     libfmt-dev libcli11-dev nlohmann-json3-dev # text, command line, scene files
     libstb-dev                                 # PNG
     libboost-dev                               # whole numbers of any length, for the verifier
+    libeigen3-dev                              # sparse matrices, for the implicit integrator
 )
 packages_test=(libgtest-dev libbenchmark-dev pkgconf)
 packages_lint=(clang-format clang-tidy)

@@ -109,6 +109,9 @@ void print_warnings(const SimulationStatistics& statistics) {
         if (count > 0) fmt::print("  note: {} {}\n", count, what);
     };
     warn(statistics.frozen, "particles were stopped because their state was not finite or absurdly large (frozen)");
+    warn(statistics.springs_broken, "springs broke (springs_broken)");
+    warn(statistics.springs_lost, "springs lost a particle at an end (springs_lost)");
+    warn(statistics.unsolved_steps, "steps were not solved to the tolerance by the implicit method (unsolved_steps)");
     warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
     warn(statistics.started_inside, "particles were born exactly on a surface (started_inside)");
     warn(statistics.stayed, "impacts left the particle where it was (stayed)");

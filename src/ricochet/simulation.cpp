@@ -13,6 +13,8 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/coupled_motion.h"
+#include "ricochet/dynamics/spring_stability.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/shape_mesh.h"
 #include "ricochet/response/penalty.h"
@@ -91,6 +93,7 @@ struct BlockCounts {
     double penetration_deepest = 0.0;
     std::vector<ContactRecord> records;
     std::vector<Violation> violations;
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
 
     void add(const MoveOutcome& outcome) {
         contacts += outcome.bounces;
@@ -146,7 +149,7 @@ double least_restitution(const SimulationSetup& setup) {
 }
 
 /// The sub-step against the stability bound of the lightest particle on the dampest of the surfaces.
-std::vector<std::string> warnings_of(const SimulationSetup& setup) {
+std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);
     if (options.response != ResponseKind::penalty || setup.colliders.empty() || !std::isfinite(mass)) return {};
@@ -166,6 +169,23 @@ std::vector<std::string> warnings_of(const SimulationSetup& setup) {
                     substep, bound, spring.stiffness, mass, restitution, advice)};
 }
 
+std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
+    if (setup.solver) return {};
+    const IntegratorKind kind = setup.options.integrator.kind;
+    const double bound = longest_stable_step(kind, setup.springs, setup.particles);
+    if (setup.options.time_step <= bound) return {};
+    return {
+        fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
+                    "springs: they may explode; use a shorter step or the integrator implicit_euler",
+                    setup.options.time_step, bound, name_of(kind))};
+}
+
+std::vector<std::string> warnings_of(const SimulationSetup& setup) {
+    std::vector<std::string> warnings = penalty_warnings(setup);
+    for (std::string& warning : spring_warnings(setup)) warnings.push_back(std::move(warning));
+    return warnings;
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -175,6 +195,8 @@ struct Simulation::Impl {
     void emit(double from, double to);
     void add(Particle particle);
     void move_all(double from, double to);
+    void move_part(double from, double to, std::vector<BlockCounts>& blocks);
+    void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
@@ -203,12 +225,12 @@ struct Simulation::Impl {
     ForceField forces;
     std::vector<Material> materials;
     CollisionWorld world;
+    CoupledMotion coupled;
     std::vector<Emitter> emitters;
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
-    SpringNetwork springs;
     std::vector<SpringFace> spring_faces;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
@@ -228,6 +250,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       forces(std::move(setup.forces)),
       materials(checked_materials(std::move(setup.materials), setup.colliders)),
       world(std::move(setup.colliders)),
+      coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, response_settings(options)})),
       totals(options.triangle_totals ? world.surface_count() : 0),
@@ -239,15 +262,15 @@ Simulation::Impl::Impl(SimulationSetup setup)
         emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
     }
     for (const Particle& particle : setup.particles) add(particle);
-    springs = SpringNetwork(std::move(setup.springs));
     spring_faces = std::move(setup.spring_faces);
-    springs.bind(particles.id);
+    if (coupled.is_active()) coupled.bind(particles);
     if (options.verify) check = std::make_unique<RunCheck>(world);
 }
 
 void Simulation::Impl::add(Particle particle) {
     particle.id = next_id++;
     particle.position = flush_tiny(particle.position);
+    if (particle.pinned) particle.velocity = particle.spin = Vec3{};
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
@@ -276,23 +299,47 @@ void Simulation::Impl::emit(double from, double to) {
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
     for (const Particle& particle : born) add(particle);
-    if (!springs.empty() && !born.empty()) springs.bind(particles.id);
+    if (!born.empty() && coupled.is_active()) coupled.bind(particles);
 }
 
+// Particles that act on each other are planned together first; an adaptive plan may cut the step into parts.
 void Simulation::Impl::move_all(double from, double to) {
     const std::size_t count = particles.size();
     std::vector<BlockCounts> blocks((count + kBlock - 1) / kBlock);
-    if (options.response == ResponseKind::rollback && options.rollback.global) {
-        move_system(from, to, blocks);
-    } else {
-        parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-            move_block(begin, end, from, to, blocks[block]);
-        });
+    for (double now = from; now < to;) {
+        const double whole = to - now;
+        const double planned = coupled.is_active() ? coupled.plan(particles, now, whole) : whole;
+        const double next = planned < whole ? now + planned : to;
+        move_part(now, next, blocks);
+        now = next;
     }
+    stop_runaways(blocks, to);
+    if (coupled.is_active()) coupled.settle(particles);
     for (const BlockCounts& block : blocks) block.add_to(statistics);
     statistics.particle_steps += count;
+    statistics.unsolved_steps = coupled.unsolved_steps();
     if (options.record_contacts) collect_records(blocks);
     if (check) collect_violations(blocks);
+}
+
+void Simulation::Impl::move_part(double from, double to, std::vector<BlockCounts>& blocks) {
+    if (options.response == ResponseKind::rollback && options.rollback.global) {
+        move_system(from, to, blocks);
+        return;
+    }
+    parallel_for_blocks(particles.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        move_block(begin, end, from, to, blocks[block]);
+    });
+}
+
+void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, double to) const {
+    const auto found = std::find_if(blocks.begin(), blocks.end(), [](const auto& block) { return block.runaway; });
+    if (found == blocks.end()) return;
+    const std::size_t i = *found->runaway;
+    throw DivergedError(fmt::format(
+        "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
+        "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
+        to, particles.id[i], length(particles.velocity[i])));
 }
 
 void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
@@ -322,20 +369,27 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     scratch.record_contacts = options.record_contacts;
     scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
-        if (particles.frozen[i] != 0) continue;
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
         if (stop <= start || is_asleep(i)) continue;
         MovingParticle particle = moving(i, start);
         scratch.legs.clear();
-        const MoveOutcome outcome = response->move(particle, stop - start, scratch);
+        // A planned flight's duration need not be the difference of the clock's times to the last bit.
+        const bool as_planned = particle.planned != nullptr && start == from && stop == to;
+        const double duration = as_planned ? particle.planned->path.duration : stop - start;
+        const MoveOutcome outcome = response->move(particle, duration, scratch);
         if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
+        const bool was_slow = length_squared(particles.velocity[i]) <= kFastestSpeed * kFastestSpeed;
         store(i, particle, outcome);
+        if (was_slow && length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed && !counts.runaway) {
+            counts.runaway = i;
+        }
         particles.booked_until[i] = stop;
         counts.add(outcome);
     }
     if (!totals.empty()) add_hits(scratch.hits, counts);
-    if (options.record_contacts) counts.records = scratch.records;
+    counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
 }
 
 // All particles go back together: see rollback.h.
@@ -347,7 +401,7 @@ void Simulation::Impl::move_system(double from, double to, std::vector<BlockCoun
         system[i].particle = moving(i, start);
         system[i].start = start;
         system[i].stop = stop;
-        system[i].is_out = particles.frozen[i] != 0;
+        system[i].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
     }
     std::vector<MoveScratch> scratch(blocks.size());
     for (MoveScratch& block : scratch) {
@@ -357,7 +411,7 @@ void Simulation::Impl::move_system(double from, double to, std::vector<BlockCoun
     move_together(response->rules(), system, from, to, scratch, kBlock);
     for (std::size_t i = 0; i < system.size(); ++i) {
         SystemParticle& moved = system[i];
-        if (particles.frozen[i] != 0 || moved.stop <= moved.start) continue;
+        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || moved.stop <= moved.start) continue;
         BlockCounts& counts = blocks[i / kBlock];
         if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
         store(i, moved.particle, moved.outcome);
@@ -378,6 +432,8 @@ MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
     }
     support.cascade_left = particles.cascade_left[i];
     particle.sides = sides_of(i);
+    particle.planned = coupled.flight_of(i);
+    particle.state.coupling = coupled.coupling_of(i);
     return particle;
 }
 
@@ -395,7 +451,7 @@ void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const 
     particles.unsimulated_time[i] += outcome.unsimulated_time;
     particles.contacts[i] += outcome.bounces;
     particles.resting[i] = outcome.resting ? 1 : 0;
-    particles.held[i] = outcome.held ? 1 : 0;
+    particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
     particles.frozen[i] = outcome.frozen ? 1 : 0;
     particles.absorbed[i] = outcome.absorbed ? 1 : 0;
     particles.support[i].fill(kNoSupport);
@@ -447,6 +503,9 @@ void Simulation::Impl::retire(double now) {
     }
     statistics.lost_impulses += counts.lost_impulses;
     if (any) compact(keep);
+    if (any && coupled.is_active()) coupled.bind(particles);
+    statistics.springs_broken = coupled.springs().broken();
+    statistics.springs_lost = coupled.springs().lost();
     statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
     const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
     statistics.asleep = may_sleep ? held : 0;
@@ -463,7 +522,6 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
         sides.erase(kept, sides.end());
     }
     particles.compact(keep);
-    if (!springs.empty()) springs.bind(particles.id);
     if (check) check->compact(keep);
 }
 
@@ -489,10 +547,10 @@ std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
 std::uint64_t Simulation::step_count() const { return impl_->steps; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
-const SpringNetwork& Simulation::springs() const { return impl_->springs; }
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
+const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
     const ColliderShape& shape = impl_->world.colliders()[i].shape;
     if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
@@ -573,7 +631,8 @@ std::optional<double> Simulation::potential_energy() const {
         }
         return partial;
     });
-    return defined ? std::optional(sum) : std::nullopt;
+    const double stored = impl_->coupled.springs().potential_energy(particles().position);
+    return defined ? std::optional(sum + stored) : std::nullopt;
 }
 
 std::uint64_t Simulation::state_hash() const {

@@ -14,6 +14,7 @@
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/spring_makers.h"
 #include "ricochet/dynamics/spring_network.h"
@@ -52,9 +53,12 @@ struct SimulationSetup {
     std::vector<ColliderDescription> colliders;
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
-    std::vector<Spring> springs;           ///< between these particles: their ids are places in the list
+    std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
     std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
-    std::optional<Box3> bounds;            ///< particles outside are retired
+    /// An own method for all particles together, in place of options.integrator, which then says only how particles go
+    /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
+    SystemSolver solver = {};
+    std::optional<Box3> bounds;  ///< particles outside are retired
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
@@ -79,6 +83,9 @@ struct SimulationStatistics {
     std::uint64_t penetrations = 0;      ///< particle-steps in which a particle was seen behind a surface
     double penetration_sum = 0.0;        ///< m, sum of their depths, before anything put them right
     double penetration_deepest = 0.0;    ///< m
+    std::uint64_t springs_broken = 0;    ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;      ///< removed because a particle at an end was gone
+    std::uint64_t unsolved_steps = 0;    ///< steps whose implicit equations were not solved to the tolerance
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
 };
 
@@ -98,7 +105,9 @@ public:
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
 
-    /// Advances by one time step (the last one may be shorter). No effect when finished().
+    /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
+    /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
+    /// follow them with this step. The simulation cannot go on then, and its particles are somewhere inside the step.
     void step();
     [[nodiscard]] bool finished() const;
     [[nodiscard]] double time() const;               ///< s
@@ -107,12 +116,12 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
-    /// The springs of the setup, bound to the order of particles().
-    [[nodiscard]] const SpringNetwork& springs() const;
     /// The cloth of the setup, torn parts included.
     [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
+    /// The springs, bound to particles().
+    [[nodiscard]] const SpringNetwork& springs() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
     /// triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;

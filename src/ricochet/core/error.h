@@ -20,4 +20,10 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// The numbers of a run have become nonsense: a step too long for its forces, for example. Says when and where.
+class DivergedError : public RunError {
+public:
+    using RunError::RunError;
+};
+
 }  // namespace ricochet

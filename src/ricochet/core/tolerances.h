@@ -148,6 +148,26 @@ inline constexpr int kCertificateDepth = 52;
 /// Larger: the two faces of a thinner plate count as one.
 inline constexpr double kSameCrossing = 1e-9;
 
+/// Correction of a velocity, relative to the largest speed in the system, with which Newton's method for the implicit
+/// step has converged. Reason: convergence is quadratic near the solution, so what is left is far below, and rounding of
+/// the forces (some 1e-16 times the stiffness number) must not keep it going. Smaller: stiff systems never report
+/// convergence. Larger: the step's end solves its equation less closely; stability is not touched.
+inline constexpr double kNewtonTolerance = 1e-10;
+
+/// Energy that an integrator may have made out of nothing before the run stops as diverged, in parts of all that forces
+/// and walls have given. Reason: errors of stable methods stay below what was given, explosions pass any bound within a
+/// few steps. Smaller: coarse but stable runs are stopped. Larger: more nonsense is written before the stop.
+inline constexpr double kDivergedGain = 100.0;
+
+/// Stretch of springs, relative to their rest length, whose energy is taken for rounding where nothing else moves. Smaller
+/// than some 1e-8: a network at rest counts as diverged by its own rounding. Larger: explosions from perfect rest are
+/// seen later.
+inline constexpr double kNegligibleStretch = 1e-6;
+
+/// Speed that no particle may be brought to, m/s: that of light (exact by the definition of the metre). Forces that do
+/// so are wrong or the step is too long for them; the run stops. Particles that start faster are let be.
+inline constexpr double kFastestSpeed = 299792458.0;
+
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;

@@ -1,11 +1,12 @@
 #include "ricochet/dynamics/dormand_prince.h"
 
+#include <algorithm>
 #include <array>
 
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kStages = 7;
+constexpr std::size_t kStages = kDormandPrinceStages;
 
 // The published tableau; the last row of kA is the fifth order's weights too.
 constexpr std::array<double, kStages> kC{0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0};
@@ -31,6 +32,25 @@ Vec3 second_difference(const Vec3& at_0, const Vec3& at_c, const Vec3& at_1, dou
 
 }  // namespace
 
+double dormand_prince_weight(std::size_t i, std::size_t j) { return kA[i][j]; }
+double dormand_prince_node(std::size_t i) { return kC[i]; }
+
+StepErrors estimated_errors(const std::array<Vec3, kStages>& v, const std::array<Vec3, kStages>& a, double h) {
+    Vec3 position_error;
+    Vec3 velocity_error;
+    for (std::size_t i = 0; i < kStages; ++i) {
+        position_error += (h * kError[i]) * v[i];
+        velocity_error += (h * kError[i]) * a[i];
+    }
+    return {length(position_error), length(velocity_error),
+            h * h / 384.0 * length(second_difference(a[0], a[2], a[kStages - 1], kC[2]))};
+}
+
+double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance) {
+    return std::max({errors.position / tolerance.position, errors.path / tolerance.position,
+                     errors.velocity / tolerance.velocity});
+}
+
 EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h) {
     std::array<Vec3, kStages> v;
     std::array<Vec3, kStages> a;
@@ -49,16 +69,8 @@ EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& sta
         a[i] = forces.acceleration(input);
         step.end = stage;  // the last stage stands at the end
     }
-    Vec3 position_error;
-    Vec3 velocity_error;
-    for (std::size_t i = 0; i < kStages; ++i) {
-        position_error += (h * kError[i]) * v[i];
-        velocity_error += (h * kError[i]) * a[i];
-    }
     step.acceleration = a[0];
-    step.position_error = length(position_error);
-    step.velocity_error = length(velocity_error);
-    step.path_error = h * h / 384.0 * length(second_difference(a[0], a[2], a[kStages - 1], kC[2]));
+    step.errors = estimated_errors(v, a, h);
     return step;
 }
 

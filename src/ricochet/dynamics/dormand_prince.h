@@ -5,19 +5,46 @@
 /// Applied Mathematics 6, 1980 (RK5(4)7M).
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "ricochet/dynamics/integrator.h"
 
 namespace ricochet {
 
-/// A step with what it may be wrong by.
-struct EmbeddedStep {
-    PhaseState end;               ///< of the fifth order
-    Vec3 acceleration;            ///< at the start, m/s^2
-    double position_error = 0.0;  ///< m, by the embedded fourth order
-    double velocity_error = 0.0;  ///< m/s
+inline constexpr std::size_t kDormandPrinceStages = 7;
+
+/// Halvings of an adaptive step; a state that is still wrong by more is taken as it is, and frozen if it is not finite.
+inline constexpr int kMostHalvings = 48;
+
+/// An error, relative to the tolerance, after which twice the step will do: the fifth order makes it 32 times as large,
+/// the path's fourth 16 times.
+inline constexpr double kErrorToDouble = 1.0 / 64.0;
+
+/// The published tableau: weight of stage j's derivative in stage i, and the stages' times as parts of the step. The
+/// last stage stands at the end of the fifth order.
+[[nodiscard]] double dormand_prince_weight(std::size_t i, std::size_t j);
+[[nodiscard]] double dormand_prince_node(std::size_t i);
+
+/// What a step may be wrong by.
+struct StepErrors {
+    double position = 0.0;  ///< m, by the embedded fourth order
+    double velocity = 0.0;  ///< m/s
     /// Estimated largest distance, m, between the trajectory and the cubic through its end states: h^4 / 384 times the
     /// fourth derivative of the position, from a divided difference of the stages' accelerations.
-    double path_error = 0.0;
+    double path = 0.0;
+};
+/// From the velocities and accelerations of all stages of one particle.
+[[nodiscard]] StepErrors estimated_errors(const std::array<Vec3, kDormandPrinceStages>& v,
+                                          const std::array<Vec3, kDormandPrinceStages>& a, double h);
+/// The largest of them, each as a part of its tolerance.
+[[nodiscard]] double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance);
+
+/// A step with what it may be wrong by.
+struct EmbeddedStep {
+    PhaseState end;     ///< of the fifth order
+    Vec3 acceleration;  ///< at the start, m/s^2
+    StepErrors errors;
 };
 
 [[nodiscard]] EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h);

@@ -21,6 +21,8 @@ struct ForceInput {
     double time;    ///< s
     /// Which particle it is, for forces that act on some only.
     std::uint64_t id = 0;
+    /// What other particles do to it, m/s^2: held from a bounce to the end of the step, zero where nothing couples.
+    Vec3 coupling{};
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.
@@ -53,6 +55,9 @@ struct CallableTraits {
 /// Any callable as an acceleration, m/s^2. It must be pure.
 [[nodiscard]] std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> acceleration,
                                                        CallableTraits traits = {});
+
+/// A force on the particles of these ids only; it does nothing to others.
+[[nodiscard]] std::unique_ptr<Force> make_force_on(std::vector<std::uint64_t> particles, std::unique_ptr<Force> force);
 
 /// A sum of forces, added in the order given.
 class ForceField {

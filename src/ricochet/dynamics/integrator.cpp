@@ -5,13 +5,15 @@
 #include <utility>
 
 #include "ricochet/dynamics/dormand_prince.h"
+#include "ricochet/dynamics/implicit_euler.h"
 
 namespace ricochet {
 namespace {
 
-constexpr std::array<std::pair<IntegratorKind, std::string_view>, 7> kNames{{
+constexpr std::array<std::pair<IntegratorKind, std::string_view>, 8> kNames{{
     {IntegratorKind::forward_euler, "forward_euler"},
     {IntegratorKind::symplectic_euler, "symplectic_euler"},
+    {IntegratorKind::implicit_euler, "implicit_euler"},
     {IntegratorKind::midpoint, "midpoint"},
     {IntegratorKind::velocity_verlet, "velocity_verlet"},
     {IntegratorKind::rk4, "rk4"},
@@ -26,13 +28,6 @@ ForceInput moved(const ForceInput& state, const Vec3& position, const Vec3& velo
     result.time = time;
     return result;
 }
-
-/// Halvings of an adaptive step; a state that is still wrong by more is taken as it is, and frozen if it is not finite.
-constexpr int kMostHalvings = 48;
-
-/// An error, relative to the tolerance, after which twice the step will do: the fifth order makes it 32 times as large,
-/// the path's fourth 16 times.
-constexpr double kErrorToDouble = 1.0 / 64.0;
 
 PhaseState midpoint_step(const ForceField& forces, const ForceInput& state, double h) {
     const Vec3 a0 = forces.acceleration(state);
@@ -102,9 +97,7 @@ Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, c
     EmbeddedStep step;
     for (int halvings = 0;; ++halvings, h *= 0.5) {
         step = dormand_prince_step(forces, state, h);
-        const double error = std::max({step.position_error / integrator.tolerance.position,
-                                       step.path_error / integrator.tolerance.position,
-                                       step.velocity_error / integrator.tolerance.velocity});
+        const double error = relative_error(step.errors, integrator.tolerance);
         next = error < kErrorToDouble ? 2.0 * h : h;
         if (error <= 1.0 || halvings == kMostHalvings) break;
     }
@@ -117,6 +110,11 @@ Flight kicked_flight(const ForceField& forces, const ForceInput& state, double h
     const Vec3 a = forces.acceleration(state);
     const Vec3 v = state.velocity + h * a;
     return {line_path(state.position, v, h), a, h, state, v};
+}
+
+Flight implicit_flight(const ForceField& forces, const ForceInput& state, double h) {
+    const Vec3 v = implicit_euler_velocity(forces, state, h);
+    return {line_path(state.position, v, h), (v - state.velocity) / h, h, state, v};
 }
 
 Flight parabolic_flight(const ForceField& forces, const ForceInput& state, double h) {
@@ -149,6 +147,9 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
             return straight_flight(forces, state, duration);
         case IntegratorKind::symplectic_euler:
             return kicked_flight(forces, state, duration);
+        case IntegratorKind::implicit_euler:
+            if (!forces.is_uniform()) return implicit_flight(forces, state, duration);
+            return kicked_flight(forces, state, duration);
         case IntegratorKind::velocity_verlet:
             if (!forces.is_uniform()) return verlet_flight(forces, state, duration);
             break;
@@ -167,7 +168,7 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
 
 Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                      const Flight& before, double duration) {
-    if (integrator.kind == IntegratorKind::symplectic_euler) {
+    if (kicks_first(integrator.kind)) {
         return {line_path(state.position, state.velocity, duration), before.acceleration, before.kick_duration, state,
                 state.velocity};
     }
@@ -179,7 +180,7 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
 
 PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s) {
     if (s >= flight.path.duration) return {flight.path.end, flight.end_velocity};
-    if (flight.path.degree >= 3) return one_step(integrator.kind, forces, flight.start, s);
+    if (flight.path.degree >= 3 && flight.steps_again) return one_step(integrator.kind, forces, flight.start, s);
     return {flight.path.position(s), velocity_at(integrator, forces, flight, s)};
 }
 

@@ -15,6 +15,7 @@ namespace ricochet {
 enum class IntegratorKind {
     forward_euler,     ///< order 1: straight lines, the velocity changes afterwards
     symplectic_euler,  ///< order 1: kick, then drift in straight lines; a bounce turns the drift
+    implicit_euler,    ///< order 1, stable however stiff the forces: kick with the end's force, then drift
     midpoint,          ///< order 2: explicit midpoint (Runge 1895)
     velocity_verlet,   ///< order 2, symplectic for forces of position: parabola, mean of the forces at both ends
     rk4,               ///< order 4: the classical Runge-Kutta method (Kutta 1901)
@@ -43,6 +44,10 @@ struct Integrator {
 
 [[nodiscard]] std::optional<IntegratorKind> integrator_from_name(std::string_view name);
 [[nodiscard]] std::string_view name_of(IntegratorKind kind);
+/// True for the methods that put the whole step's force into the velocity first and drift in a straight line then.
+[[nodiscard]] constexpr bool kicks_first(IntegratorKind kind) {
+    return kind == IntegratorKind::symplectic_euler || kind == IntegratorKind::implicit_euler;
+}
 /// All names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string_view> integrator_names();
 
@@ -80,6 +85,10 @@ struct Flight {
 /// drift is a billiard), so the method stays symplectic with bounces and an elastic ball's height stays bounded.
 /// Kicking again after each impact would lose energy at every bounce in the order of g * dt * speed. Source: E. Hairer,
 /// C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3 (splitting).
+///
+/// implicit_euler kicks with the force at the end of the step, found by Newton's method, and drifts; an impact turns the
+/// drift as with symplectic_euler. It damps what is faster than the step and is for stiff forces. Source: E. Hairer, G.
+/// Wanner, "Solving Ordinary Differential Equations II", section IV.3.
 ///
 /// ballistic holds the acceleration of the step's start over the step, and evaluates it anew after each impact.
 ///

@@ -34,6 +34,9 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["started_inside"] = statistics.started_inside;
     json["stayed"] = statistics.stayed;
     json["lost_impulses"] = statistics.lost_impulses;
+    json["springs_broken"] = statistics.springs_broken;
+    json["springs_lost"] = statistics.springs_lost;
+    json["unsolved_steps"] = statistics.unsolved_steps;
     json["trials"] = statistics.trials;
     json["penetrations"] = statistics.penetrations;
     json["penetration_mean"] =

@@ -26,7 +26,7 @@ MoveOutcome Mover::run() {
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {
         if (!contact) {
-            flight = first ? begin_flight(integrator, rules_.forces, state_, remaining_)
+            flight = first ? first_flight(rules_, particle_, remaining_)
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
             contact = follow(flight);
         }

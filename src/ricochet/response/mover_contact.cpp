@@ -55,7 +55,7 @@ std::optional<Contact> Mover::go_on_in_contact() {
     }
     if (!(pressing > 0.0)) return std::nullopt;
     ContactSurface support = touched_surface(hardest);
-    if (rules_.settings.integrator.kind == IntegratorKind::symplectic_euler) {
+    if (kicks_first(rules_.settings.integrator.kind)) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
         if (still && is_finite(a) && plan(support, a, 1.0, remaining_).at_rest) rest(a, true);

@@ -122,6 +122,7 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
             return rk4(now, h);
         case IntegratorKind::forward_euler:
         case IntegratorKind::symplectic_euler:
+        case IntegratorKind::implicit_euler:  // refused by make_response()
             break;
     }
     const ContactPush k = push_at(now, state_.time, seen_, h);

@@ -17,6 +17,7 @@ public:
     Projector(const ResponseRules& rules, const SignedDistance& distance, MovingParticle& particle,
               MoveScratch& scratch, SideScratch& lists)
         : rules_(rules),
+          particle_(particle),
           state_(particle.state),
           scratch_(scratch),
           impact_(rules, particle, scratch, outcome_),
@@ -47,7 +48,7 @@ private:
         ForceInput next = state_;
         for (double left = duration; left > 0.0; left -= flight.path.duration) {
             const bool first = flight.path.duration == 0.0;
-            flight = first ? begin_flight(rules_.settings.integrator, rules_.forces, next, left)
+            flight = first ? first_flight(rules_, particle_, left)
                            : resume_flight(rules_.settings.integrator, rules_.forces, next, flight, left);
             if (!can_be_followed(flight.path)) return false;
             next.position = flight.path.end;
@@ -114,6 +115,7 @@ private:
     }
 
     const ResponseRules& rules_;
+    const MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
     MoveOutcome outcome_;

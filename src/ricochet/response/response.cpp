@@ -45,14 +45,16 @@ void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     require_positive(settings.integrator.tolerance.position, "tolerance.position", "m");
     require_positive(settings.integrator.tolerance.velocity, "tolerance.velocity", "m/s");
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
-    if (settings.integrator.kind != IntegratorKind::dormand_prince) return;
-    if (kind != ResponseKind::penalty && !together) return;
-    throw InputError(
-        fmt::format("integrator: found dormand_prince, whose particles choose their own steps, with {}; "
-                    "expected a method of fixed steps, for example rk4",
-                    together ? "rollback.global, where all step together"
-                             : "the penalty response, which "
-                               "steps in equal sub-steps"));
+    const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
+    const bool is_implicit = settings.integrator.kind == IntegratorKind::implicit_euler;
+    const bool has_substeps = kind == ResponseKind::penalty;
+    if ((is_adaptive && (has_substeps || together)) || (is_implicit && has_substeps)) {
+        throw InputError(fmt::format(
+            "integrator: found {} with {}; expected {}", name_of(settings.integrator.kind),
+            together ? "rollback.global, where all particles step together"
+                     : "the penalty response, which steps in equal explicit sub-steps",
+            together ? "a method of fixed steps, for example rk4" : "an explicit method of fixed steps, for example rk4"));
+    }
 }
 
 }  // namespace
@@ -75,6 +77,16 @@ void Response::add_weight(const MovingParticle& /*particle*/, double /*duration*
 
 void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides) const {
     std::fill(sides.begin(), sides.end(), SideMemory{});
+}
+
+Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration) {
+    const ForceInput& state = particle.state;
+    if (particle.planned != nullptr) {
+        const Flight& plan = *particle.planned;
+        const bool untouched = state.position == plan.start.position && state.velocity == plan.start.velocity;
+        if (untouched && duration == plan.path.duration) return plan;
+    }
+    return begin_flight(rules.settings.integrator, rules.forces, state, duration);
 }
 
 std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules) {

@@ -119,6 +119,9 @@ struct MovingParticle {
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
     Support support{};                 ///< what it is in contact with; contact goes on in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
+    /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
+    /// own integrator says it. It must outlive the move.
+    const Flight* planned = nullptr;
 };
 
 /// What happened to one particle in one step.
@@ -144,6 +147,10 @@ struct ResponseRules {
     std::span<const Material> materials;
     ResponseSettings settings;
 };
+
+/// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle
+/// yet, else that of its integrator.
+[[nodiscard]] Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration);
 
 /// Moves particles one at a time. Safe from any number of threads.
 class Response {

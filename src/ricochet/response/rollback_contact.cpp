@@ -14,7 +14,7 @@ std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
     double speed = std::max(length(state_.velocity), rules_.settings.resting_speed);
     // What rests under symplectic Euler has come down at the speed of a step's kick.
-    if (rules_.settings.integrator == IntegratorKind::symplectic_euler && trial_ == Trial::same_flight) {
+    if (kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight) {
         speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
     }
     const double reach = kTouchingGaps * parking_gap(state_.position) +

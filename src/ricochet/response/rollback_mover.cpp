@@ -72,7 +72,7 @@ Flight RollbackMover::flight_for(double duration) const {
     if (flown_ && trial_ == Trial::same_flight) {
         return resume_flight(integrator, rules_.forces, state_, *flown_, duration);
     }
-    return begin_flight(integrator, rules_.forces, state_, duration);
+    return first_flight(rules_, particle_, duration);
 }
 
 PhaseState RollbackMover::state_at(double elapsed) const {

@@ -116,6 +116,9 @@ const ObjectSpec& simulation_spec() {
              .fallback = "\"ballistic\"",
              .choices = {{"forward_euler", "straight lines; the velocity changes afterwards: first order"},
                          {"symplectic_euler", "the step's force first, then a straight line"},
+                         {"implicit_euler",
+                          "the force of the step's end first, then a straight line: first order, stable "
+                          "however stiff springs and forces are"},
                          {"ballistic", "a parabola: exact when the acceleration is constant"},
                          {"midpoint", "the explicit midpoint method: second order"},
                          {"velocity_verlet",

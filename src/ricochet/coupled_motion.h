@@ -1,0 +1,69 @@
+/// \file
+/// Private to the simulation: the particles that act on each other, planned together before each moves for itself.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ricochet/dynamics/particle_system.h"
+#include "ricochet/dynamics/system_integrator.h"
+
+namespace ricochet {
+
+/// Springs, or a solver of the user's own. Every step: plan() says where all members would go if nothing were in their
+/// way; then each member moves along its flight and bounces; settle() looks at what came out.
+class CoupledMotion {
+public:
+    /// Throws InputError for springs that cannot be. forces must outlive it.
+    CoupledMotion(std::vector<Spring> springs, SystemSolver solver, const ForceField& forces,
+                  const Integrator& integrator);
+
+    /// True when particles may act on each other, or a solver of the user's own steps them.
+    [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty(); }
+    /// To be called whenever particles were added or removed.
+    void bind(const Particles& particles);
+    /// Plans the members' way from a time on, for at most `duration` seconds. Returns the seconds planned. Throws
+    /// DivergedError when what comes out is nonsense.
+    double plan(const Particles& particles, double time, double duration);
+
+    /// True when particle i is a member.
+    [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
+    /// The planned flight of a member; null for others.
+    [[nodiscard]] const Flight* flight_of(std::size_t i) const { return holds(i) ? &flights_[slots_[i]] : nullptr; }
+    /// What others do to particle i after a bounce, m/s^2.
+    [[nodiscard]] Vec3 coupling_of(std::size_t i) const { return holds(i) ? flights_[slots_[i]].start.coupling : Vec3{}; }
+
+    /// After the move: breaks what is overstretched.
+    void settle(const Particles& particles);
+
+    [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
+    /// Steps whose implicit equations were not solved to the tolerance.
+    [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
+
+private:
+    static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
+
+    [[nodiscard]] SystemStep stepped(double duration);
+    [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
+    void watch_energy(const SystemStep& step);
+    [[noreturn]] void report_divergence(const SystemStep& step) const;
+
+    SpringNetwork springs_;
+    SystemSolver solver_;
+    Integrator integrator_;
+    ParticleSystem system_;
+    std::vector<std::uint32_t> slots_;  // of every particle: its number among the members
+    std::vector<Flight> flights_;       // of the members
+    double first_try_ = 0.0;            // s, of an adaptive method
+    std::uint64_t unsolved_steps_ = 0;
+
+    // What forces and walls have put in, J, and what the method has made out of nothing.
+    double given_ = 0.0;
+    double gained_ = 0.0;
+    double energy_after_plan_ = 0.0;
+    double least_energy_ = 0.0;
+    bool watching_ = false;
+};
+
+}  // namespace ricochet

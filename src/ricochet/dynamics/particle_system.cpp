@@ -1,0 +1,176 @@
+#include "ricochet/dynamics/particle_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/dynamics/implicit_euler.h"
+
+namespace ricochet {
+namespace {
+
+/// Members per unit of parallel work.
+constexpr std::size_t kBlock = 256;
+
+constexpr std::uint32_t kNoMember = std::numeric_limits<std::uint32_t>::max();
+
+void require_length(std::size_t found, std::size_t expected) {
+    if (found == expected) return;
+    throw InputError(fmt::format("phase-space vector: found {} entries, expected {}, six for each member of the system",
+                                 found, expected));
+}
+
+Vec3 read(std::span<const double> state, std::size_t at) { return {state[at], state[at + 1], state[at + 2]}; }
+
+void write(std::span<double> state, std::size_t at, const Vec3& value) {
+    state[at] = value.x;
+    state[at + 1] = value.y;
+    state[at + 2] = value.z;
+}
+
+}  // namespace
+
+void ParticleSystem::assign(const Particles& particles, std::span<const std::uint32_t> members, double time) {
+    members_.assign(members.begin(), members.end());
+    time_ = time;
+    constants_.resize(size());
+    position_.resize(size());
+    velocity_.resize(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        const std::uint32_t i = members_[k];
+        constants_[k] = {particles.id[i], particles.mass[i], particles.radius[i], particles.pinned[i] != 0};
+        position_[k] = particles.position[i];
+        velocity_[k] = constants_[k].pinned ? Vec3{} : particles.velocity[i];
+    }
+    link(particles.size());
+}
+
+// Springs whose ends are not both members act through the forces that the caller holds on for them.
+void ParticleSystem::link(std::size_t particle_count) {
+    std::vector<std::uint32_t> member_of(particle_count, kNoMember);
+    for (std::size_t k = 0; k < size(); ++k) member_of[members_[k]] = static_cast<std::uint32_t>(k);
+    bonds_.clear();
+    first_link_.assign(size() + 1, 0);
+    for (const SpringNetwork::Bond& bond : springs_.bonds()) {
+        const Bond own{bond.spring, member_of[bond.a], member_of[bond.b]};
+        if (own.first == kNoMember || own.second == kNoMember) continue;
+        bonds_.push_back(own);
+        ++first_link_[own.first + 1];
+        ++first_link_[own.second + 1];
+    }
+    for (std::size_t k = 0; k < size(); ++k) first_link_[k + 1] += first_link_[k];
+    links_.resize(2 * bonds_.size());
+    std::vector<std::uint32_t> next(first_link_.begin(), first_link_.end() - 1);
+    for (const Bond& bond : bonds_) {
+        links_[next[bond.first]++] = {bond.spring, bond.second, true};
+        links_[next[bond.second]++] = {bond.spring, bond.first, false};
+    }
+}
+
+void ParticleSystem::get_state(std::span<double> state) const {
+    require_length(state.size(), dimension());
+    for (std::size_t i = 0; i < size(); ++i) {
+        write(state, 6 * i, position_[i]);
+        write(state, 6 * i + 3, velocity_[i]);
+    }
+}
+
+void ParticleSystem::set_state(std::span<const double> state) {
+    require_length(state.size(), dimension());
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (is_pinned(i)) continue;
+        position_[i] = read(state, 6 * i);
+        velocity_[i] = read(state, 6 * i + 3);
+    }
+}
+
+void ParticleSystem::derivative(double time, std::span<double> result) const {
+    require_length(result.size(), dimension());
+    std::vector<Vec3> acceleration(size());
+    accelerations(time, position_, velocity_, acceleration);
+    for (std::size_t i = 0; i < size(); ++i) {
+        write(result, 6 * i, is_pinned(i) ? Vec3{} : velocity_[i]);
+        write(result, 6 * i + 3, acceleration[i]);
+    }
+}
+
+void ParticleSystem::derivative(double time, std::span<const double> state, std::span<double> result) const {
+    require_length(state.size(), dimension());
+    require_length(result.size(), dimension());
+    std::vector<Vec3> x(size());
+    std::vector<Vec3> v(size());
+    std::vector<Vec3> a(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+        x[i] = is_pinned(i) ? position_[i] : read(state, 6 * i);
+        v[i] = is_pinned(i) ? Vec3{} : read(state, 6 * i + 3);
+    }
+    accelerations(time, x, v, a);
+    for (std::size_t i = 0; i < size(); ++i) {
+        write(result, 6 * i, v[i]);
+        write(result, 6 * i + 3, a[i]);
+    }
+}
+
+void ParticleSystem::set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (is_pinned(i)) continue;
+        position_[i] = positions[i];
+        velocity_[i] = velocities[i];
+    }
+}
+
+void ParticleSystem::accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                   std::span<Vec3> result) const {
+    parallel_for_blocks(size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            result[i] = is_pinned(i) ? Vec3{}
+                                     : spring_force_on(i, positions, velocities) / mass(i) +
+                                           own_acceleration(i, time, positions[i], velocities[i]);
+        }
+    });
+}
+
+// Every member gathers for itself, in the order of the springs: no two threads write to one place.
+Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positions,
+                                     std::span<const Vec3> velocities) const {
+    Vec3 sum;
+    for (std::uint32_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
+        const Link& link = links_[k];
+        const std::size_t first = link.is_first ? i : link.other;
+        const std::size_t second = link.is_first ? link.other : i;
+        const Vec3 force = spring_force(springs_.springs()[link.spring], positions[first], velocities[first],
+                                        positions[second], velocities[second]);
+        sum += link.is_first ? force : -force;
+    }
+    return sum;
+}
+
+Vec3 ParticleSystem::own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const {
+    return forces_.acceleration(input(i, time, position, velocity));
+}
+
+std::array<Vec3, 3> ParticleSystem::own_slope(std::size_t i, const Vec3& end_velocity, double duration) const {
+    return acceleration_slope(forces_, input(i, time_, position_[i], velocity_[i]), end_velocity, duration);
+}
+
+double ParticleSystem::spring_energy(std::span<const Vec3> positions) const {
+    return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Spring& spring = spring_of(bonds_[k]);
+            const double stretch =
+                length(positions[bonds_[k].first] - positions[bonds_[k].second]) - spring.rest_length;
+            sum += 0.5 * spring.stiffness * stretch * stretch;
+        }
+        return sum;
+    });
+}
+
+ForceInput ParticleSystem::input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const {
+    return {position, velocity, mass(i), constants_[i].radius, time, id(i)};
+}
+
+}  // namespace ricochet

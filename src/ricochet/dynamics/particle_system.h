@@ -1,0 +1,117 @@
+/// \file
+/// Particles that act on each other as one system of ordinary differential equations: the interface that classical
+/// solvers ask for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/spring_network.h"
+
+namespace ricochet {
+
+/// The phase-space vector of a system of particles, its dimension, and its derivative at a time: all that a solver of
+/// ordinary differential equations needs to know. Entries 6 i to 6 i + 5 are x, y, z (m) and vx, vy, vz (m/s) of member
+/// i; the derivative holds the velocity and the acceleration in the same places, zeros for pinned members.
+///
+/// Source of the interface: A. Witkin, "Physically Based Modeling: Particle System Dynamics", SIGGRAPH course notes,
+/// 2001 (dimension, get state, set state, derivative).
+class ParticleSystem {
+public:
+    /// A spring of the system; both ends are member numbers.
+    struct Bond {
+        std::uint32_t spring = 0;
+        std::uint32_t first = 0;
+        std::uint32_t second = 0;
+    };
+
+    /// Both must outlive the system. The springs must be bound to the particles of assign().
+    ParticleSystem(const ForceField& forces, const SpringNetwork& springs) : forces_(forces), springs_(springs) {}
+
+    /// Takes these particles, by index and ascending, as its members, in the state that they have.
+    void assign(const Particles& particles, std::span<const std::uint32_t> members, double time);
+
+    // The classical interface.
+
+    /// Length of the phase-space vector: six for each member.
+    [[nodiscard]] std::size_t dimension() const { return 6 * size(); }
+    [[nodiscard]] double time() const { return time_; }  ///< s
+    void set_time(double time) { time_ = time; }
+    /// Copies the state to a vector of dimension() entries; throws InputError for another length, as all three do.
+    void get_state(std::span<double> state) const;
+    /// The opposite. Positions and velocities of pinned members stay as they are.
+    void set_state(std::span<const double> state);
+    /// The derivative of the present state at a time, s.
+    void derivative(double time, std::span<double> result) const;
+    /// The derivative of any state at a time, for solvers that keep the state themselves.
+    void derivative(double time, std::span<const double> state, std::span<double> result) const;
+
+    // The same as vectors, for solvers that know positions from velocities.
+
+    [[nodiscard]] std::size_t size() const { return members_.size(); }  ///< members
+    /// Index of every member among the particles.
+    [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
+    [[nodiscard]] const std::vector<Vec3>& positions() const { return position_; }   ///< m
+    [[nodiscard]] const std::vector<Vec3>& velocities() const { return velocity_; }  ///< m/s
+    void set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities);
+    /// Accelerations of all members in a state, m/s^2; zero for pinned ones. The spans hold size() entries.
+    void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                       std::span<Vec3> result) const;
+    /// What the springs do to member i, N.
+    [[nodiscard]] Vec3 spring_force_on(std::size_t i, std::span<const Vec3> positions,
+                                       std::span<const Vec3> velocities) const;
+    /// What forces that look at one particle only do to member i, m/s^2.
+    [[nodiscard]] Vec3 own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
+    /// Derivative of own_acceleration() at the end of a backward Euler step by the velocity there, see
+    /// acceleration_slope(): three columns, 1/s.
+    [[nodiscard]] std::array<Vec3, 3> own_slope(std::size_t i, const Vec3& end_velocity, double duration) const;
+    /// Energy stored in the springs, J.
+    [[nodiscard]] double spring_energy(std::span<const Vec3> positions) const;
+    [[nodiscard]] const std::vector<Bond>& bonds() const { return bonds_; }
+    [[nodiscard]] const Spring& spring_of(const Bond& bond) const { return springs_.springs()[bond.spring]; }
+    [[nodiscard]] bool is_pinned(std::size_t i) const { return constants_[i].pinned; }
+    [[nodiscard]] double mass(std::size_t i) const { return constants_[i].mass; }  ///< kg
+    [[nodiscard]] std::uint64_t id(std::size_t i) const { return constants_[i].id; }
+    /// What a force sees of member i in this state.
+    [[nodiscard]] ForceInput input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
+    /// True when the forces that look at one particle only depend on neither position, velocity nor time.
+    [[nodiscard]] bool has_uniform_forces() const { return forces_.is_uniform(); }
+
+private:
+    /// What no step changes.
+    struct Constants {
+        std::uint64_t id = 0;
+        double mass = 1.0;
+        double radius = 0.0;
+        bool pinned = false;
+    };
+    struct Link {
+        std::uint32_t spring = 0;
+        std::uint32_t other = 0;
+        bool is_first = true;  // the member is the spring's first end
+    };
+    void link(std::size_t particle_count);
+
+    const ForceField& forces_;
+    const SpringNetwork& springs_;
+    std::vector<std::uint32_t> members_;
+    std::vector<Constants> constants_;
+    std::vector<Vec3> position_;
+    std::vector<Vec3> velocity_;
+    std::vector<Bond> bonds_;
+    std::vector<std::uint32_t> first_link_;  // size() + 1 entries into links_
+    std::vector<Link> links_;
+    double time_ = 0.0;
+};
+
+/// An own solver: advances the system by `duration` seconds, through the classical interface. It must be a pure
+/// function of the system's state.
+using SystemSolver = std::function<void(ParticleSystem& system, double duration)>;
+
+}  // namespace ricochet

@@ -1,0 +1,194 @@
+#include "ricochet/dynamics/system_integrator.h"
+
+#include <algorithm>
+#include <array>
+
+#include "ricochet/dynamics/detail/system_implicit.h"
+#include "ricochet/dynamics/dormand_prince.h"
+
+namespace ricochet {
+namespace {
+
+using Vectors = std::vector<Vec3>;
+
+/// a + h b, entry by entry.
+Vectors along(const Vectors& a, double h, const Vectors& b) {
+    Vectors result(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] + h * b[i];
+    return result;
+}
+
+Vectors accelerations(const ParticleSystem& system, double time, const Vectors& x, const Vectors& v) {
+    Vectors result(system.size());
+    system.accelerations(time, x, v, result);
+    return result;
+}
+
+SystemStep euler_step(const ParticleSystem& system, double h, bool kicks_first) {
+    const Vectors& v = system.velocities();
+    Vectors a = accelerations(system, system.time(), system.positions(), v);
+    Vectors end = along(v, h, a);
+    Vectors positions = along(system.positions(), h, kicks_first ? end : v);
+    return {std::move(positions), std::move(end), std::move(a), h, h};
+}
+
+SystemStep midpoint_step(const ParticleSystem& system, double h) {
+    const Vectors& x = system.positions();
+    const Vectors& v = system.velocities();
+    Vectors a0 = accelerations(system, system.time(), x, v);
+    const Vectors v_mid = along(v, 0.5 * h, a0);
+    const Vectors a_mid = accelerations(system, system.time() + 0.5 * h, along(x, 0.5 * h, v), v_mid);
+    return {along(x, h, v_mid), along(v, h, a_mid), std::move(a0), h, h};
+}
+
+SystemStep verlet_step(const ParticleSystem& system, double h) {
+    const Vectors& x = system.positions();
+    const Vectors& v = system.velocities();
+    Vectors a0 = accelerations(system, system.time(), x, v);
+    Vectors end(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) end[i] = x[i] + h * v[i] + (0.5 * h * h) * a0[i];
+    const Vectors a1 = accelerations(system, system.time() + h, end, along(v, h, a0));
+    Vectors velocities(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) velocities[i] = v[i] + (0.5 * h) * (a0[i] + a1[i]);
+    return {std::move(end), std::move(velocities), std::move(a0), h, h};
+}
+
+SystemStep rk4_step(const ParticleSystem& system, double h) {
+    const Vectors& x = system.positions();
+    const Vectors& v = system.velocities();
+    const double t = system.time();
+    const double half = 0.5 * h;
+    Vectors a1 = accelerations(system, t, x, v);
+    const Vectors v2 = along(v, half, a1);
+    const Vectors a2 = accelerations(system, t + half, along(x, half, v), v2);
+    const Vectors v3 = along(v, half, a2);
+    const Vectors a3 = accelerations(system, t + half, along(x, half, v2), v3);
+    const Vectors v4 = along(v, h, a3);
+    const Vectors a4 = accelerations(system, t + h, along(x, h, v3), v4);
+    Vectors positions(x.size());
+    Vectors velocities(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        positions[i] = x[i] + (h / 6.0) * (v[i] + 2.0 * (v2[i] + v3[i]) + v4[i]);
+        velocities[i] = v[i] + (h / 6.0) * (a1[i] + 2.0 * (a2[i] + a3[i]) + a4[i]);
+    }
+    return {std::move(positions), std::move(velocities), std::move(a1), h, h};
+}
+
+/// A step of Dormand and Prince, and the largest of its errors relative to the tolerance.
+struct TriedStep {
+    SystemStep step;
+    double error = 0.0;
+};
+
+TriedStep dormand_prince_system(const ParticleSystem& system, double h, const ErrorTolerance& tolerance) {
+    const std::size_t count = system.size();
+    std::array<Vectors, kDormandPrinceStages> v;
+    std::array<Vectors, kDormandPrinceStages> a;
+    TriedStep tried;
+    for (std::size_t s = 0; s < kDormandPrinceStages; ++s) {
+        Vectors x = system.positions();
+        v[s] = system.velocities();
+        for (std::size_t j = 0; j < s; ++j) {
+            const double weight = h * dormand_prince_weight(s, j);
+            for (std::size_t i = 0; i < count; ++i) {
+                x[i] += weight * v[j][i];
+                v[s][i] += weight * a[j][i];
+            }
+        }
+        a[s] = accelerations(system, system.time() + dormand_prince_node(s) * h, x, v[s]);
+        if (s + 1 == kDormandPrinceStages) tried.step.positions = std::move(x);
+    }
+    std::array<Vec3, kDormandPrinceStages> own_v;
+    std::array<Vec3, kDormandPrinceStages> own_a;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t s = 0; s < kDormandPrinceStages; ++s) {
+            own_v[s] = v[s][i];
+            own_a[s] = a[s][i];
+        }
+        tried.error = std::max(tried.error, relative_error(estimated_errors(own_v, own_a, h), tolerance));
+    }
+    tried.step.velocities = std::move(v.back());
+    tried.step.start_accelerations = std::move(a.front());
+    tried.step.duration = h;
+    return tried;
+}
+
+SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& system, double duration,
+                         double first_try) {
+    double h = std::min(first_try, duration);
+    for (int halvings = 0;; ++halvings, h *= 0.5) {
+        TriedStep tried = dormand_prince_system(system, h, integrator.tolerance);
+        if (tried.error > 1.0 && halvings < kMostHalvings) continue;
+        const bool ended_here = h >= duration;  // the step ended, not the method
+        tried.step.next_duration = ended_here ? first_try : (tried.error < kErrorToDouble ? 2.0 * h : h);
+        return std::move(tried.step);
+    }
+}
+
+}  // namespace
+
+SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration, double first_try) {
+    switch (integrator.kind) {
+        case IntegratorKind::forward_euler:
+            return euler_step(system, duration, false);
+        case IntegratorKind::symplectic_euler:
+            return euler_step(system, duration, true);
+        case IntegratorKind::implicit_euler:
+            return detail::implicit_system_step(system, duration);
+        case IntegratorKind::midpoint:
+            return midpoint_step(system, duration);
+        case IntegratorKind::rk4:
+            return rk4_step(system, duration);
+        case IntegratorKind::dormand_prince:
+            return adaptive_step(integrator, system, duration, first_try);
+        case IntegratorKind::velocity_verlet:
+        case IntegratorKind::ballistic:
+            break;
+    }
+    return verlet_step(system, duration);
+}
+
+Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i,
+                      const Vec3& coupling) {
+    const double h = step.duration;
+    const Vec3& x = system.positions()[i];
+    const Vec3& v = system.velocities()[i];
+    const Vec3& end_velocity = step.velocities[i];
+    Flight flight;
+    flight.start = system.input(i, system.time(), x, v);
+    flight.start.coupling = coupling;
+    flight.acceleration = step.start_accelerations[i];
+    flight.end_velocity = end_velocity;
+    switch (kind) {
+        case IntegratorKind::forward_euler:
+            flight.path = line_path(x, v, h);
+            flight.steps_again = true;
+            break;
+        case IntegratorKind::symplectic_euler:
+        case IntegratorKind::implicit_euler:
+            flight.path = line_path(x, end_velocity, h);
+            flight.acceleration = (end_velocity - v) / h;
+            flight.kick_duration = h;
+            break;
+        case IntegratorKind::velocity_verlet:
+        case IntegratorKind::ballistic:
+            flight.path = parabola_path(x, v, flight.acceleration, h);
+            break;
+        default:
+            flight.path = hermite_path(x, v, step.positions[i], end_velocity, h);
+            break;
+    }
+    return flight;
+}
+
+Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i) {
+    if (system.is_pinned(i)) return {};
+    const Vec3& x = system.positions()[i];
+    const Vec3& v = system.velocities()[i];
+    if (kind == IntegratorKind::implicit_euler) {
+        return (step.velocities[i] - v) / step.duration - system.own_acceleration(i, system.time(), x, v);
+    }
+    return system.spring_force_on(i, system.positions(), system.velocities()) / system.mass(i);
+}
+
+}  // namespace ricochet

@@ -30,7 +30,8 @@ struct RenderArguments {
     std::string size = "1280x720";
     std::string camera;
     std::string up;
-    std::string color_by = "speed";
+    std::string color_by;
+    std::string drawing = "auto";
     std::string color_map = "plasma";
     std::string range;
     std::string collider_color = "plain";
@@ -40,6 +41,7 @@ struct RenderArguments {
     int samples = 16;
     int frames_per_second = 30;
     double exposure = 1.0;
+    bool night = false;
     std::string threads;
     bool quiet = false;
 };
@@ -103,9 +105,18 @@ ColorMap parse_color_map(const std::string& text) {
     refuse(fmt::format("--color-map {}: expected one of {}", text, fmt::join(color_map_names(), ", ")));
 }
 
+ParticleDrawing parse_drawing(const std::string& text) {
+    if (text == "auto") return ParticleDrawing::automatic;
+    if (text == "spheres") return ParticleDrawing::spheres;
+    if (text == "soft") return ParticleDrawing::soft;
+    if (text == "glow") return ParticleDrawing::glow;
+    refuse(fmt::format("--draw {}: expected auto, spheres, soft or glow", text));
+}
+
 PictureStyle picture_style(const RenderArguments& arguments) {
     PictureStyle style;
     style.color_by = arguments.color_by;
+    style.drawing = parse_drawing(arguments.drawing);
     style.range = parse_range(arguments.range);
     style.map = parse_color_map(arguments.color_map);
     if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
@@ -195,12 +206,15 @@ void render(const RenderArguments& arguments) {
         chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame);
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
-    const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, {}};
+    const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, arguments.night, {}};
     film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
     if (arguments.quiet) return;
-    fmt::print("{}: {} {}, {} from {:.4g} to {:.4g}\n", arguments.output, frames.size(),
-               frames.size() == 1 ? "frame" : "frames", arguments.color_by, pictures.range().low,
-               pictures.range().high);
+    fmt::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    if (pictures.shows_own_colors()) {
+        fmt::print("in the particles' own colours\n");
+    } else {
+        fmt::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
+    }
 }
 
 void add_options(CLI::App& command, RenderArguments& a) {
@@ -210,8 +224,13 @@ void add_options(CLI::App& command, RenderArguments& a) {
     command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     command.add_option("--camera", a.camera, "px,py,pz,tx,ty,tz[,fov]: position, target, vertical degrees");
     command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
-    command.add_option("--color-by", a.color_by, "Array of the frames that colours the particles")
+    command.add_option("--color-by", a.color_by,
+                       "Array of the frames that colours the particles (default: their own color, or speed)");
+    command
+        .add_option("--draw", a.drawing,
+                    "Particles as spheres, soft discs by opacity, or glow that adds up (auto: soft with an opacity)")
         ->capture_default_str();
+    command.add_flag("--night", a.night, "A dark sky");
     command.add_option("--color-map", a.color_map, "viridis, plasma or turbo")->capture_default_str();
     command.add_option("--range", a.range, "low,high of the colours (default: from the frames)");
     command.add_option("--collider-color", a.collider_color, "plain, or hits per triangle")->capture_default_str();

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -92,16 +93,21 @@ private:
     double seconds_per_step_ = 0.0;
 };
 
-// Steps to the end, or to the end of the step in which a signal came.
-void step_and_write(Simulation& simulation, RunWriter& writer, std::uint64_t every, bool quiet) {
+// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why.
+std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, std::uint64_t every, bool quiet) {
     RunProgress progress(quiet);
     writer.write_frame(simulation);
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
-        simulation.step();
+        try {
+            simulation.step();
+        } catch (const DivergedError& error) {
+            return error.what();
+        }
         writer.add_step(simulation);
         if (simulation.step_index() % every == 0) writer.write_frame(simulation);
         progress.show(simulation);
     }
+    return std::nullopt;
 }
 
 void print_warnings(const SimulationStatistics& statistics) {
@@ -115,6 +121,9 @@ void print_warnings(const SimulationStatistics& statistics) {
     warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
     warn(statistics.started_inside, "particles were born exactly on a surface (started_inside)");
     warn(statistics.stayed, "impacts left the particle where it was (stayed)");
+    warn(statistics.births_refused_by_depth, "births were refused beyond max_depth (births_refused_by_depth)");
+    warn(statistics.births_refused_by_population,
+         "births were refused beyond most_particles (births_refused_by_population)");
     warn(statistics.lost_impulses, "impulses were too large to be added to a triangle's total (lost_impulses)");
 }
 
@@ -122,7 +131,10 @@ void print_report(const RunSummary& summary, const std::string& output) {
     const SimulationStatistics& statistics = summary.statistics;
     fmt::print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}\n", summary.scene, statistics.steps,
                summary.simulated_time, summary.wall_seconds, summary.threads,
-               summary.threads == 1 ? "thread" : "threads", summary.interrupted ? " (interrupted)" : "");
+               summary.threads == 1 ? "thread" : "threads",
+               summary.interrupted ? " (interrupted)"
+               : summary.diverged  ? " (diverged)"
+                                   : "");
     fmt::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
                statistics.emitted, summary.particles_alive, statistics.particle_steps,
                cli::short_number(static_cast<double>(statistics.particle_steps) / summary.wall_seconds),
@@ -160,19 +172,21 @@ int run(const RunArguments& arguments) {
     check_writable(arguments.output_state);
     const Clock::time_point start = Clock::now();
     RunWriter writer(folder.path(), info, simulation, region);
-    step_and_write(simulation, writer, scene.output.every, arguments.quiet);
-    RunSummary summary = writer.finish(simulation);
-    if (!arguments.output_state.empty()) {
-        write_state_csv(arguments.output_state, simulation.particles(), simulation.time());
+    const auto diverged = step_and_write(simulation, writer, scene.output.every, arguments.quiet);
+    RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
+    if (!arguments.output_state.empty() && !diverged) {
+        write_state_csv(arguments.output_state, simulation.particles(), simulation.shown_attributes(),
+                        simulation.time());
     }
     summary.version = info.version;
     summary.scene = info.scene;
     summary.threads = thread_count();
-    summary.interrupted = !simulation.finished();
+    summary.interrupted = !simulation.finished() && !diverged;
     summary.peak_memory_bytes = peak_memory_bytes();
     summary.wall_seconds = seconds_since(start);
     writer.write_summary(summary);
     if (!arguments.quiet) print_report(summary, arguments.output);
+    if (diverged) throw RunError(fmt::format("{}: stopped after {} frames: {}", info.scene, summary.frames, *diverged));
     if (print_violations(simulation)) return 1;
     return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
 }

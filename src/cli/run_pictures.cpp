@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/attributes.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
@@ -115,6 +116,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     std::vector<double> values;
     for (const FrameFile& file : spread_sample(chosen)) {
         const VtkPolyData frame = read_vtp(file.path);
+        choose_looks(frame);
         const std::vector<double> here = shown_values(frame, file);
         values.insert(values.end(), here.begin(), here.end());
         subject_.particles.insert(subject_.particles.end(), frame.points.begin(), frame.points.end());
@@ -122,6 +124,21 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     }
     range_ = style_.range ? *style_.range : robust_range(std::move(values));
     if (!style_.range && style_.color_by == kSpeed) range_.low = 0.0;
+}
+
+// Settles what was left to the frames, and notes whether any particle has a size of its own.
+void RunPictures::choose_looks(const VtkPolyData& frame) {
+    const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
+    if (style_.color_by.empty()) style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
+    own_colors_ = style_.color_by == kColorAttribute;
+    if (style_.drawing == ParticleDrawing::automatic) {
+        const bool soft = find_array(frame.point_arrays, kOpacityAttribute) != nullptr;
+        style_.drawing = soft ? ParticleDrawing::soft : ParticleDrawing::spheres;
+    }
+    const VtkArray* const sizes = find_array(frame.point_arrays, kSizeAttribute);
+    if (sizes == nullptr) return;
+    const std::vector<double> values = scalar_values(*sizes);
+    has_sizes_ = has_sizes_ || std::any_of(values.begin(), values.end(), [](double size) { return size > 0.0; });
 }
 
 void RunPictures::load_colliders(const RunFolder& folder) {
@@ -176,19 +193,19 @@ double RunPictures::visible_radius() const {
 }
 
 std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
-    const VtkArray* own = find_array(frame.point_arrays, "radius");
+    const VtkArray* own = find_array(frame.point_arrays, has_sizes_ ? kSizeAttribute : "radius");
     std::vector<double> radii = own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
     const double visible = visible_radius();
     for (double& radius : radii) {
         if (style_.particle_radius) radius = *style_.particle_radius;
-        if (!(radius > 0.0)) radius = visible;
+        if (!(radius > 0.0) && !has_sizes_) radius = visible;
     }
     return radii;
 }
 
 // Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
 PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& file) const {
-    const std::vector<double> values = shown_values(frame, file);
+    const std::vector<Vec3> shown = colors(frame, file);
     const std::vector<double> radii = shown_radii(frame);
     const VtkArray* own = find_array(frame.point_arrays, "radius");
     const std::vector<double> own_radii = own == nullptr ? std::vector<double>(radii.size(), 0.0) : scalar_values(*own);
@@ -210,20 +227,42 @@ PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& fil
     }
     moving.cloth.mesh = {frame.points, frame.triangles};
     moving.cloth.color = kClothColor;
-    for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t i = 0; i < shown.size(); ++i) {
         const bool is_thread = thread[i] > 0.0 && (own_radii[i] == 0.0 || radii[i] <= kBead * thread[i]);
         if (is_thread || is_cloth[i]) continue;
         moving.spheres.centers.push_back(frame.points[i]);
         moving.spheres.radii.push_back(radii[i]);
-        moving.spheres.colors.push_back(kParticleAlbedo *
-                                        map_color(style_.map, (values[i] - range_.low) / (range_.high - range_.low)));
+        moving.spheres.colors.push_back(shown[i]);
     }
     return moving;
 }
 
-Image RunPictures::picture(const FrameFile& frame, const PictureOptions& options) {
-    preview_->set_moving(moving(read_vtp(frame.path), frame));
-    return render_picture(*preview_, camera_, options);
+std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile& file) const {
+    const VtkArray* const own = own_colors_ ? find_array(frame.point_arrays, kColorAttribute) : nullptr;
+    const auto* const vectors = own == nullptr ? nullptr : std::get_if<std::vector<Vec3>>(&own->values);
+    if (vectors != nullptr) return *vectors;
+    std::vector<Vec3> colors;
+    for (const double value : shown_values(frame, file)) {
+        colors.push_back(kParticleAlbedo * map_color(style_.map, (value - range_.low) / (range_.high - range_.low)));
+    }
+    return colors;
+}
+
+Image RunPictures::picture(const FrameFile& file, const PictureOptions& options) {
+    const VtkPolyData frame = read_vtp(file.path);
+    PreviewMoving shown = moving(frame, file);
+    if (!draws_sprites()) {
+        preview_->set_moving(shown);
+        return render_picture(*preview_, camera_, options);
+    }
+    shown.spheres = {};
+    preview_->set_moving(shown);
+    const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
+    std::vector<double> opacities =
+        own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
+    const bool glow = style_.drawing == ParticleDrawing::glow;
+    return render_picture(*preview_, camera_, options,
+                          {frame.points, shown_radii(frame), colors(frame, file), std::move(opacities), glow});
 }
 
 }  // namespace ricochet::cli

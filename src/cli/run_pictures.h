@@ -15,9 +15,19 @@
 
 namespace ricochet::cli {
 
+/// What particles are drawn as.
+enum class ParticleDrawing {
+    automatic,  ///< soft where the frames have an opacity, spheres otherwise
+    spheres,
+    soft,  ///< discs that cover what is behind by their opacity
+    glow,  ///< discs of light that adds up
+};
+
 /// How a run is shown.
 struct PictureStyle {
-    std::string color_by = "speed";  ///< array of the frames; speed is the length of velocity
+    /// Array of the frames; speed is the length of velocity. Empty: the particles' own colours, or speed without.
+    std::string color_by;
+    ParticleDrawing drawing = ParticleDrawing::automatic;
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
     std::optional<double> particle_radius;  ///< m; nothing: the frames' own, or one that can be seen for points
@@ -37,6 +47,10 @@ public:
 
     [[nodiscard]] Image picture(const FrameFile& frame, const PictureOptions& options);
     [[nodiscard]] const ValueRange& range() const { return range_; }
+    /// Array that colours the particles.
+    [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
+    /// True when the frames themselves say the colours.
+    [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
 
 private:
@@ -44,6 +58,11 @@ private:
     void load_colliders(const RunFolder& folder);
     void choose_camera(const RunFolder& folder, double aspect);
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
+    void choose_looks(const VtkPolyData& frame);
+    [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame, const FrameFile& file) const;
+    [[nodiscard]] bool draws_sprites() const {
+        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow;
+    }
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
     [[nodiscard]] PreviewMoving moving(const VtkPolyData& frame, const FrameFile& file) const;
@@ -51,6 +70,8 @@ private:
     PictureStyle style_;
     ViewSubject subject_;
     std::size_t most_particles_ = 0;
+    bool own_colors_ = false;  // colours are those of the frames
+    bool has_sizes_ = false;   // some particle has a size to be drawn with
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;

@@ -32,7 +32,9 @@ public:
     /// The planned flight of a member; null for others.
     [[nodiscard]] const Flight* flight_of(std::size_t i) const { return holds(i) ? &flights_[slots_[i]] : nullptr; }
     /// What others do to particle i after a bounce, m/s^2.
-    [[nodiscard]] Vec3 coupling_of(std::size_t i) const { return holds(i) ? flights_[slots_[i]].start.coupling : Vec3{}; }
+    [[nodiscard]] Vec3 coupling_of(std::size_t i) const {
+        return holds(i) ? flights_[slots_[i]].start.coupling : Vec3{};
+    }
 
     /// After the move: breaks what is overstretched.
     void settle(const Particles& particles);

@@ -17,6 +17,7 @@
 #include "ricochet/dynamics/spring_stability.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/shape_mesh.h"
+#include "ricochet/offspring.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/response/rollback.h"
 #include "ricochet/run_check.h"
@@ -43,6 +44,9 @@ SimulationOptions checked(const SimulationOptions& options) {
     }
     if (options.duration / options.time_step > 1e15) throw InputError("duration / time_step exceeds 1e15 steps");
     if (!(options.resting_speed >= 0.0)) throw InputError("resting_speed must be at least 0 m/s");
+    if (!(options.frame_rate > 0.0) || !std::isfinite(options.frame_rate)) {
+        throw InputError("frame_rate must be a finite number above 0 frames a second");
+    }
     if (options.bounce_budget == 0) throw InputError("bounce_budget must be at least 1");
     return options;
 }
@@ -195,16 +199,20 @@ struct Simulation::Impl {
     void emit(double from, double to);
     void add(Particle particle);
     void move_all(double from, double to);
-    void move_part(double from, double to, std::vector<BlockCounts>& blocks);
+    void move_from(std::size_t first, double from, double to);
+    void bear_children(double from, double to);
+    [[nodiscard]] bool keeps_records() const { return options.record_contacts || offspring; }
+    void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
+    void sort_records();
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
     [[nodiscard]] MovingParticle moving(std::size_t i, double start);
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
-    void move_system(double from, double to, std::vector<BlockCounts>& blocks);
+    void move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void compact(const std::vector<std::uint8_t>& keep);
     void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
     void add_weights_of_sleepers(double sign);
@@ -234,8 +242,10 @@ struct Simulation::Impl {
     std::vector<SpringFace> spring_faces;
     SimulationStatistics statistics;
     std::vector<SurfaceTotals> totals;
-    std::vector<ContactRecord> records;
-    std::unique_ptr<RunCheck> check;  ///< with options.verify
+    std::vector<ContactRecord> records;       ///< of the step
+    std::vector<ContactRecord> pass_records;  ///< of the particles that were moved last, for their children
+    std::unique_ptr<Offspring> offspring;     ///< where particles are born of particles
+    std::unique_ptr<RunCheck> check;          ///< with options.verify
     std::vector<Violation> violations;
     std::vector<Violation> last_violations;
     std::uint64_t steps;
@@ -258,9 +268,15 @@ Simulation::Impl::Impl(SimulationSetup setup)
       may_sleep(options.sleeping && forces.is_steady()) {
     world.set_culling(options.culling);
     has_spheres = makes_spheres(setup);
+    particles.attributes = AttributeTable(setup.attributes);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
-        emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k));
+        const EmitterDescription& emitter = setup.emitters[k];
+        particles.keeps_origin = particles.keeps_origin || emitter.parent || !emitter.curves.empty();
+        emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k),
+                              EmitterSurroundings{options.frame_rate, setup.reference_camera, setup.attributes});
     }
+    offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
+    if (offspring->empty()) offspring.reset();
     for (const Particle& particle : setup.particles) add(particle);
     spring_faces = std::move(setup.spring_faces);
     if (coupled.is_active()) coupled.bind(particles);
@@ -270,6 +286,11 @@ Simulation::Impl::Impl(SimulationSetup setup)
 void Simulation::Impl::add(Particle particle) {
     particle.id = next_id++;
     particle.position = flush_tiny(particle.position);
+    const auto size = particles.attributes.find(kSizeAttribute);
+    if (size) {
+        particle.attributes.resize(particles.attributes.columns().size(), missing_attribute());
+        if (is_missing(particle.attributes[*size])) particle.attributes[*size] = {particle.radius, 0.0, 0.0};
+    }
     if (particle.pinned) particle.velocity = particle.spin = Vec3{};
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
@@ -298,37 +319,72 @@ void Simulation::Impl::emit(double from, double to) {
     }
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    for (const Particle& particle : born) add(particle);
-    if (!born.empty() && coupled.is_active()) coupled.bind(particles);
+    const std::uint64_t room =
+        options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
+    const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
+    statistics.births_refused_by_population += born.size() - allowed;
+    for (std::size_t k = 0; k < allowed; ++k) add(born[k]);
+    if (allowed > 0 && coupled.is_active()) coupled.bind(particles);
 }
 
-// Particles that act on each other are planned together first; an adaptive plan may cut the step into parts.
+// Particles that are born of particles inside the step are moved from their births to its end, with their own children
+// in turn.
 void Simulation::Impl::move_all(double from, double to) {
-    const std::size_t count = particles.size();
+    records.clear();
+    last_violations.clear();
+    std::size_t first = 0;
+    const std::uint64_t emitted_before = statistics.emitted;
+    do {
+        const std::size_t end = particles.size();
+        if (offspring) offspring->before_move(particles, first);
+        move_from(first, from, to);
+        if (offspring) bear_children(from, to);
+        if (check) check->watch_newborn(particles);
+        first = end;
+    } while (first < particles.size());
+    if (statistics.emitted > emitted_before && coupled.is_active()) coupled.bind(particles);
+    if (options.record_contacts) sort_records();
+}
+
+void Simulation::Impl::bear_children(double from, double to) {
+    OffspringCounts counts;
+    for (Particle& child : offspring->after_move(world, particles, from, to, std::move(pass_records), counts)) {
+        add(std::move(child));
+    }
+    statistics.children += counts.children;
+    statistics.births_refused_by_depth += counts.refused_by_depth;
+    statistics.births_refused_by_population += counts.refused_by_population;
+}
+
+// Particles that act on each other are planned together first; an adaptive plan may cut the step into parts. The
+// newborn join them with the next step.
+void Simulation::Impl::move_from(std::size_t first, double from, double to) {
+    const std::size_t count = particles.size() - first;
     std::vector<BlockCounts> blocks((count + kBlock - 1) / kBlock);
+    const bool is_planned = coupled.is_active() && first == 0;
     for (double now = from; now < to;) {
         const double whole = to - now;
-        const double planned = coupled.is_active() ? coupled.plan(particles, now, whole) : whole;
+        const double planned = is_planned ? coupled.plan(particles, now, whole) : whole;
         const double next = planned < whole ? now + planned : to;
-        move_part(now, next, blocks);
+        move_part(first, now, next, blocks);
         now = next;
     }
     stop_runaways(blocks, to);
-    if (coupled.is_active()) coupled.settle(particles);
+    if (is_planned) coupled.settle(particles);
     for (const BlockCounts& block : blocks) block.add_to(statistics);
     statistics.particle_steps += count;
     statistics.unsolved_steps = coupled.unsolved_steps();
-    if (options.record_contacts) collect_records(blocks);
+    if (keeps_records()) collect_records(blocks);
     if (check) collect_violations(blocks);
 }
 
-void Simulation::Impl::move_part(double from, double to, std::vector<BlockCounts>& blocks) {
+void Simulation::Impl::move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
     if (options.response == ResponseKind::rollback && options.rollback.global) {
-        move_system(from, to, blocks);
+        move_system(first, from, to, blocks);
         return;
     }
-    parallel_for_blocks(particles.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        move_block(begin, end, from, to, blocks[block]);
+    parallel_for_blocks(particles.size() - first, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        move_block(first + begin, first + end, from, to, blocks[block]);
     });
 }
 
@@ -343,7 +399,6 @@ void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, dou
 }
 
 void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
-    last_violations.clear();
     for (const BlockCounts& block : blocks) {
         statistics.violations += block.violations.size();
         last_violations.insert(last_violations.end(), block.violations.begin(), block.violations.end());
@@ -353,10 +408,16 @@ void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks
     }
 }
 
-// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
 void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
-    records.clear();
-    for (const BlockCounts& block : blocks) records.insert(records.end(), block.records.begin(), block.records.end());
+    pass_records.clear();
+    for (const BlockCounts& block : blocks) {
+        pass_records.insert(pass_records.end(), block.records.begin(), block.records.end());
+    }
+    if (options.record_contacts) records.insert(records.end(), pass_records.begin(), pass_records.end());
+}
+
+// Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.
+void Simulation::Impl::sort_records() {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
@@ -366,7 +427,7 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     thread_local MoveScratch scratch;
     scratch.hits.clear();
     scratch.records.clear();
-    scratch.record_contacts = options.record_contacts;
+    scratch.record_contacts = keeps_records();
     scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
         if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0) continue;
@@ -393,26 +454,28 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
 }
 
 // All particles go back together: see rollback.h.
-void Simulation::Impl::move_system(double from, double to, std::vector<BlockCounts>& blocks) {
-    std::vector<SystemParticle> system(particles.size());
-    for (std::size_t i = 0; i < system.size(); ++i) {
+void Simulation::Impl::move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    std::vector<SystemParticle> system(particles.size() - first);
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
-        system[i].particle = moving(i, start);
-        system[i].start = start;
-        system[i].stop = stop;
-        system[i].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
+        system[k].particle = moving(i, start);
+        system[k].start = start;
+        system[k].stop = stop;
+        system[k].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
     }
     std::vector<MoveScratch> scratch(blocks.size());
     for (MoveScratch& block : scratch) {
-        block.record_contacts = options.record_contacts;
+        block.record_contacts = keeps_records();
         block.record_legs = check != nullptr;
     }
     move_together(response->rules(), system, from, to, scratch, kBlock);
-    for (std::size_t i = 0; i < system.size(); ++i) {
-        SystemParticle& moved = system[i];
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = first + k;
+        SystemParticle& moved = system[k];
         if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || moved.stop <= moved.start) continue;
-        BlockCounts& counts = blocks[i / kBlock];
+        BlockCounts& counts = blocks[k / kBlock];
         if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
         store(i, moved.particle, moved.outcome);
         particles.booked_until[i] = moved.stop;
@@ -420,7 +483,7 @@ void Simulation::Impl::move_system(double from, double to, std::vector<BlockCoun
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         if (!totals.empty()) add_hits(scratch[k].hits, blocks[k]);
-        if (options.record_contacts) blocks[k].records = std::move(scratch[k].records);
+        if (keeps_records()) blocks[k].records = std::move(scratch[k].records);
     }
 }
 
@@ -432,6 +495,7 @@ MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
     }
     support.cascade_left = particles.cascade_left[i];
     particle.sides = sides_of(i);
+    if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);
     particle.planned = coupled.flight_of(i);
     particle.state.coupling = coupled.coupling_of(i);
     return particle;
@@ -453,7 +517,7 @@ void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const 
     particles.resting[i] = outcome.resting ? 1 : 0;
     particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
     particles.frozen[i] = outcome.frozen ? 1 : 0;
-    particles.absorbed[i] = outcome.absorbed ? 1 : 0;
+    particles.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
     particles.support[i].fill(kNoSupport);
     std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
     particles.cascade_left[i] = moving.support.cascade_left;
@@ -494,7 +558,9 @@ void Simulation::Impl::retire(double now) {
         const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
         const bool outside = bounds && !bounds->contains(particles.position[i]);
         const bool absorbed = particles.absorbed[i] != 0;
-        statistics.absorbed += absorbed ? 1 : 0;
+        const bool shattered = particles.absorbed[i] == kShattered;
+        statistics.absorbed += absorbed && !shattered ? 1 : 0;
+        statistics.shattered += shattered ? 1 : 0;
         statistics.expired += !absorbed && expired ? 1 : 0;
         statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
         keep[i] = absorbed || expired || outside ? 0 : 1;
@@ -547,6 +613,22 @@ std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
 std::uint64_t Simulation::step_count() const { return impl_->steps; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles; }
+AttributeTable Simulation::shown_attributes() const {
+    const Particles& particles = impl_->particles;
+    AttributeTable shown = particles.attributes;
+    if (!particles.keeps_origin || shown.empty()) return shown;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (particles.origin[i].emitter == kNoEmitter) continue;
+        const auto& curves = impl_->emitters[particles.origin[i].emitter].description().curves;
+        if (curves.empty()) continue;
+        for (std::size_t k = 0; k < shown.columns().size(); ++k) {
+            const double age = time() - particles.birth_time[i];
+            shown.set(k, i,
+                      shown_value(curves, shown.columns()[k].name, shown.value(k, i), age, particles.lifetime[i]));
+        }
+    }
+    return shown;
+}
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }

@@ -43,6 +43,9 @@ struct SimulationOptions {
     RollbackSettings rollback = {};               ///< of the rollback response
     ProjectSettings project = {};                 ///< of the project response
     PenaltySettings penalty = {};                 ///< of the penalty response
+    double frame_rate = 24.0;                     ///< frames a second of emission rates per frame, > 0
+    std::uint32_t max_depth = 16;                 ///< highest generation of particles born of particles; 0: none are
+    std::uint64_t most_particles = 0xFFFFFFFFU;   ///< living at a time; births beyond are refused and counted
 };
 
 /// Everything a simulation is made from.
@@ -58,18 +61,24 @@ struct SimulationSetup {
     /// An own method for all particles together, in place of options.integrator, which then says only how particles go
     /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
     SystemSolver solver = {};
-    std::optional<Box3> bounds;  ///< particles outside are retired
+    std::optional<Box3> bounds;                       ///< particles outside are retired
+    std::vector<AttributeDescription> attributes;     ///< what particles carry of the user's own, and for looks
+    std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
 struct SimulationStatistics {
     std::uint64_t steps = 0;
-    std::uint64_t particle_steps = 0;  ///< sum over steps of the particles alive, resting ones too
-    std::uint64_t emitted = 0;         ///< particles ever created, explicit ones included
-    std::uint64_t expired = 0;         ///< retired at the end of their lifetime
-    std::uint64_t absorbed = 0;        ///< removed by absorbing surfaces
-    std::uint64_t out_of_bounds = 0;   ///< retired outside the bounds
-    std::uint64_t contacts = 0;        ///< impacts
+    std::uint64_t particle_steps = 0;                ///< sum over steps of the particles alive, resting ones too
+    std::uint64_t emitted = 0;                       ///< particles ever created, explicit ones included
+    std::uint64_t expired = 0;                       ///< retired at the end of their lifetime
+    std::uint64_t absorbed = 0;                      ///< removed by absorbing surfaces
+    std::uint64_t shattered = 0;                     ///< replaced by fragments at an impact
+    std::uint64_t children = 0;                      ///< of the emitted ones those born of particles
+    std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
+    std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
+    std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
+    std::uint64_t contacts = 0;                      ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
     double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
@@ -116,12 +125,14 @@ public:
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
+    /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
+    [[nodiscard]] AttributeTable shown_attributes() const;
+    /// The springs of the setup, bound to the order of particles().
+    [[nodiscard]] const SpringNetwork& springs() const;
     /// The cloth of the setup, torn parts included.
     [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
-    /// The springs, bound to particles().
-    [[nodiscard]] const SpringNetwork& springs() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
     /// triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;

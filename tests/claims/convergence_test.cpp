@@ -88,6 +88,10 @@ TEST_F(OrderWithBounces, SymplecticEulerKeepsOrderOne) {
     EXPECT_NEAR(measured_order(IntegratorKind::symplectic_euler, geometric(400, 1.13, 40), reference()), 1.0, 0.1);
 }
 
+TEST_F(OrderWithBounces, ImplicitEulerKeepsOrderOne) {
+    EXPECT_NEAR(measured_order(IntegratorKind::implicit_euler, geometric(400, 1.13, 40), reference()), 1.0, 0.1);
+}
+
 TEST_F(OrderWithBounces, ForwardEulerKeepsOrderOne) {
     EXPECT_NEAR(measured_order(IntegratorKind::forward_euler, geometric(400, 1.13, 40), reference()), 1.0, 0.1);
 }

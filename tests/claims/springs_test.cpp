@@ -31,7 +31,7 @@ SimulationSetup hanging_chain(int nodes, double span, double chain_length, doubl
     const int links = nodes - 1;
     for (int i = 0; i < nodes; ++i) {
         Particle particle = particle_at({span * i / links, 0.0, 0.0}, mass / links);
-        particle.position.z = -0.2 * std::sin(3.14159 * i / links);
+        particle.position.z = -1.0 * std::sin(3.14159 * i / links);
         particle.pinned = i == 0 || i == links;
         setup.particles.push_back(particle);
     }
@@ -108,9 +108,7 @@ TEST(Springs, AForceThatOutrunsLightStopsTheRun) {
     setup.options.time_step = 0.1;
     setup.options.duration = 100.0;
     Simulation simulation(std::move(setup));
-    EXPECT_THROW(
-        while (!simulation.finished()) simulation.step();
-        , DivergedError);
+    EXPECT_THROW(while (!simulation.finished()) simulation.step();, DivergedError);
     EXPECT_LT(simulation.time(), 2.0);
 }
 
@@ -280,7 +278,6 @@ void own_midpoint(ParticleSystem& system, double duration) {
     system.derivative(system.time() + 0.5 * duration, middle, k);
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += duration * k[i];
     system.set_state(y);
-    system.set_time(system.time() + duration);
 }
 
 TEST(OwnSolver, StepsTheWholeSystemAndCollidesExactly) {
@@ -322,7 +319,6 @@ TEST(OwnSolver, MayComeFromBoostOdeint) {
         boost::numeric::odeint::runge_kutta_fehlberg78<State> method;
         method.do_step(derivative, y, system.time(), duration);
         system.set_state(y);
-        system.set_time(system.time() + duration);
     };
     const auto end_of = [&](bool own) {
         SimulationSetup setup = hanging_chain(5, 2.0, 3.0, 1.0);

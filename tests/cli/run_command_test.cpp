@@ -41,6 +41,28 @@ struct RunFiles {
 
 bool is_one_line(const std::string& text) { return std::count(text.begin(), text.end(), '\n') == 1; }
 
+TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
+    const TemporaryFolder folder;
+    const std::string scene = folder
+                                  .write("spring.json", R"({
+      "ricochet": 1,
+      "simulation": {"time_step": 0.1, "duration": 100, "integrator": "forward_euler"},
+      "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+      "particles": [{"position": [0, 0, 0], "pinned": true}, {"position": [1.1, 0, 0]}],
+      "springs": [{"type": "list", "springs": [{"first": 0, "second": 1, "rest_length": 1, "stiffness": 1e6}]}]
+    })")
+                                  .string();
+    const ProgramResult result = run_ricochet({"run", scene, "--output", folder.path("out").string()});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.errors.find("at t = "), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("particle 1 would reach"), std::string::npos) << result.errors;
+    const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
+    EXPECT_NE(summary["diverged"].get<std::string>().find("m/s"), std::string::npos);
+    EXPECT_FALSE(summary["interrupted"].get<bool>());
+    EXPECT_LT(summary["steps"].get<int>(), 10);
+    EXPECT_EQ(summary["frames"].get<int>(), summary["steps"].get<int>() + 1);
+}
+
 TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     const RunFiles files;
     const ProgramResult result = files.run({"--output-state", files.folder.path("state.csv").string()});

@@ -161,6 +161,7 @@ class FreeFlight : public ::testing::TestWithParam<Order> {};
 INSTANTIATE_TEST_SUITE_P(Methods, FreeFlight,
                          ::testing::Values(Order{IntegratorKind::forward_euler, 1.0, 4000},
                                            Order{IntegratorKind::symplectic_euler, 1.0, 4000},
+                                           Order{IntegratorKind::implicit_euler, 1.0, 4000},
                                            Order{IntegratorKind::midpoint, 2.0, 800},
                                            Order{IntegratorKind::velocity_verlet, 2.0, 800},
                                            Order{IntegratorKind::rk4, 4.0, 150}),

@@ -96,7 +96,8 @@ TEST_F(PairOnASpring, RefusesVectorsOfAnotherLength) {
 TEST_F(PairOnASpring, SpringsChangeNoMomentum) {
     const auto& x = system_.positions();
     const auto& v = system_.velocities();
-    const Vec3 sum = system_.spring_force_on(0, x, v) + system_.spring_force_on(1, x, v) + system_.spring_force_on(2, x, v);
+    const Vec3 sum =
+        system_.spring_force_on(0, x, v) + system_.spring_force_on(1, x, v) + system_.spring_force_on(2, x, v);
     EXPECT_EQ(sum, Vec3{});
 }
 

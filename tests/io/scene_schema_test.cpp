@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/emitter_scene.h"
 #include "io/force_scene.h"
 #include "io/json_schema.h"
 #include "io/sample_scene.h"
@@ -81,6 +82,10 @@ std::vector<Json> samples() {
         if (!flow.contains("parts")) continue;
         for (const Json& part : flow["parts"]) scenes.push_back({{"ricochet", 1}, {"flows", {{name, part}}}});
     }
+    Json births = Json::parse(test::kEmitterScene);
+    for (const Json& emitter : births["emitters"]) scenes.push_back({{"ricochet", 1}, {"emitters", {emitter}}});
+    births.erase("emitters");
+    scenes.push_back(births);
     const Json springs = Json::parse(test::kSpringScene);
     for (const Json& body : springs["springs"]) {
         scenes.push_back({{"ricochet", 1}, {"particles", springs["particles"]}, {"springs", {body}}});
@@ -89,6 +94,7 @@ std::vector<Json> samples() {
 }
 
 TEST(SceneSchema, TheSamplesConform) {
+    EXPECT_EQ(schema_errors(schema(), Json::parse(test::kEmitterScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
     for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
 }
@@ -256,7 +262,7 @@ void expect_agreement_on_random_changes(const Json& sample) {
 }
 
 TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
-    for (const char* sample : {test::kSampleScene, test::kForceScene, test::kSpringScene}) {
+    for (const char* sample : {test::kSampleScene, test::kForceScene, test::kEmitterScene, test::kSpringScene}) {
         expect_agreement_on_random_changes(Json::parse(sample));
     }
 }

@@ -43,6 +43,7 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
                             "seed",
                             "time_step",
                             "interrupted",
+                            "diverged",
                             "colliders"}) {
         EXPECT_TRUE(json.contains(key)) << key;
     }

@@ -149,8 +149,8 @@ inline constexpr int kCertificateDepth = 52;
 inline constexpr double kSameCrossing = 1e-9;
 
 /// Correction of a velocity, relative to the largest speed in the system, with which Newton's method for the implicit
-/// step has converged. Reason: convergence is quadratic near the solution, so what is left is far below, and rounding of
-/// the forces (some 1e-16 times the stiffness number) must not keep it going. Smaller: stiff systems never report
+/// step has converged. Reason: convergence is quadratic near the solution, so what is left is far below, and rounding
+/// of the forces (some 1e-16 times the stiffness number) must not keep it going. Smaller: stiff systems never report
 /// convergence. Larger: the step's end solves its equation less closely; stability is not touched.
 inline constexpr double kNewtonTolerance = 1e-10;
 
@@ -159,9 +159,9 @@ inline constexpr double kNewtonTolerance = 1e-10;
 /// few steps. Smaller: coarse but stable runs are stopped. Larger: more nonsense is written before the stop.
 inline constexpr double kDivergedGain = 100.0;
 
-/// Stretch of springs, relative to their rest length, whose energy is taken for rounding where nothing else moves. Smaller
-/// than some 1e-8: a network at rest counts as diverged by its own rounding. Larger: explosions from perfect rest are
-/// seen later.
+/// Stretch of springs, relative to their rest length, whose energy is taken for rounding where nothing else moves.
+/// Smaller than some 1e-8: a network at rest counts as diverged by its own rounding. Larger: explosions from perfect
+/// rest are seen later.
 inline constexpr double kNegligibleStretch = 1e-6;
 
 /// Speed that no particle may be brought to, m/s: that of light (exact by the definition of the metre). Forces that do

@@ -47,8 +47,8 @@ StepErrors estimated_errors(const std::array<Vec3, kStages>& v, const std::array
 }
 
 double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance) {
-    return std::max({errors.position / tolerance.position, errors.path / tolerance.position,
-                     errors.velocity / tolerance.velocity});
+    return std::max(
+        {errors.position / tolerance.position, errors.path / tolerance.position, errors.velocity / tolerance.velocity});
 }
 
 EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h) {

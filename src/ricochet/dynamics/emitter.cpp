@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -17,7 +16,10 @@ namespace {
 constexpr std::uint32_t kBirthStream = 0x01000000;
 constexpr std::uint32_t kRateStream = 0x02000000;
 constexpr std::uint32_t kRadiusStream = 0x03000000;
+constexpr std::uint32_t kAttributeStream = 0x04000000;
+constexpr std::uint32_t kLineageStream = 0x05000000;
 constexpr std::uint32_t kStreams = 0x01000000;
+constexpr std::uint32_t kOwnSeedStream = kStreams - 1;  // shared by the emitters with a seed of their own
 
 void require(bool condition, const EmitterDescription& emitter, const char* what) {
     if (!condition) throw InputError(fmt::format("emitter '{}': {}", emitter.name, what));
@@ -25,22 +27,15 @@ void require(bool condition, const EmitterDescription& emitter, const char* what
 
 bool is_spread(const MeanSpread& pair) { return std::isfinite(pair.spread) && pair.spread >= 0.0; }
 
-void check_shape(const EmitterDescription& emitter) {
-    if (const auto* disk = std::get_if<DiskShape>(&emitter.shape)) {
-        require(is_finite(disk->normal) && length(disk->normal) > 0.0, emitter, "the disk's normal must not be zero");
-        require(std::isfinite(disk->radius) && disk->radius > 0.0, emitter, "the disk's radius must be > 0");
-    } else if (const auto* box = std::get_if<BoxShape>(&emitter.shape)) {
-        const Vec3 size = box->size;
-        require(is_finite(size) && std::min({size.x, size.y, size.z}) >= 0.0, emitter, "the box's size must be >= 0");
-    } else if (const auto* sphere = std::get_if<SphereShape>(&emitter.shape)) {
-        require(std::isfinite(sphere->radius) && sphere->radius > 0.0, emitter, "the sphere's radius must be > 0");
-    } else if (const auto* surface = std::get_if<MeshSurfaceShape>(&emitter.shape)) {
-        require(surface->mesh != nullptr, emitter, "the mesh is missing");
-    }
+void check(const EmitterDescription& emitter, const ParentRule& rule) {
+    require(std::isfinite(rule.count.mean) && is_spread(rule.count), emitter, "the count must be finite");
+    require(rule.threshold_impulse >= 0.0, emitter, "the threshold impulse must be >= 0 N s");
+    require(std::isfinite(rule.inherit_velocity), emitter, "the inherited part of the velocity must be finite");
+    require(rule.inherit_color >= 0.0 && rule.inherit_color <= 1.0, emitter, "the inherited colour must be 0 to 1");
+    require(!rule.share || rule.on != BirthEvent::life, emitter, "a parent that lives on cannot be shared out");
 }
 
 void check(const EmitterDescription& emitter) {
-    check_shape(emitter);
     require(std::isfinite(emitter.rate.mean) && is_spread(emitter.rate), emitter, "the rate must be finite");
     require(std::isfinite(emitter.start) && emitter.start >= 0.0, emitter, "start must be >= 0 s");
     require(!std::isnan(emitter.stop), emitter, "stop must be a time");
@@ -54,22 +49,35 @@ void check(const EmitterDescription& emitter) {
         std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) && emitter.radius.mean >= emitter.radius.spread,
         emitter, "every radius must be >= 0 m");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
+    for (const AttributeSpread& attribute : emitter.attributes) {
+        const Vec3& spread = attribute.spread;
+        require(is_finite(attribute.mean) && is_finite(spread), emitter, "every attribute must be finite");
+        require(std::min({spread.x, spread.y, spread.z}) >= 0.0, emitter, "every attribute's spread must be >= 0");
+    }
+    if (emitter.parent) check(emitter, *emitter.parent);
 }
 
-// Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate triangles,
-// which have no normal, add nothing even where rounding gives them an area.
-std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
-    std::vector<double> sums;
-    sums.reserve(mesh.triangles.size());
-    double sum = 0.0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3& a = mesh.vertices[t[0]];
-        const Vec3& b = mesh.vertices[t[1]];
-        const Vec3& c = mesh.vertices[t[2]];
-        if (!are_collinear(a, b, c)) sum += length(cross(b - a, c - a));
-        sums.push_back(sum);
+ShapeSampler sampler_of(const EmitterDescription& emitter) {
+    try {
+        return ShapeSampler(emitter.shape);
+    } catch (const InputError& error) {
+        require(false, emitter, error.what());
+        throw;
     }
-    return sums;
+}
+
+// Where the draws of an attribute begin: its name decides, so that other attributes change nothing about it.
+std::uint32_t first_draw_of(std::string_view name) {
+    std::uint32_t hash = 2166136261U;  // FNV-1a
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+    return hash & ~3U;  // up to three draws
+}
+
+Vec3 clamped(const std::string& name, Vec3 value) {
+    const double most = name == kSizeAttribute ? std::numeric_limits<double>::infinity() : 1.0;
+    if (!looks_attribute(name)) return value;
+    for (int axis = 0; axis < 3; ++axis) value[axis] = std::clamp(value[axis], 0.0, most);
+    return value;
 }
 
 // 1 - cos(angle) without cancellation at small angles.
@@ -81,27 +89,73 @@ double one_minus_cosine(double degrees) {
 
 }  // namespace
 
-Emitter::Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t stream)
-    : description_(std::move(description)), seed_(seed), stream_(stream) {
+Emitter::Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
+                 const EmitterSurroundings& surroundings)
+    : description_(std::move(description)),
+      seed_(description_.seed.value_or(seed)),
+      number_(number),
+      stream_(description_.seed ? kOwnSeedStream : number),
+      shape_(sampler_of(description_)),
+      columns_(surroundings.attributes.begin(), surroundings.attributes.end()) {
     check(description_);
-    require(stream < kStreams, description_, "there are too many emitters (at most 16777216)");
+    require(number < kOwnSeedStream, description_, "there are too many emitters (at most 16777215)");
     cone_height_ = one_minus_cosine(description_.cone_degrees);
-    if (const auto* surface = std::get_if<MeshSurfaceShape>(&description_.shape)) {
-        cumulative_area_ = cumulative_areas(*surface->mesh);
-        require(!cumulative_area_.empty() && cumulative_area_.back() > 0.0, description_, "the mesh has no area");
-        require(std::isfinite(cumulative_area_.back()), description_, "the mesh is too large");
+    for (const AttributeSpread& attribute : description_.attributes) {
+        const auto found = column(attribute.name);
+        require(found.has_value(), description_, "the scene does not declare one of its attributes");
+        attribute_columns_.push_back(*found);
     }
+    for (const LifeCurve& curve : description_.curves) {
+        require(column(curve.name).has_value(), description_, "the scene does not declare the attribute of a curve");
+    }
+    set_rate(surroundings);
+}
+
+void Emitter::set_rate(const EmitterSurroundings& surroundings) {
+    const auto is_given = [](const MeanSpread& rate) { return rate.mean != 0.0 || rate.spread != 0.0; };
+    const MeanSpread& per_frame = description_.rate_per_frame;
+    const MeanSpread& per_area = description_.rate_per_area;
+    for (const MeanSpread& rate : {per_frame, per_area}) {
+        require(std::isfinite(rate.mean) && is_spread(rate), description_, "the rate must be finite");
+    }
+    require(is_given(description_.rate) + is_given(per_frame) + is_given(per_area) <= 1, description_,
+            "there is more than one rate");
+    period_rate_ = description_.rate;
+    if (!is_given(per_frame) && !is_given(per_area)) return;
+    require(std::isfinite(surroundings.frame_rate) && surroundings.frame_rate > 0.0, description_,
+            "the frame rate must be > 0");
+    periods_per_second_ = surroundings.frame_rate;
+    period_rate_ = per_frame;
+    if (!is_given(per_area)) return;
+    require(surroundings.camera.has_value(), description_, "a rate per screen area needs a reference camera");
+    try {
+        const double area = screen_area(description_.shape, *surroundings.camera);
+        period_rate_ = {per_area.mean * area, per_area.spread * area};
+    } catch (const InputError& error) {
+        require(false, description_, error.what());
+    }
+}
+
+std::optional<std::size_t> Emitter::column(std::string_view name) const {
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+        if (columns_[k].name == name) return k;
+    }
+    return std::nullopt;
+}
+
+bool Emitter::sets(std::size_t column) const {
+    return std::find(attribute_columns_.begin(), attribute_columns_.end(), column) != attribute_columns_.end();
 }
 
 std::vector<Particle> Emitter::births(double from, double to) {
     std::vector<Particle> births;
-    if (!(from < to)) return births;
+    if (!(from < to) || description_.parent) return births;
     if (!burst_done_ && description_.start < to) {
         append_births(description_.burst, description_.start, births);
         burst_done_ = true;
     }
     const double end = std::min(to, description_.stop);
-    if (description_.rate.spread == 0.0) {
+    if (period_rate_.spread == 0.0) {
         append_steady_births(end, births);
     } else {
         append_redrawn_births(end, births);
@@ -116,7 +170,7 @@ void Emitter::append_births(std::uint64_t count, double time, std::vector<Partic
 
 // A steady rate in closed form.
 void Emitter::append_steady_births(double to, std::vector<Particle>& births) {
-    const double rate = description_.rate.mean;
+    const double rate = period_rate_.mean * periods_per_second_;
     if (!(rate > 0.0)) return;
     while (born_ < description_.limit) {
         const double time = description_.start + (static_cast<double>(rate_born_) + 0.5) / rate;
@@ -126,38 +180,53 @@ void Emitter::append_steady_births(double to, std::vector<Particle>& births) {
     }
 }
 
-// Second by second; the state is left in the second in which the next birth, or the next call, falls.
+// Period by period (seconds or frames); the state is left in the one in which the next birth, or the next call, falls.
 void Emitter::append_redrawn_births(double to, std::vector<Particle>& births) {
-    if (!(description_.rate.mean + description_.rate.spread > 0.0)) return;
+    if (!(period_rate_.mean + period_rate_.spread > 0.0)) return;
     while (born_ < description_.limit) {
-        const double rate = rate_in_second(second_);
+        const double rate = rate_in_period(period_);
         const double next_expected = expected_ + rate;
         const double target = static_cast<double>(rate_born_) + 0.5;
         if (target < next_expected) {
             const double fraction = (target - expected_) / rate;
-            const double time = description_.start + (static_cast<double>(second_) + fraction);
+            const double time = description_.start + (static_cast<double>(period_) + fraction) / periods_per_second_;
             if (time >= to) return;
             append_births(1, time, births);
             ++rate_born_;
         } else {
-            if (description_.start + static_cast<double>(second_ + 1) >= to) return;
+            if (description_.start + static_cast<double>(period_ + 1) / periods_per_second_ >= to) return;
             expected_ = next_expected;
-            ++second_;
+            ++period_;
         }
     }
 }
 
-double Emitter::rate_in_second(std::uint64_t second) const {
-    RandomSequence random(seed_, kRateStream | stream_, second);
-    return std::max(0.0, random.uniform_around(description_.rate.mean, description_.rate.spread));
+double Emitter::rate_in_period(std::uint64_t period) const {
+    RandomSequence random(seed_, kRateStream | stream_, period);
+    return std::max(0.0, random.uniform_around(period_rate_.mean, period_rate_.spread));
+}
+
+double Emitter::draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const {
+    return RandomSequence(seed, purpose << 24 | stream_, 0).uniform_around(pair.mean, pair.spread);
 }
 
 Particle Emitter::make_particle(std::uint64_t number, double time) const {
-    RandomSequence random(seed_, kBirthStream | stream_, number);
+    Particle particle = draw(seed_, number);
+    particle.birth_time = time;
+    particle.origin.emitter = number_;
+    const auto bits = philox4x32(
+        {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},
+        {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
+    particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
+    return particle;
+}
+
+Particle Emitter::draw(std::uint64_t seed, std::uint64_t number) const {
+    RandomSequence random(seed, kBirthStream | stream_, number);
     // Radii have a stream of their own: giving particles a size changes nothing else about their birth.
-    const double radius = RandomSequence(seed_, kRadiusStream | stream_, number)
+    const double radius = RandomSequence(seed, kRadiusStream | stream_, number)
                               .uniform_around(description_.radius.mean, description_.radius.spread);
-    const Launch launch = launch_from(radius, random);
+    const LaunchPlace launch = shape_.draw(radius, random);
     const bool own_direction = description_.direction == Vec3{};
     const Vec3 axis = own_direction ? launch.direction : normalized(description_.direction);
     const Vec3 direction = in_cone(axis, random);
@@ -167,51 +236,23 @@ Particle Emitter::make_particle(std::uint64_t number, double time) const {
     particle.velocity = direction * speed + description_.velocity;
     particle.mass = random.uniform_around(description_.mass.mean, description_.mass.spread);
     particle.radius = radius;
-    particle.birth_time = time;
     particle.lifetime = random.uniform_around(description_.lifetime.mean, description_.lifetime.spread);
+    particle.attributes = draw_attributes(seed, number);
     return particle;
 }
 
-Emitter::Launch Emitter::launch_from(double radius, RandomSequence& random) const {
-    if (const auto* disk = std::get_if<DiskShape>(&description_.shape)) {
-        const Vec3 normal = normalized(disk->normal);
-        const auto [first, second] = tangent_frame(normal);
-        const Vec3 p = random.in_unit_disk();
-        return {disk->center + disk->radius * (first * p.x + second * p.y), normal};
+std::vector<AttributeValue> Emitter::draw_attributes(std::uint64_t seed, std::uint64_t number) const {
+    std::vector<AttributeValue> values(columns_.size(), missing_attribute());
+    for (std::size_t k = 0; k < attribute_columns_.size(); ++k) {
+        const AttributeSpread& attribute = description_.attributes[k];
+        RandomSequence random(seed, kAttributeStream | stream_, number, first_draw_of(attribute.name));
+        Vec3 value;
+        for (int c = 0; c < columns_[attribute_columns_[k]].components; ++c) {
+            value[c] = random.uniform_around(attribute.mean[c], attribute.spread[c]);
+        }
+        values[attribute_columns_[k]] = clamped(attribute.name, value);
     }
-    if (const auto* box = std::get_if<BoxShape>(&description_.shape)) {
-        Vec3 position = box->center;
-        for (int axis = 0; axis < 3; ++axis) position[axis] += box->size[axis] * (random.uniform() - 0.5);
-        return {position, random.unit_vector()};
-    }
-    if (const auto* sphere = std::get_if<SphereShape>(&description_.shape)) {
-        if (!sphere->surface) return {sphere->center + sphere->radius * random.in_unit_ball(), random.unit_vector()};
-        const Vec3 normal = random.unit_vector();
-        return {sphere->center + sphere->radius * normal, normal};
-    }
-    if (const auto* surface = std::get_if<MeshSurfaceShape>(&description_.shape)) {
-        return launch_from_mesh(*surface->mesh, radius, random);
-    }
-    return {std::get<PointShape>(description_.shape).center, random.unit_vector()};
-}
-
-// The point's rounding error is a few ulp of the corners, not of the point; a gap taken from the corners is larger.
-Emitter::Launch Emitter::launch_from_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
-    const double area = random.uniform() * cumulative_area_.back();
-    const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(found - cumulative_area_.begin())];
-    const Vec3& a = mesh.vertices[t[0]];
-    const Vec3& b = mesh.vertices[t[1]];
-    const Vec3& c = mesh.vertices[t[2]];
-    double u = random.uniform();
-    double v = random.uniform();
-    if (u + v > 1.0) {
-        u = 1.0 - u;
-        v = 1.0 - v;
-    }
-    const Vec3 normal = unit_normal(a, b, c);
-    const double gap = parking_gap(max(max(abs(a), abs(b)), abs(c)));
-    return {a + u * (b - a) + v * (c - a) + (radius + gap) * normal, normal};
+    return values;
 }
 
 // Uniform in solid angle: by Archimedes' hat-box theorem the height along the axis is uniform.

@@ -34,9 +34,8 @@ Vec3 solved(const Columns3& m, const Vec3& right) {
 bool is_converged(double correction, double largest_speed) { return correction <= kNewtonTolerance * largest_speed; }
 
 Columns3 acceleration_slope(const ForceField& forces, const ForceInput& state, const Vec3& v1, double h) {
-    const double step =
-        std::max({kSpeedStep * max_abs(v1), kSpeedStep * max_abs(state.velocity), kPlaceStep * max_abs(state.position) / h,
-                  kSpeedStep * kSpeedStep});
+    const double step = std::max({kSpeedStep * max_abs(v1), kSpeedStep * max_abs(state.velocity),
+                                  kPlaceStep * max_abs(state.position) / h, kSpeedStep * kSpeedStep});
     const Vec3 here = forces.acceleration(at_end(state, v1, h));
     Columns3 slope;
     for (int axis = 0; axis < 3; ++axis) {

@@ -12,7 +12,7 @@ namespace ricochet {
 using Columns3 = std::array<Vec3, 3>;
 
 /// Newton's iterations before the last iterate is taken as it is.
-inline constexpr int kMostNewtonSteps = 40;
+inline constexpr int kMostNewtonSteps = 20;
 
 /// The velocity v1 with v1 = v0 + h a(x0 + h v1, v1, t + h), by Newton's method from v0 on.
 [[nodiscard]] Vec3 implicit_euler_velocity(const ForceField& forces, const ForceInput& state, double h);

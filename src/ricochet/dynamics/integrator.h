@@ -86,9 +86,9 @@ struct Flight {
 /// Kicking again after each impact would lose energy at every bounce in the order of g * dt * speed. Source: E. Hairer,
 /// C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3 (splitting).
 ///
-/// implicit_euler kicks with the force at the end of the step, found by Newton's method, and drifts; an impact turns the
-/// drift as with symplectic_euler. It damps what is faster than the step and is for stiff forces. Source: E. Hairer, G.
-/// Wanner, "Solving Ordinary Differential Equations II", section IV.3.
+/// implicit_euler kicks with the force at the end of the step, found by Newton's method, and drifts; an impact turns
+/// the drift as with symplectic_euler. It damps what is faster than the step and is for stiff forces. Source: E.
+/// Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.3.
 ///
 /// ballistic holds the acceleration of the step's start over the step, and evaluates it anew after each impact.
 ///

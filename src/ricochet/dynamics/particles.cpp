@@ -37,10 +37,16 @@ void Particles::append(const Particle& particle) {
     cascade_left.push_back(0.0);
     pinned.push_back(particle.pinned ? 1 : 0);
     booked_until.push_back(0.0);
+    attributes.append(particle.attributes);
+    if (keeps_origin) origin.push_back(particle.origin);
 }
 
 Particle Particles::at(std::size_t i) const {
-    return {id[i], position[i], velocity[i], mass[i], radius[i], birth_time[i], lifetime[i], spin[i], pinned[i] != 0};
+    Particle particle{id[i],         position[i], velocity[i], mass[i],       radius[i],
+                      birth_time[i], lifetime[i], spin[i],     pinned[i] != 0};
+    if (keeps_origin) particle.origin = origin[i];
+    if (!attributes.empty()) particle.attributes = attributes.at(i);
+    return particle;
 }
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
@@ -63,6 +69,8 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(cascade_left, keep);
     compact_array(pinned, keep);
     compact_array(booked_until, keep);
+    attributes.compact(keep);
+    if (keeps_origin) compact_array(origin, keep);
 }
 
 std::vector<std::uint32_t> Particles::order_by_id() const {

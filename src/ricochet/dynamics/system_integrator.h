@@ -14,7 +14,7 @@ struct SystemStep {
     std::vector<Vec3> positions;            ///< at the end, m
     std::vector<Vec3> velocities;           ///< at the end, m/s
     std::vector<Vec3> start_accelerations;  ///< what all forces and springs do at the start, m/s^2
-    double duration = 0.0;                  ///< s; an adaptive method may take less than asked for
+    double duration = 0.0;                  ///< s; adaptive and implicit methods may take less than asked for
     double next_duration = 0.0;             ///< s that an adaptive method would try next
     bool solved = true;                     ///< false: the implicit method's iteration did not converge
 };
@@ -25,10 +25,11 @@ struct SystemStep {
 /// other, but for ballistic: springs that are held over a step gain energy, so that it becomes velocity_verlet, which
 /// flies the same parabolas.
 ///
-/// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method, with a sparse
-/// Cholesky factorization where springs are all that couples and varies (stretches of compressed springs count as zero
-/// in the matrix, which keeps it positive definite and changes the way to the solution, not the solution), and with a
-/// sparse LU factorization else. Source: D. Baraff, A. Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998.
+/// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method with sparse
+/// factorizations: first with a positive definite matrix, in which compressed springs count as slack across (which
+/// leads to the stable one of several solutions and changes none), then, where that is slow, with the exact one. Where
+/// a violent step is not solved by either, half of it is taken. Source: D. Baraff, A. Witkin, "Large Steps in Cloth
+/// Simulation", SIGGRAPH 1998.
 [[nodiscard]] SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration,
                                      double first_try);
 

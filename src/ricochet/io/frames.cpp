@@ -17,6 +17,19 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::uin
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
 
+VtkArray attribute_array(const AttributeTable& attributes, std::size_t column,
+                         const std::vector<std::uint32_t>& order) {
+    const AttributeDescription& description = attributes.columns()[column];
+    std::vector<Vec3> vectors;
+    std::vector<double> numbers;
+    for (const std::uint32_t i : order) {
+        const Vec3 value = attributes.value(column, i);
+        description.components == 3 ? vectors.push_back(value) : numbers.push_back(value.x);
+    }
+    if (description.components == 3) return {description.name, std::move(vectors)};
+    return {description.name, std::move(numbers)};
+}
+
 std::vector<const SpringFace*> standing_faces(const SpringNetwork& springs, const std::vector<SpringFace>& faces) {
     std::vector<const SpringFace*> standing;
     for (const SpringFace& face : faces) {
@@ -52,6 +65,11 @@ TriangleTotals repeated(const TriangleTotals& totals, std::size_t count) {
 }  // namespace
 
 VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres) {
+    return particle_frame(particles, particles.attributes, time, has_spheres);
+}
+
+VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
+                           bool has_spheres) {
     const std::vector<std::uint32_t> order = particles.order_by_id();
     std::vector<double> age = gathered(particles.birth_time, order);
     for (double& value : age) value = time - value;
@@ -68,6 +86,9 @@ VtkPolyData particle_frame(const Particles& particles, double time, bool has_sph
                           {"frozen", gathered(particles.frozen, order)},
                           {"unsimulated_time", gathered(particles.unsimulated_time, order)}};
     if (has_spheres) frame.point_arrays.push_back({"spin", gathered(particles.spin, order)});
+    for (std::size_t k = 0; k < attributes.columns().size(); ++k) {
+        frame.point_arrays.push_back(attribute_array(attributes, k, order));
+    }
     return frame;
 }
 

@@ -14,6 +14,9 @@ namespace ricochet {
 /// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
 /// on it, see Simulation::has_spheres().
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres = false);
+/// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
+[[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
+                                         bool has_spheres = false);
 
 /// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
 /// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for

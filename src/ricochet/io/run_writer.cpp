@@ -11,26 +11,6 @@
 namespace ricochet {
 namespace {
 
-// Half the size of the box around an emitter's shape, about its centre.
-struct ShapeBox {
-    Box3 operator()(const PointShape& point) const { return around(point.center, {}); }
-    Box3 operator()(const DiskShape& disk) const {
-        return around(disk.center, {disk.radius, disk.radius, disk.radius});
-    }
-    Box3 operator()(const BoxShape& box) const { return around(box.center, 0.5 * box.size); }
-    Box3 operator()(const SphereShape& sphere) const {
-        return around(sphere.center, {sphere.radius, sphere.radius, sphere.radius});
-    }
-    Box3 operator()(const MeshSurfaceShape& surface) const { return bounds(*surface.mesh); }
-
-    static Box3 around(const Vec3& center, const Vec3& half) {
-        Box3 box;
-        box.include(center - half);
-        box.include(center + half);
-        return box;
-    }
-};
-
 Box3 mesh_region(const Simulation& simulation) {
     Box3 region;
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
@@ -53,7 +33,9 @@ std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
 Box3 particle_region(const SimulationSetup& setup) {
     Box3 region;
     for (const Particle& particle : setup.particles) region.include(particle.position);
-    for (const EmitterDescription& emitter : setup.emitters) region.include(std::visit(ShapeBox{}, emitter.shape));
+    for (const EmitterDescription& emitter : setup.emitters) {
+        if (!emitter.parent) region.include(bounds(emitter.shape));
+    }
     if (setup.bounds) region.include(*setup.bounds);
     return region;
 }
@@ -81,7 +63,8 @@ void RunWriter::add_step(const Simulation& simulation) {
 void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     if (contacts_) contacts_->write(simulation);
-    VtkPolyData frame = particle_frame(simulation.particles(), simulation.time(), has_spheres_);
+    VtkPolyData frame =
+        particle_frame(simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
     if (!simulation.springs().empty()) {
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
     }
@@ -91,6 +74,16 @@ void RunWriter::write_frame(const Simulation& simulation) {
 
 RunSummary RunWriter::finish(const Simulation& simulation) {
     write_frame(simulation);
+    return close(simulation);
+}
+
+RunSummary RunWriter::finish_diverged(const Simulation& simulation, const std::string& message) {
+    RunSummary summary = close(simulation);
+    summary.diverged = message;
+    return summary;
+}
+
+RunSummary RunWriter::close(const Simulation& simulation) {
     frames_.finish();
     if (contacts_) contacts_->finish();
     write_colliders(simulation);

@@ -36,9 +36,12 @@ public:
     /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
     /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
     [[nodiscard]] RunSummary finish(const Simulation& simulation);
+    /// The same for a run that has diverged inside a step: the frames end before it.
+    [[nodiscard]] RunSummary finish_diverged(const Simulation& simulation, const std::string& message);
     void write_summary(const RunSummary& summary) const;
 
 private:
+    [[nodiscard]] RunSummary close(const Simulation& simulation);
     void write_colliders(const Simulation& simulation) const;
 
     std::filesystem::path folder_;

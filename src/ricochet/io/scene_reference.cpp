@@ -47,8 +47,9 @@ constexpr const char* kTables = R"(
 ## Particle tables
 
 `"particles": {"file": "start.csv"}` names a file of comma-separated values. Its first line names the columns: `x`, `y`
-and `z` must be there, `vx`, `vy`, `vz`, `mass` and `radius` may (0, 1 kg and 0 otherwise), in any order. Every other
-line is a particle. The final state that a run writes with `--output-state` can be read back; its columns `id`, `age`,
+and `z` must be there, `vx`, `vy`, `vz`, `mass` and `radius` may (0, 1 kg and 0 otherwise), in any order; further columns
+are attributes that the scene declares (`name`, or `name_x`, `name_y`, `name_z`) and `color_x`, `color_y`, `color_z`,
+`opacity` and `size`. Every other line is a particle. The final state that a run writes with `--output-state` can be read back; its columns `id`, `age`,
 `contacts`, `resting` and `unsimulated_time` are not used, and a warning says so.
 
 ## Changes from the command line
@@ -170,7 +171,7 @@ std::string not_built_section() {
         append_not_built(where, key.content->keys, text);
         for (const Variant& variant : key.content->variants) append_not_built(where, variant.keys, text);
     }
-    return text + "- `particles` from .ply and .vtp files, and further columns of .csv files\n";
+    return text + "- `particles` from .ply and .vtp files\n";
 }
 
 }  // namespace

@@ -58,6 +58,23 @@ Json pair_schema(const KeySpec& key) {
     return {{"oneOf", Json::array({mean, pair})}};
 }
 
+Json two_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}, {"minItems", 2}, {"maxItems", 2}}; }
+
+Json quantity_schema(const KeySpec& key) {
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key)})}};
+}
+
+// A number, a vector, or a pair of two alike, the second of which is a spread.
+Json spread_schema(const KeySpec& key) {
+    const Range spread{.lower = 0.0, .upper = key.range.upper};
+    const auto pair = [](Json mean, Json width) {
+        return Json{{"type", "array"}, {"prefixItems", Json::array({mean, width})}, {"minItems", 2}, {"maxItems", 2}};
+    };
+    return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key),
+                                   pair(number_schema(key.range), number_schema(spread)),
+                                   pair(vector_schema(key), three_of(number_schema(spread)))})}};
+}
+
 Json text_schema() { return {{"type", "string"}, {"minLength", 1}, {"pattern", "^[^\\u0000-\\u001f\\u007f]*$"}}; }
 
 Json choice_schema(const KeySpec& key) {
@@ -76,7 +93,11 @@ std::string definition_name(const ObjectSpec& spec) {
 
 Json reference_to(const ObjectSpec& spec) { return {{"$ref", "#/$defs/" + definition_name(spec)}}; }
 
-Json list_schema(const ObjectSpec& content) { return {{"type", "array"}, {"items", reference_to(content)}}; }
+Json list_schema(const KeySpec& key) {
+    Json schema = {{"type", "array"}, {"items", reference_to(*key.content)}};
+    if (key.not_empty) schema["minItems"] = 1;
+    return schema;
+}
 
 Json value_schema(const KeySpec& key) {
     switch (key.type) {
@@ -106,13 +127,23 @@ Json value_schema(const KeySpec& key) {
         case ValueType::named_object:
             return {{"oneOf", Json::array({reference_to(*key.content), text_schema()})}};
         case ValueType::list:
-            return list_schema(*key.content);
+            return list_schema(key);
         case ValueType::list_or_file:
-            return {{"oneOf", Json::array({list_schema(*key.content), reference_to(detail::particle_file_spec())})}};
+            return {{"oneOf", Json::array({list_schema(key), reference_to(detail::particle_file_spec())})}};
         case ValueType::table:
             return {{"type", "object"},
                     {"propertyNames", {{"minLength", 1}}},
                     {"additionalProperties", reference_to(*key.content)}};
+        case ValueType::quantity:
+            return quantity_schema(key);
+        case ValueType::vector_pair: {
+            const Json vector = vector_schema(key);
+            return {{"oneOf", Json::array({vector, two_of(vector)})}};
+        }
+        case ValueType::quantity_table:
+            return {{"type", "object"},
+                    {"propertyNames", {{"minLength", 1}}},
+                    {"additionalProperties", spread_schema(key)}};
         case ValueType::text_table:
             return {{"type", "object"}, {"propertyNames", {{"minLength", 1}}}, {"additionalProperties", text_schema()}};
     }

@@ -23,6 +23,10 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["expired"] = statistics.expired;
     json["absorbed"] = statistics.absorbed;
     json["out_of_bounds"] = statistics.out_of_bounds;
+    json["shattered"] = statistics.shattered;
+    json["children"] = statistics.children;
+    json["births_refused_by_depth"] = statistics.births_refused_by_depth;
+    json["births_refused_by_population"] = statistics.births_refused_by_population;
     json["frozen"] = statistics.frozen;
     json["particle_steps"] = statistics.particle_steps;
     json["contacts"] = statistics.contacts;
@@ -92,6 +96,7 @@ std::string summary_text(const RunSummary& summary) {
     json["simulated_time"] = summary.simulated_time;
     json["wall_seconds"] = summary.wall_seconds;
     json["interrupted"] = summary.interrupted;
+    json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;
     add_statistics(json, summary.statistics);
     json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);  // known only to a run that verifies itself

@@ -34,6 +34,7 @@ struct RunSummary {
     double wall_seconds = 0.0;
     std::uint64_t frames = 0;
     bool interrupted = false;
+    std::optional<std::string> diverged;  ///< why the run stopped, where its numbers became nonsense
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
     std::optional<std::uint64_t> leaks;      ///< violations that a verified run found; nothing without --verify

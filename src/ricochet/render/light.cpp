@@ -17,8 +17,8 @@ Vec3 mix(const Vec3& a, const Vec3& b, double t) { return (1.0 - t) * a + t * b;
 
 Vec3 Daylight::sky(const Vec3& direction) const {
     const double height = dot(direction, up);
-    if (height < 0.0) return mix(kHorizon, kBelow, std::min(1.0, -2.5 * height));
-    return mix(kHorizon, kZenith, std::pow(std::min(1.0, height), 0.6));
+    if (height < 0.0) return sky_brightness * mix(kHorizon, kBelow, std::min(1.0, -2.5 * height));
+    return sky_brightness * mix(kHorizon, kZenith, std::pow(std::min(1.0, height), 0.6));
 }
 
 Vec3 Daylight::backdrop(const Vec3& direction) const {
@@ -26,8 +26,9 @@ Vec3 Daylight::backdrop(const Vec3& direction) const {
     constexpr Vec3 kLevel{2.30, 2.55, 2.80};
     constexpr Vec3 kBottom{1.70, 1.70, 1.68};
     const double height = dot(direction, up);
-    if (height < 0.0) return mix(kLevel, kBottom, std::min(1.0, -1.6 * height));
-    return mix(kLevel, kTop, std::pow(std::min(1.0, height), 0.7));
+    const Vec3 light = height < 0.0 ? mix(kLevel, kBottom, std::min(1.0, -1.6 * height))
+                                    : mix(kLevel, kTop, std::pow(std::min(1.0, height), 0.7));
+    return {light.x * backdrop_tint.x, light.y * backdrop_tint.y, light.z * backdrop_tint.z};
 }
 
 Vec3 Daylight::sun_direction(double u, double v) const {
@@ -44,6 +45,14 @@ Daylight daylight_for(const Camera& camera) {
     Vec3 ahead = frame.forward - dot(frame.forward, camera.up) * camera.up;
     ahead = length(ahead) > 1e-6 ? normalized(ahead) : frame.up;
     light.to_sun = normalized(-0.78 * frame.right - 0.25 * ahead + 0.72 * camera.up);
+    return light;
+}
+
+Daylight night_for(const Camera& camera) {
+    Daylight light = daylight_for(camera);
+    light.sun = {0.10, 0.13, 0.20};
+    light.sky_brightness = 0.05;
+    light.backdrop_tint = {0.003, 0.0045, 0.008};
     return light;
 }
 

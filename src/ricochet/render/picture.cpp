@@ -82,7 +82,7 @@ public:
           camera_(camera),
           frame_(camera_frame(camera)),
           options_(options),
-          daylight_(daylight_for(camera)),
+          daylight_(options.night ? night_for(camera) : daylight_for(camera)),
           steps_(additive_steps()),
           tangent_(std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0)),
           extent_(tangent_ * length(camera.target - camera.position)),
@@ -158,7 +158,7 @@ private:
         if (!other) return daylight_.sky(direction);
         const Vec3 sun = sun_light(*other, samples.get(s, kFarSunU), samples.get(s, kFarSunV));
         constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // stands for all further bounces
-        return times(other->color, sun + kFarSky);
+        return times(other->color, sun + daylight_.sky_brightness * kFarSky);
     }
 
     // A soft highlight of the sky and its brightest part on particles.
@@ -209,17 +209,23 @@ private:
 
 }  // namespace
 
-Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options) {
+Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
+                     const Sprites& sprites) {
     const Painter painter(preview, camera, options);
+    SpriteLayer layer;
+    if (!sprites.empty()) layer = draw_sprites(sprites, preview, camera, options.width, options.height);
     Image image{options.width, options.height, {}};
-    const auto row_bytes = 3 * static_cast<std::size_t>(options.width);
     const auto rows = static_cast<std::size_t>(options.height);
-    image.rgb.resize(row_bytes * rows);
+    image.rgb.resize(3 * static_cast<std::size_t>(options.width) * rows);
     std::atomic<std::size_t> rows_done{0};
     parallel_for_blocks(rows, 1, [&](std::size_t row, std::size_t, std::size_t) {
         for (int x = 0; x < options.width; ++x) {
-            const Vec3 light = painter.pixel_light(x, static_cast<int>(row));
-            std::uint8_t* pixel = &image.rgb[row * row_bytes + 3 * static_cast<std::size_t>(x)];
+            Vec3 light = painter.pixel_light(x, static_cast<int>(row));
+            const std::size_t place = row * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
+            if (!sprites.empty()) {
+                light = layer.transmittance[place] * light + tone_mapped(options.exposure * layer.light[place]);
+            }
+            std::uint8_t* pixel = &image.rgb[3 * place];
             pixel[0] = channel(light.x);
             pixel[1] = channel(light.y);
             pixel[2] = channel(light.z);

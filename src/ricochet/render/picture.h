@@ -8,6 +8,7 @@
 #include "ricochet/render/camera.h"
 #include "ricochet/render/image.h"
 #include "ricochet/render/preview.h"
+#include "ricochet/render/sprites.h"
 
 namespace ricochet {
 
@@ -17,10 +18,13 @@ struct PictureOptions {
     int height = 720;  ///< pixels, 1..16384
     int samples = 16;  ///< rays a pixel, 1..4096
     double exposure = 1.0;
+    bool night = false;  ///< dark, with a little moonlight, in place of sun and sky
     /// Called now and then, from any thread, with the part that is done, 0..1. May be empty.
     std::function<void(double)> progress;
 };
 
-[[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options);
+/// sprites: laid over the picture of everything else, brought to the display's range by themselves.
+[[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
+                                   const Sprites& sprites = {});
 
 }  // namespace ricochet

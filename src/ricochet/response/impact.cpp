@@ -27,9 +27,22 @@ bool can_be_followed(const Path& path) {
     return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
 }
 
-void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) { answer(surfaces, Rebound::by_material); }
+void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) {
+    const Vec3 before = particle_.state.velocity;
+    answer(surfaces, Rebound::by_material);
+    shatter_by(particle_.state.velocity - before);
+}
 
-void ImpactAnswer::land(std::span<const ContactSurface> surfaces) { answer(surfaces, Rebound::none); }
+void ImpactAnswer::land(std::span<const ContactSurface> surfaces) {
+    const Vec3 before = particle_.state.velocity;
+    answer(surfaces, Rebound::none);
+    shatter_by(particle_.state.velocity - before);
+}
+
+void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
+    if (outcome_.absorbed || particle_.state.mass * length(velocity_change) < particle_.shatter_impulse) return;
+    outcome_.absorbed = outcome_.shattered = true;
+}
 
 void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
     scratch_.hits.push_back({surface, -particle_.state.mass * velocity_change, impact});

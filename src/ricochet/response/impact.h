@@ -25,6 +25,8 @@ public:
 
     /// Books an impulse, as the change of velocity that it made.
     void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
+    /// Ends the particle's way when an impact that changes its momentum by mass times this velocity breaks it.
+    void shatter_by(const Vec3& velocity_change);
     /// Keeps an impact for the contact log; the velocity after it is the present one.
     void record(const ContactSurface& surface, const Vec3& velocity_before);
 

@@ -232,6 +232,9 @@ void PenaltyMover::begin_contacts() {
         } else {
             impact_.push(view.surface, Vec3{}, true);
             impact_.record(surface, state_.velocity);
+            // The contact's impulse is yet to come; what arrives along the normal stands for it.
+            impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
+            if (outcome_.absorbed) return;
         }
     }
 }

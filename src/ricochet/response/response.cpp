@@ -49,11 +49,11 @@ void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     const bool is_implicit = settings.integrator.kind == IntegratorKind::implicit_euler;
     const bool has_substeps = kind == ResponseKind::penalty;
     if ((is_adaptive && (has_substeps || together)) || (is_implicit && has_substeps)) {
-        throw InputError(fmt::format(
-            "integrator: found {} with {}; expected {}", name_of(settings.integrator.kind),
-            together ? "rollback.global, where all particles step together"
-                     : "the penalty response, which steps in equal explicit sub-steps",
-            together ? "a method of fixed steps, for example rk4" : "an explicit method of fixed steps, for example rk4"));
+        throw InputError(fmt::format("integrator: found {} with {}; expected {}", name_of(settings.integrator.kind),
+                                     together ? "rollback.global, where all particles step together"
+                                              : "the penalty response, which steps in equal explicit sub-steps",
+                                     together ? "a method of fixed steps, for example rk4"
+                                              : "an explicit method of fixed steps, for example rk4"));
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -119,6 +120,8 @@ struct MovingParticle {
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
     Support support{};                 ///< what it is in contact with; contact goes on in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
+    /// N s: an impact that changes its momentum by as much ends its way there, as if it were absorbed.
+    double shatter_impulse = std::numeric_limits<double>::infinity();
     /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
     /// own integrator says it. It must outlive the move.
     const Flight* planned = nullptr;
@@ -132,6 +135,7 @@ struct MoveOutcome {
     bool held = false;              ///< at rest because friction and its support hold it: it stays while forces do
     bool frozen = false;            ///< the state left the range of the arithmetic; the particle was not moved
     bool absorbed = false;          ///< an impact removed it
+    bool shattered = false;         ///< it was absorbed because an impact reached its shatter_impulse
     std::uint32_t stayed = 0;       ///< impacts after which no certified place nearer to the surface was found
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
     double depth = 0.0;             ///< m, how deep it was seen behind a surface, before anything put it right

@@ -37,6 +37,8 @@ SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
     copy.emitters = setup_.emitters;
     copy.particles = setup_.particles;
     copy.bounds = setup_.bounds;
+    copy.attributes = setup_.attributes;
+    copy.reference_camera = setup_.reference_camera;
     return copy;
 }
 

@@ -15,8 +15,17 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
+/// Halvings of a step whose equations are not solved; then the whole step's last iterate is taken, and counted.
+constexpr int kMostHalvedSteps = 10;
+
 /// Halvings of a correction that makes the residual larger.
 constexpr int kMostCuts = 8;
+
+/// Newton's steps with the positive definite matrix before the exact one is taken.
+constexpr int kMostDefiniteSteps = 16;
+
+/// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
+constexpr double kRoundingOfPlaces = 0x1p-49;
 
 /// A 3 x 3 matrix by rows.
 using Block = std::array<std::array<double, 3>, 3>;
@@ -32,36 +41,44 @@ public:
         step.duration = step.next_duration = h_;
         step.start_accelerations.resize(system_.size());
         system_.accelerations(system_.time(), system_.positions(), v1_, step.start_accelerations);
-        step.solved = system_.has_uniform_forces() ? iterate<Eigen::SimplicialLDLT<Matrix>>()
-                                                   : iterate<Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>>();
+        residual_ = evaluate(v1_);
+        // Far from the solution only the definite matrix leads to it: compressed springs have others, all unstable.
+        using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
+        const bool is_symmetric = system_.has_uniform_forces();
+        step.solved =
+            (is_symmetric ? iterate<Eigen::SimplicialLDLT<Matrix>>(Slope::definite) : iterate<Lu>(Slope::definite)) ||
+            iterate<Lu>(Slope::exact);
         step.positions = x1_;
         step.velocities = v1_;
         return step;
     }
 
 private:
-    /// Newton's method from the start's velocities. Returns whether it converged.
+    /// The matrix: the derivative itself, or one that is positive definite and close to it, which costs less to factor
+    /// and converges as fast while springs pull.
+    enum class Slope { exact, definite };
+
+    /// Newton's method from where it is. Returns whether it converged.
     template <class Solver>
-    bool iterate() {
+    bool iterate(Slope slope) {
         Solver solver;
-        double residual = evaluate(v1_);
-        for (int iteration = 0; iteration < kMostNewtonSteps; ++iteration) {
-            const Matrix matrix = jacobian();
+        const int most = slope == Slope::definite ? kMostDefiniteSteps : kMostNewtonSteps;
+        for (int iteration = 0; iteration < most; ++iteration) {
+            if (right_.size() == 0 || right_.lpNorm<Eigen::Infinity>() <= rounding()) return true;
+            const Matrix matrix = jacobian(slope);
             if (iteration == 0) solver.analyzePattern(matrix);
             solver.factorize(matrix);
             if (solver.info() != Eigen::Success) return false;
             const Eigen::VectorXd correction = solver.solve(right_);
             if (!correction.allFinite()) return false;
-            residual = take(correction, residual);
-            if (is_converged(correction.size() > 0 ? correction.lpNorm<Eigen::Infinity>() : 0.0, largest_speed())) {
-                return true;
-            }
+            take(correction);
+            if (is_converged(correction.lpNorm<Eigen::Infinity>(), largest_speed())) return true;
         }
         return false;
     }
 
-    /// Goes along the correction, or along a part of it where the whole makes things worse. Returns the new residual.
-    double take(const Eigen::VectorXd& correction, double residual_before) {
+    /// Goes along the correction, or along a part of it where the whole makes things worse.
+    void take(const Eigen::VectorXd& correction) {
         const std::vector<Vec3> before = v1_;
         double part = 1.0;
         for (int cut = 0;; ++cut, part *= 0.5) {
@@ -70,7 +87,9 @@ private:
                 v1_[i] = before[i] + part * Vec3{correction[at], correction[at + 1], correction[at + 2]};
             }
             const double residual = evaluate(v1_);
-            if (residual <= residual_before || cut == kMostCuts) return residual;
+            if (residual > residual_ && cut < kMostCuts) continue;
+            residual_ = residual;
+            return;
         }
     }
 
@@ -88,10 +107,20 @@ private:
         return right_.squaredNorm();
     }
 
-    [[nodiscard]] Matrix jacobian() const {
+    /// Residuals, N s, that the rounding of the places explains: stiff springs make much of little.
+    [[nodiscard]] double rounding() const {
+        double largest = 0.0;
+        for (const ParticleSystem::Bond& bond : system_.bonds()) {
+            const double place = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
+            largest = std::max(largest, system_.spring_of(bond).stiffness * place);
+        }
+        return kRoundingOfPlaces * h_ * largest;
+    }
+
+    [[nodiscard]] Matrix jacobian(Slope slope) const {
         Triplets entries;
         for (std::size_t i = 0; i < system_.size(); ++i) add_own(entries, i);
-        for (const ParticleSystem::Bond& bond : system_.bonds()) add_bond(entries, bond);
+        for (const ParticleSystem::Bond& bond : system_.bonds()) add_bond(entries, bond, slope);
         const auto size = static_cast<Eigen::Index>(3 * system_.size());
         Matrix matrix(size, size);
         matrix.setFromTriplets(entries.begin(), entries.end());
@@ -113,20 +142,31 @@ private:
         add_block(entries, i, i, block, 1.0);
     }
 
-    /// What a spring adds: h^2 k of its stiffness along and across, and h c of its damper along.
-    void add_bond(Triplets& entries, const ParticleSystem::Bond& bond) const {
+    /// What a spring adds: h^2 times its stiffness along and across, and h c of its damper along.
+    void add_bond(Triplets& entries, const ParticleSystem::Bond& bond, Slope slope) const {
         const Spring& spring = system_.spring_of(bond);
         const Vec3 apart = x1_[bond.first] - x1_[bond.second];
         const double now = length(apart);
         if (!(now > 0.0)) return;
         const Vec3 u = apart / now;
-        const double across = h_ * h_ * spring.stiffness * std::max(0.0, 1.0 - spring.rest_length / now);
-        const double along = h_ * h_ * spring.stiffness + h_ * spring.damping;
+        const Vec3 w = v1_[bond.first] - v1_[bond.second];
+        const double h2 = h_ * h_;
+        const double along = h2 * spring.stiffness + h_ * spring.damping;
+        double across = h2 * spring.stiffness * (1.0 - spring.rest_length / now);
+        Vec3 turn;  // the damper's force turns with the spring
+        if (slope == Slope::exact) {
+            across += h2 * spring.damping * dot(w, u) / now;
+            turn = (h2 * spring.damping / now) * (w - dot(w, u) * u);
+        } else {
+            across = std::max(0.0, across);
+        }
         Block block{};
         for (std::size_t row = 0; row < 3; ++row) {
+            const double u_row = u[static_cast<int>(row)];
             for (std::size_t column = 0; column < 3; ++column) {
-                const double outer = u[static_cast<int>(row)] * u[static_cast<int>(column)];
-                block[row][column] = along * outer + across * ((row == column ? 1.0 : 0.0) - outer);
+                const double outer = u_row * u[static_cast<int>(column)];
+                block[row][column] = along * outer + across * ((row == column ? 1.0 : 0.0) - outer) +
+                                     u_row * turn[static_cast<int>(column)];
             }
         }
         const bool first_moves = !system_.is_pinned(bond.first);
@@ -161,12 +201,20 @@ private:
     std::vector<Vec3> x1_;
     std::vector<Vec3> a1_;
     Eigen::VectorXd right_;
+    double residual_ = 0.0;  // sum of its squares
 };
 
 }  // namespace
 
 SystemStep implicit_system_step(const ParticleSystem& system, double duration) {
-    return BackwardEuler(system, duration).run();
+    SystemStep whole = BackwardEuler(system, duration).run();
+    double h = duration;
+    for (int halvings = 0; !whole.solved && halvings < kMostHalvedSteps; ++halvings) {
+        h *= 0.5;
+        SystemStep part = BackwardEuler(system, h).run();
+        if (part.solved) return part;
+    }
+    return whole;
 }
 
 }  // namespace ricochet::detail

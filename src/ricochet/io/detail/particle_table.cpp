@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
+#include <variant>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
@@ -23,6 +25,12 @@ namespace {
 
 constexpr std::size_t kMostErrors = 10;
 constexpr std::uint64_t kLargestTable = std::uint64_t{16} << 30;
+
+// Where an attribute's number goes.
+struct AttributePlace {
+    std::size_t column = 0;
+    int component = 0;
+};
 
 // A column, the key of an explicit particle whose rules it follows, and where its numbers go.
 struct Column {
@@ -75,7 +83,9 @@ std::optional<double> number_of(std::string_view cell) {
 
 class TableParser {
 public:
-    TableParser(std::string_view text, const std::string& name) : rest_(text), name_(name) {
+    TableParser(std::string_view text, const std::string& name, std::vector<AttributeDescription> declared)
+        : rest_(text), name_(name) {
+        table_.attributes = std::move(declared);
         if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
     }
 
@@ -117,11 +127,15 @@ private:
         for (const std::string_view cell : cells_of(line)) {
             const auto same_name = [&](const Column& column) { return column.name == cell; };
             const auto found = std::find_if(known_columns().begin(), known_columns().end(), same_name);
+            if (!seen.insert(cell).second) fail(fmt::format("the column \"{}\" appears twice", cell));
             if (found == known_columns().end()) {
-                refuse_column(cell, names);
+                if (const auto place = attribute_place(cell)) {
+                    columns_.push_back(*place);
+                } else {
+                    refuse_column(cell, names);
+                }
                 continue;
             }
-            if (!seen.insert(cell).second) fail(fmt::format("the column \"{}\" appears twice", cell));
             columns_.push_back(&*found);
             if (found->key.empty()) table_.unused_columns.emplace_back(cell);
         }
@@ -130,12 +144,35 @@ private:
         }
     }
 
-    void refuse_column(std::string_view cell, const std::vector<std::string_view>& names) {
+    // "temperature", or "wind_x" for a vector; those for looks are declared by being there.
+    std::optional<AttributePlace> attribute_place(std::string_view cell) {
+        const bool has_end =
+            cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
+        const std::string_view stem = has_end ? cell.substr(0, cell.size() - 2) : cell;
+        for (const std::string_view name : {cell, stem}) {
+            const int components = name == cell ? 1 : 3;
+            const auto found = std::find_if(table_.attributes.begin(), table_.attributes.end(),
+                                            [&](const AttributeDescription& a) { return a.name == name; });
+            const auto look = looks_attribute(name);
+            if (found == table_.attributes.end() && (!look || look->components != components)) continue;
+            if (found == table_.attributes.end()) {
+                table_.attributes.push_back(*look);
+                return AttributePlace{table_.attributes.size() - 1, components == 3 ? cell.back() - 'x' : 0};
+            }
+            if (found->components != components) continue;
+            return AttributePlace{static_cast<std::size_t>(found - table_.attributes.begin()),
+                                  components == 3 ? cell.back() - 'x' : 0};
+        }
+        return std::nullopt;
+    }
+
+    void refuse_column(std::string_view cell, std::vector<std::string_view> names) {
+        for (const AttributeDescription& attribute : table_.attributes) names.push_back(attribute.name);
         const std::string help = did_you_mean(nearest_names(cell, names));
-        fail(
-            fmt::format("unknown column \"{}\"{}{}; attributes of one's own are part of the scene format but not built "
-                        "in this version",
-                        printable(cell, 60), help.empty() ? "" : ", ", help));
+        fail(fmt::format(
+            "unknown column \"{}\"{}{}; attributes of one's own are declared by the scene's \"attributes\", "
+            "vectors have the columns NAME_x, NAME_y and NAME_z",
+            printable(cell, 60), help.empty() ? "" : ", ", help));
     }
 
     void read_particle(std::string_view line) {
@@ -146,8 +183,32 @@ private:
         }
         Particle particle;
         bool good = true;
-        for (std::size_t i = 0; i < cells.size(); ++i) good = read_cell(cells[i], *columns_[i], particle) && good;
+        particle.attributes.assign(table_.attributes.size(), missing_attribute());
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (const auto* const place = std::get_if<AttributePlace>(&columns_[i])) {
+                good = read_attribute(cells[i], *place, particle) && good;
+            } else {
+                good = read_cell(cells[i], *std::get<const Column*>(columns_[i]), particle) && good;
+            }
+        }
         if (good) table_.particles.push_back(particle);
+    }
+
+    bool read_attribute(std::string_view cell, const AttributePlace& place, Particle& particle) {
+        const AttributeDescription& attribute = table_.attributes[place.column];
+        const std::optional<double> value = number_of(cell);
+        const double most =
+            attribute.name == kColorAttribute || attribute.name == kOpacityAttribute ? 1.0 : kLargestCoordinate;
+        const double least = looks_attribute(attribute.name) ? 0.0 : -most;
+        if (!value || *value < least || *value > most) {
+            fail(fmt::format("found \"{}\" for the attribute \"{}\", expected a number from {} to {}",
+                             printable(cell, 60), attribute.name, least, most));
+            return false;
+        }
+        AttributeValue& target = particle.attributes[place.column];
+        if (is_missing(target)) target = attribute.fallback;
+        target[place.component] = *value;
+        return true;
     }
 
     bool read_cell(std::string_view cell, const Column& column, Particle& particle) {
@@ -177,17 +238,18 @@ private:
     std::string_view rest_;
     std::string name_;
     std::size_t line_ = 0;
-    std::vector<const Column*> columns_;
+    std::vector<std::variant<const Column*, AttributePlace>> columns_;
     ParticleTable table_;
 };
 
 }  // namespace
 
-ParticleTable parse_particle_table(std::string_view text, const std::string& name) {
-    return TableParser(text, name).parse();
+ParticleTable parse_particle_table(std::string_view text, const std::string& name,
+                                   std::vector<AttributeDescription> declared) {
+    return TableParser(text, name, std::move(declared)).parse();
 }
 
-ParticleTable read_particle_table(const std::filesystem::path& path) {
+ParticleTable read_particle_table(const std::filesystem::path& path, std::vector<AttributeDescription> declared) {
     std::string ending = path.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -195,7 +257,7 @@ ParticleTable read_particle_table(const std::filesystem::path& path) {
         throw InputError(not_built(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
     }
     if (ending != ".csv") throw InputError(fmt::format("found {}, expected a .csv file", path.string()));
-    return parse_particle_table(read_bytes(path, kLargestTable), path.string());
+    return parse_particle_table(read_bytes(path, kLargestTable), path.string(), std::move(declared));
 }
 
 }  // namespace ricochet::detail

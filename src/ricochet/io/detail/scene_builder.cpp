@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/object_view.h"
 #include "ricochet/io/detail/scene_context.h"
 
@@ -33,6 +34,9 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     options.seed = view.whole_number("seed");
     options.resting_speed = view.number("resting_speed");
     options.bounce_budget = static_cast<std::uint32_t>(view.whole_number("bounce_budget"));
+    options.frame_rate = view.number("frame_rate");
+    options.max_depth = static_cast<std::uint32_t>(view.whole_number("max_depth"));
+    options.most_particles = view.whole_number("most_particles");
     options.response = response_from_name(view.text("response")).value_or(options.response);
     build_response(view, options);
     const double steps = options.duration / options.time_step;
@@ -57,6 +61,17 @@ void build_bounds(const SceneContext& context, SimulationSetup& setup) {
             fmt::format("found {} = {}, expected more than lower's {}", "xyz"[axis], box.upper[axis], box.lower[axis]));
     }
     setup.bounds = box;
+}
+
+void build_reference_camera(const SceneContext& context, SimulationSetup& setup) {
+    if (!context.root().has("reference_camera")) return;
+    const ObjectView view = context.root().object("reference_camera");
+    if (!view.has("position") || !view.has("target")) return;
+    setup.reference_camera = ReferenceCamera{view.vector("position"), view.vector("target"),
+                                             view.number("field_of_view"), view.number("image_height")};
+    if (view.vector("position") == view.vector("target")) {
+        context.error(view, "target", "the camera stands on its target, expected another point");
+    }
 }
 
 CameraDescription camera_of(const SceneContext& context, const ObjectView& view) {
@@ -85,6 +100,8 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_forces(context, scene.setup);
     build_bounds(context, scene.setup);
     build_colliders(context, scene.setup);
+    build_attributes(context, scene.setup);
+    build_reference_camera(context, scene.setup);
     build_emitters(context, scene.setup);
     build_particles(context, scene.setup);
     build_springs(context, scene.setup);

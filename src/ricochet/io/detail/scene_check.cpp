@@ -148,6 +148,42 @@ Problem text_problem(const JsonNode& node, const KeySpec& key) {
     return std::nullopt;
 }
 
+Problem vector_pair_problem(const JsonNode& node, const KeySpec& key) {
+    Vec3 components;
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 2) return components_problem(node, key, components);
+    for (const JsonNode& item : *items) {
+        if (Problem problem = components_problem(item, key, components)) return problem;
+    }
+    return std::nullopt;
+}
+
+// A number or a vector.
+Problem quantity_problem(const JsonNode& node, const KeySpec& key) {
+    Vec3 components;
+    return node.number() ? number_problem(node, key) : components_problem(node, key, components);
+}
+
+// The same, or a pair of these.
+Problem spread_problem(const JsonNode& node, const KeySpec& key) {
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 2) return quantity_problem(node, key);
+    for (const JsonNode& item : *items) {
+        if (Problem problem = quantity_problem(item, key)) return problem;
+    }
+    const JsonNode& spread = (*items)[1];
+    if (((*items)[0].array() == nullptr) != (spread.array() == nullptr)) {
+        return fmt::format("found {}, expected mean and spread alike: two numbers or two of [x, y, z]",
+                           described(spread));
+    }
+    bool negative = spread.number().value_or(0.0) < 0.0;
+    if (spread.array() != nullptr) {
+        for (const JsonNode& item : *spread.array()) negative = negative || item.number().value_or(0.0) < 0.0;
+    }
+    if (negative) return fmt::format("found {}, expected a spread >= 0", described(spread));
+    return std::nullopt;
+}
+
 // For values that hold no objects.
 Problem plain_problem(const JsonNode& node, const KeySpec& key) {
     switch (key.type) {
@@ -170,12 +206,17 @@ Problem plain_problem(const JsonNode& node, const KeySpec& key) {
             return scale_problem(node, key);
         case ValueType::pair:
             return pair_problem(node, key);
+        case ValueType::quantity:
+            return quantity_problem(node, key);
+        case ValueType::vector_pair:
+            return vector_pair_problem(node, key);
         case ValueType::object:
         case ValueType::named_object:
         case ValueType::list:
         case ValueType::list_or_file:
         case ValueType::table:
         case ValueType::text_table:
+        case ValueType::quantity_table:
             break;
     }
     return std::nullopt;
@@ -235,6 +276,7 @@ private:
                 return;
             case ValueType::table:
             case ValueType::text_table:
+            case ValueType::quantity_table:
                 check_table(node, key, path);
                 return;
             default:
@@ -252,7 +294,7 @@ private:
 
     void check_list(JsonNode& node, const KeySpec& key, const std::string& path) {
         JsonNode::Array* items = node.array();
-        if (items == nullptr) {
+        if (items == nullptr || (items->empty() && key.not_empty)) {
             refuse(node, path, found_expected(node, key));
             return;
         }
@@ -271,6 +313,10 @@ private:
             const std::string member_path = path_of_key(path, member.key);
             if (key.type == ValueType::table) {
                 check_object(member.value, *key.content, member_path);
+            } else if (key.type == ValueType::quantity_table) {
+                const KeySpec value{.name = "", .type = ValueType::quantity, .description = "", .range = key.range};
+                if (const Problem problem = spread_problem(member.value, value))
+                    refuse(member.value, member_path, *problem);
             } else {
                 check_value(member.value, text, member_path);
             }

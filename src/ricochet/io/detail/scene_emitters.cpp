@@ -8,8 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/screen_area.h"
 #include "ricochet/geometry/placed_mesh.h"
+#include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/scene_context.h"
 
 namespace ricochet::detail {
@@ -65,14 +68,28 @@ EmitterShape shape_of(SceneContext& context, const SimulationSetup& setup, const
     if (view.type() == "sphere") {
         return SphereShape{view.vector("center"), view.number("radius"), view.boolean("surface")};
     }
+    if (view.type() == "mesh" && view.boolean("volume")) return MeshVolumeShape{surface_of(context, setup, view)};
     if (view.type() == "mesh") return MeshSurfaceShape{surface_of(context, setup, view)};
+    if (view.type() == "cone") {
+        return ConeShape{view.vector("apex"), view.vector("axis"), view.number("angle"), view.number("height")};
+    }
     return PointShape{view.type() == "point" ? view.vector("center") : Vec3{}};
+}
+
+// False where a mesh was refused.
+bool is_measurable(const EmitterShape& shape) {
+    const auto* const surface = std::get_if<MeshSurfaceShape>(&shape);
+    const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
+    return (surface == nullptr || surface->mesh) && (volume == nullptr || volume->mesh);
 }
 
 EmitterDescription emitter_of(const ObjectView& view) {
     EmitterDescription emitter;
     emitter.burst = view.whole_number("burst");
     emitter.rate = view.pair("rate");
+    emitter.rate_per_frame = view.pair("rate_per_frame");
+    emitter.rate_per_area = view.pair("rate_per_area");
+    if (view.has("seed")) emitter.seed = view.whole_number("seed");
     emitter.start = view.number("start");
     if (view.has("stop")) emitter.stop = view.number("stop");
     if (view.has("limit")) emitter.limit = view.whole_number("limit");
@@ -86,23 +103,120 @@ EmitterDescription emitter_of(const ObjectView& view) {
     return emitter;
 }
 
+double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
+
+// Most particles a second; reports rates that cannot be.
+double most_rate(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                 const EmitterDescription& emitter) {
+    const double per_area = most_of(emitter.rate_per_area);
+    const int rates = (most_of(emitter.rate) > 0.0) + (most_of(emitter.rate_per_frame) > 0.0) + (per_area > 0.0);
+    if (rates > 1) {
+        const char* const key = most_of(emitter.rate_per_frame) > 0.0 ? "rate_per_frame" : "rate_per_area";
+        context.error(view, key,
+                      "the emitter has another rate already, expected one of rate, rate_per_frame and rate_per_area");
+    }
+    double per_frame = most_of(emitter.rate_per_frame);
+    if (per_area > 0.0 && !setup.reference_camera) {
+        context.error(view, "rate_per_area", "only goes together with the scene's \"reference_camera\"");
+    } else if (per_area > 0.0 && is_measurable(emitter.shape)) {
+        try {
+            per_frame += per_area * screen_area(emitter.shape, *setup.reference_camera);
+        } catch (const InputError& problem) {
+            context.error(view, "rate_per_area", problem.what());
+        }
+    }
+    return most_of(emitter.rate) + per_frame * setup.options.frame_rate;
+}
+
 // Reports contradictions; returns the most births there can be.
-double checked_births(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter,
-                      double duration) {
+double checked_births(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                      const EmitterDescription& emitter) {
+    const double duration = setup.options.duration;
     if (emitter.stop < emitter.start) {
         context.error(view, "stop",
                       fmt::format("found {} s, expected a time after start ({} s)", emitter.stop, emitter.start));
     }
-    const double most_rate = emitter.rate.mean + emitter.rate.spread;
+    const double most = most_rate(context, setup, view, emitter);
     const double time = std::max(0.0, std::min(duration, emitter.stop) - emitter.start);
-    const double births = static_cast<double>(emitter.burst) + most_rate * time;
-    if ((emitter.burst == 0 && most_rate == 0.0) || emitter.limit == 0) {
+    const double births = static_cast<double>(emitter.burst) + most * time;
+    if ((emitter.burst == 0 && most == 0.0) || emitter.limit == 0) {
         context.diagnostics().warning(view.place(), view.path(), "emits nothing: it has neither a burst nor a rate");
     } else if (emitter.start >= duration) {
         context.warn(view, "start",
                      fmt::format("emits nothing: it begins at {} s, the scene ends at {} s", emitter.start, duration));
     }
     return std::min(births, static_cast<double>(emitter.limit));
+}
+
+// Volumes that cannot be filled are reported by their file.
+void check_volume(const SceneContext& context, const ObjectView& view, const EmitterShape& shape) {
+    const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
+    if (volume == nullptr || volume->mesh == nullptr) return;
+    try {
+        const ShapeSampler sampler(shape);
+    } catch (const InputError& problem) {
+        context.error(view, view.has("collider") ? "collider" : "file", problem.what());
+    }
+}
+
+// The rule of an emitter of type child. The parent's number is found when all emitters are known.
+ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
+    ParentRule rule;
+    rule.on = birth_event_from_name(view.text("on")).value_or(BirthEvent::life);
+    rule.count = view.pair("count");
+    rule.threshold_impulse = view.number("threshold_impulse");
+    rule.share = view.has("share") ? view.boolean("share") : rule.on == BirthEvent::impact;
+    rule.recursive = view.boolean("recursive");
+    rule.inherit_velocity = view.number("inherit_velocity");
+    rule.inherit_color = view.number("inherit_color");
+    for (const char* const key : {"burst", "start", "stop", "rate_per_frame", "rate_per_area"}) {
+        if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
+    }
+    if (rule.share && rule.on == BirthEvent::life) {
+        context.error(view, "share",
+                      "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
+    }
+    if (rule.share && view.has("particle_radius")) {
+        context.error(view, "particle_radius", "radii follow from the parent's when it is shared out, leave it out");
+    }
+    if (rule.on != BirthEvent::life && view.has("rate")) {
+        context.error(view, "rate", "only goes together with \"on\": \"life\"; expected \"count\"");
+    }
+    if (rule.on == BirthEvent::life && most_of(emitter.rate) == 0.0) {
+        context.diagnostics().warning(view.place(), view.path(), "emits nothing: it has no rate");
+    }
+    return rule;
+}
+
+void find_parents(const SceneContext& context, SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::vector<std::string_view> names;
+    for (const EmitterDescription& emitter : setup.emitters) names.push_back(emitter.name);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!setup.emitters[k].parent || !views[k].has("parent")) continue;
+        const std::string name = views[k].text("parent");
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) {
+            context.error(views[k], "parent", unknown_name("emitter", name, names));
+        } else {
+            setup.emitters[k].parent->emitter = static_cast<std::uint32_t>(found - names.begin());
+        }
+    }
+}
+
+// Two emitters cannot have the same parents to share out.
+void check_shares(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::set<std::pair<std::uint32_t, BirthEvent>> taken;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        const auto& rule = setup.emitters[k].parent;
+        if (!rule || !rule->share) continue;
+        bool free = taken.insert({rule->emitter, rule->on}).second;
+        if (rule->recursive) free = taken.insert({static_cast<std::uint32_t>(k), rule->on}).second && free;
+        if (!free) {
+            context.error(views[k], "parent", "another emitter shares out the same parents at the same event");
+        }
+    }
 }
 
 }  // namespace
@@ -114,7 +228,13 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         EmitterDescription emitter = emitter_of(view);
         emitter.name = context.unique_name(view, setup.emitters.size(), "emitter", taken);
         emitter.shape = shape_of(context, setup, view);
-        births += checked_births(context, view, emitter, setup.options.duration);
+        check_volume(context, view, emitter.shape);
+        read_looks(context, setup, view, emitter);
+        if (view.type() == "child") {
+            emitter.parent = rule_of(context, view, emitter);
+        } else {
+            births += checked_births(context, setup, view, emitter);
+        }
         if (births > kMostParticles) {
             context.diagnostics().error(
                 view.place(), view.path(),
@@ -123,6 +243,8 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         }
         setup.emitters.push_back(std::move(emitter));
     }
+    find_parents(context, setup);
+    check_shares(context, setup);
 }
 
 }  // namespace ricochet::detail

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/force_keys.h"
 #include "ricochet/io/detail/key_ranges.h"
 #include "ricochet/io/detail/spring_keys.h"
@@ -152,6 +153,21 @@ const ObjectSpec& simulation_spec() {
              .unit = "m/s",
              .range = kNotNegative,
              .fallback = "0.001"},
+            {.name = "frame_rate",
+             .description = "Frames a second of emitters' rates per frame; neither the output's nor the time step's.",
+             .unit = "1/s",
+             .range = {.lower = 0.0, .upper = 1e6, .lower_open = true},
+             .fallback = "24"},
+            {.name = "max_depth",
+             .type = ValueType::integer,
+             .description = "Highest generation of particles born of particles; births beyond are refused and counted.",
+             .range = kCount,
+             .fallback = "16"},
+            {.name = "most_particles",
+             .type = ValueType::integer,
+             .description = "Most particles alive at a time; births beyond are refused and counted.",
+             .range = kCount,
+             .fallback = "4294967295"},
             {.name = "bounce_budget",
              .type = ValueType::integer,
              .description = "Most impacts of one particle in one step. A particle that spends it stays where it is for "
@@ -364,13 +380,32 @@ std::vector<KeySpec> schedule_keys() {
          .unit = "1/s",
          .range = {.lower = 0.0, .upper = 1e12},
          .fallback = "0"},
+        {.name = "rate_per_frame",
+         .type = ValueType::pair,
+         .description =
+             "Instead of `rate`: particles a frame of `simulation.frame_rate`, evenly spread inside it; drawn "
+             "anew for every frame.",
+         .range = {.lower = 0.0, .upper = 1e12},
+         .fallback = "0"},
+        {.name = "rate_per_area",
+         .type = ValueType::pair,
+         .description = "Instead of `rate`: particles a frame for every pixel that the shape covers in the "
+                        "`reference_camera`'s picture.",
+         .unit = "1/pixel",
+         .range = {.lower = 0.0, .upper = 1e12},
+         .fallback = "0"},
         {.name = "start", .description = "When it begins.", .unit = "s", .range = kNotNegative, .fallback = "0"},
         {.name = "stop", .description = "When the rate ends.", .unit = "s", .range = kNotNegative, .without = "never"},
         {.name = "limit",
          .type = ValueType::integer,
-         .description = "Most particles ever born here.",
+         .description = "Most particles ever born here; of type child: of one parent's life.",
          .range = kCount,
          .without = "no limit"},
+        {.name = "seed",
+         .type = ValueType::integer,
+         .description = "Start of its own random numbers.",
+         .range = {.lower = 0.0, .upper = 18446744073709551615.0},
+         .without = "the scene's seed and the place in the list"},
     };
 }
 
@@ -431,7 +466,75 @@ std::vector<KeySpec> emitter_keys() {
                                   .without = "made from type and place in the list"}};
     for (KeySpec& key : schedule_keys()) keys.push_back(std::move(key));
     for (KeySpec& key : launch_keys()) keys.push_back(std::move(key));
+    for (KeySpec& key : emitter_look_keys()) keys.push_back(std::move(key));
     return keys;
+}
+
+std::vector<KeySpec> child_emitter_keys() {
+    return {
+        {.name = "parent",
+         .type = ValueType::text,
+         .description = "Name of the emitter whose particles are the parents.",
+         .required = true},
+        {.name = "on",
+         .type = ValueType::choice,
+         .description = "When parents give birth.",
+         .fallback = "\"life\"",
+         .choices = {{"life", "all their life long, `rate` a second, one draw for each parent"},
+                     {"death", "at the end of their lifetime, or absorbed by a surface"},
+                     {"impact", "at impacts of at least `threshold_impulse`"}}},
+        {.name = "count",
+         .type = ValueType::pair,
+         .description = "Children of one death or impact, rounded to whole numbers.",
+         .range = {.lower = 0.0, .upper = 1e6},
+         .fallback = "1"},
+        {.name = "threshold_impulse",
+         .description = "Least impulse of an impact that gives birth.",
+         .unit = "N s",
+         .range = kNotNegative,
+         .fallback = "0"},
+        {.name = "share",
+         .type = ValueType::boolean,
+         .description = "true: the parent ends and its children share its mass and momentum; `mass` is then the weight "
+                        "of a share, radii follow at the same density, and `speed` says how fast they fly apart.",
+         .without = "true for impact, false otherwise"},
+        {.name = "recursive",
+         .type = ValueType::boolean,
+         .description = "true: the children are parents in the same way too, up to `simulation.max_depth`.",
+         .fallback = "false"},
+        {.name = "inherit_velocity",
+         .description = "Part of the parent's velocity that a child begins with; 1 when sharing.",
+         .range = kCoordinate,
+         .fallback = "1"},
+        {.name = "inherit_color",
+         .description =
+             "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken.",
+         .range = {.lower = 0.0, .upper = 1.0},
+         .fallback = "0"},
+    };
+}
+
+std::vector<KeySpec> cone_emitter_keys() {
+    return {
+        {.name = "apex",
+         .type = ValueType::vector,
+         .description = "Its tip.",
+         .unit = "m",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
+        {.name = "axis",
+         .type = ValueType::vector,
+         .description = "From the tip into the cone, of any length.",
+         .range = kCoordinate,
+         .required = true,
+         .not_zero = true},
+        {.name = "angle",
+         .description = "Between the axis and the side.",
+         .unit = "degrees",
+         .range = {.lower = 0.0, .upper = 89.9},
+         .required = true},
+        height_key(),
+    };
 }
 
 std::vector<KeySpec> mesh_emitter_keys() {
@@ -441,6 +544,10 @@ std::vector<KeySpec> mesh_emitter_keys() {
          .type = ValueType::text,
          .description = "The name of a mesh collider: its surface, where it stands."}};
     for (KeySpec& key : placement_keys("file")) keys.push_back(std::move(key));
+    keys.push_back({.name = "volume",
+                    .type = ValueType::boolean,
+                    .description = "true: uniform in the inside, launched in any direction; the mesh must be closed.",
+                    .fallback = "false"});
     return keys;
 }
 
@@ -483,39 +590,80 @@ const ObjectSpec& emitter_spec() {
                             "point to, and launched along them.",
              .keys = mesh_emitter_keys(),
              .exactly_one_of = {"file", "collider"}},
+            {.name = "cone",
+             .description = "Uniform in a cone, launched along the line from its tip.",
+             .keys = cone_emitter_keys()},
+            {.name = "child",
+             .description = "Where another emitter's particles are, launched from their place and velocity; `burst`, "
+                            "`start`, `stop`, `rate_per_frame` and `rate_per_area` do not apply.",
+             .keys = child_emitter_keys()},
         }};
     return spec;
 }
 
+std::vector<KeySpec> particle_keys() {
+    std::vector<KeySpec> keys = {
+        {.name = "position",
+         .type = ValueType::vector,
+         .description = "Where it starts.",
+         .unit = "m",
+         .range = kCoordinate,
+         .required = true},
+        {.name = "velocity",
+         .type = ValueType::vector,
+         .description = "How it starts.",
+         .unit = "m/s",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
+        {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
+        {.name = "radius", .description = "Its radius.", .unit = "m", .range = kNotNegative, .fallback = "0"},
+        {.name = "spin",
+         .type = ValueType::vector,
+         .description = "Its angular velocity; for particles with a radius.",
+         .unit = "rad/s",
+         .range = kCoordinate,
+         .fallback = "[0, 0, 0]"},
+        {.name = "pinned",
+         .type = ValueType::boolean,
+         .description = "true: it never moves, for springs to hang on.",
+         .fallback = "false"},
+    };
+    for (KeySpec& key : particle_look_keys()) keys.push_back(std::move(key));
+    return keys;
+}
+
 const ObjectSpec& particle_spec() {
     static const ObjectSpec spec{
-        .title = "particle",
-        .description = "Particles that are there from the start.",
+        .title = "particle", .description = "Particles that are there from the start.", .keys = particle_keys()};
+    return spec;
+}
+
+const ObjectSpec& reference_camera_spec() {
+    static const ObjectSpec spec{
+        .title = "reference camera",
+        .description = "On whose screen emitters are measured; part of the scene, not of any picture.",
         .keys = {
             {.name = "position",
              .type = ValueType::vector,
-             .description = "Where it starts.",
+             .description = "Where it stands.",
              .unit = "m",
              .range = kCoordinate,
              .required = true},
-            {.name = "velocity",
+            {.name = "target",
              .type = ValueType::vector,
-             .description = "How it starts.",
-             .unit = "m/s",
+             .description = "The point in the middle of its picture.",
+             .unit = "m",
              .range = kCoordinate,
-             .fallback = "[0, 0, 0]"},
-            {.name = "mass", .description = "Its mass.", .unit = "kg", .range = kPositive, .fallback = "1"},
-            {.name = "radius", .description = "Its radius.", .unit = "m", .range = kNotNegative, .fallback = "0"},
-            {.name = "spin",
-             .type = ValueType::vector,
-             .description = "Its angular velocity; for particles with a radius.",
-             .unit = "rad/s",
-             .range = kCoordinate,
-             .fallback = "[0, 0, 0]"},
-            {.name = "pinned",
-             .type = ValueType::boolean,
-             .description = "true: it never moves, for springs to hang on.",
-             .fallback = "false"},
+             .required = true},
+            {.name = "field_of_view",
+             .description = "Angle from the lower to the upper edge.",
+             .unit = "degrees",
+             .range = {.lower = 1.0, .upper = 170.0},
+             .fallback = "35"},
+            {.name = "image_height",
+             .description = "Pixels from the lower to the upper edge.",
+             .range = {.lower = 1.0, .upper = 1e6},
+             .fallback = "720"},
         }};
     return spec;
 }
@@ -645,6 +793,16 @@ std::vector<KeySpec> scene_keys() {
          .description = "Springs between particles; ropes, chains and cloth with particles of their own.",
          .fallback = "[]",
          .content = &springs_spec()},
+        {.name = "attributes",
+         .type = ValueType::table,
+         .description = "Values of your own that particles carry, by name.",
+         .fallback = "{}",
+         .content = &attribute_spec()},
+        {.name = "reference_camera",
+         .type = ValueType::object,
+         .description = "For emitters' rates per screen area.",
+         .without = "no such rates",
+         .content = &reference_camera_spec()},
         {.name = "bounds",
          .type = ValueType::object,
          .description = "Where particles are retired.",
@@ -782,13 +940,20 @@ std::string expectation(const KeySpec& key) {
         case ValueType::named_object:
             return fmt::format("an object {{...}} ({}), or one of the names in \"{}\"", key.content->title, key.table);
         case ValueType::list:
-            return "a list [...] of objects";
+            return key.not_empty ? "a list [...] of objects, at least one" : "a list [...] of objects";
         case ValueType::list_or_file:
             return "a list [...] of objects, or {\"file\": ...}";
         case ValueType::table:
             return fmt::format("an object {{\"name\": {{...}}}} ({} by name)", key.content->title);
         case ValueType::text_table:
             return "an object {\"name\": \"text\"}";
+        case ValueType::quantity:
+            return "a number or [x, y, z]";
+        case ValueType::vector_pair:
+            return "[x, y, z] or [[x, y, z], [spread, spread, spread]], each " + range_words(key.range);
+        case ValueType::quantity_table:
+            return "an object {\"name\": value}, a value being a number, [mean, spread], [x, y, z] or [[x, y, z], "
+                   "[spread, spread, spread]]";
     }
     return "";
 }

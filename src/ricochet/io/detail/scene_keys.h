@@ -14,22 +14,25 @@ namespace ricochet::detail {
 
 /// Kinds of values.
 enum class ValueType {
-    number,        ///< any finite number
-    integer,       ///< whole number >= 0
-    boolean,       ///< true or false
-    text,          ///< a text that is not empty
-    file,          ///< a path, relative to the scene file
-    choice,        ///< one of KeySpec::choices
-    integers,      ///< a list of whole numbers >= 0
-    vector,        ///< [x, y, z]
-    scale,         ///< a number or [x, y, z], no component zero
-    pair,          ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
-    object,        ///< an object of KeySpec::content
-    named_object,  ///< the same, or the name of one in the table KeySpec::table
-    list,          ///< a list of objects of KeySpec::content
-    list_or_file,  ///< the same, or {"file": ...}
-    table,         ///< an object whose keys are names and whose values are objects of KeySpec::content
-    text_table,    ///< an object whose keys are names and whose values are texts that are not empty
+    number,          ///< any finite number
+    integer,         ///< whole number >= 0
+    boolean,         ///< true or false
+    text,            ///< a text that is not empty
+    file,            ///< a path, relative to the scene file
+    choice,          ///< one of KeySpec::choices
+    integers,        ///< a list of whole numbers >= 0
+    vector,          ///< [x, y, z]
+    scale,           ///< a number or [x, y, z], no component zero
+    pair,            ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
+    object,          ///< an object of KeySpec::content
+    named_object,    ///< the same, or the name of one in the table KeySpec::table
+    list,            ///< a list of objects of KeySpec::content
+    list_or_file,    ///< the same, or {"file": ...}
+    table,           ///< an object whose keys are names and whose values are objects of KeySpec::content
+    quantity,        ///< a number or [x, y, z]
+    vector_pair,     ///< [x, y, z], or [[x, y, z], [spread, spread, spread]]
+    quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
+    text_table,      ///< an object whose keys are names and whose values are texts that are not empty
 };
 
 /// Allowed numbers (or vector components).
@@ -68,7 +71,8 @@ struct KeySpec {
     std::string_view fallback = {};  ///< the default as JSON; empty when there is none
     std::string_view without = {};   ///< what its absence means, where no JSON value says it
     bool required = false;
-    bool not_zero = false;  ///< vectors: not all components zero
+    bool not_zero = false;   ///< vectors: not all components zero
+    bool not_empty = false;  ///< lists: at least one object
     Built built = Built::yes;
     std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/particle_table.h"
 #include "ricochet/io/detail/scene_context.h"
 #include "ricochet/io/detail/suggestion.h"
@@ -14,10 +15,12 @@
 namespace ricochet::detail {
 namespace {
 
-std::vector<Particle> particles_from_table(const SceneContext& context, const ObjectView& view) {
+// Columns for looks that only the table has are declared by it.
+std::vector<Particle> particles_from_table(const SceneContext& context, const ObjectView& view,
+                                           SimulationSetup& setup) {
     if (!view.has("file")) return {};
     try {
-        ParticleTable table = read_particle_table(context.file_of(view));
+        ParticleTable table = read_particle_table(context.file_of(view), setup.attributes);
         for (const std::string& problem : table.errors) context.error(view, "file", problem);
         if (!table.unused_columns.empty()) {
             const std::vector<std::string_view> names(table.unused_columns.begin(), table.unused_columns.end());
@@ -25,6 +28,7 @@ std::vector<Particle> particles_from_table(const SceneContext& context, const Ob
                          fmt::format("the columns {} are not used: particles start with new ids and without a history",
                                      quoted_list(names)));
         }
+        setup.attributes = std::move(table.attributes);
         return std::move(table.particles);
     } catch (const InputError& problem) {
         context.error(view, "file", problem.what());
@@ -47,7 +51,7 @@ void warn_about_particles_outside(const SceneContext& context, const SimulationS
 void build_particles(SceneContext& context, SimulationSetup& setup) {
     const JsonNode& node = context.root().node("particles");
     if (node.object() != nullptr) {
-        setup.particles = particles_from_table(context, ObjectView(node, particle_file_spec(), "particles"));
+        setup.particles = particles_from_table(context, ObjectView(node, particle_file_spec(), "particles"), setup);
     }
     for (const ObjectView& view : context.objects("particles")) {
         Particle particle;
@@ -56,6 +60,7 @@ void build_particles(SceneContext& context, SimulationSetup& setup) {
         particle.mass = view.number("mass");
         particle.radius = view.number("radius");
         particle.spin = view.vector("spin");
+        particle.attributes = particle_values(context, setup, view);
         particle.pinned = view.boolean("pinned");
         setup.particles.push_back(particle);
     }

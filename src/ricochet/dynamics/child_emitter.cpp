@@ -1,0 +1,125 @@
+#include "ricochet/dynamics/child_emitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/core/portable_math.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::uint32_t kCountPurpose = 0x08;
+constexpr std::uint32_t kLifeRatePurpose = 0x09;
+constexpr std::uint32_t kChildStream = 0x0A000000;
+constexpr double kMostChildren = 1e9;  // of one event, so that whole numbers stay exact
+
+// Key of the random numbers of a parent's draws and of its children.
+std::uint64_t mixed_key(std::uint64_t lineage, std::uint32_t stream, std::uint32_t ordinal) {
+    const auto bits = philox4x32({ordinal, kChildStream | stream, 0, 0},
+                                 {static_cast<std::uint32_t>(lineage), static_cast<std::uint32_t>(lineage >> 32)});
+    return (std::uint64_t{bits[0]} << 32) | bits[1];
+}
+
+void inherit_attributes(const Emitter& emitter, const Particle& parent, Particle& child) {
+    const auto size = emitter.column(kSizeAttribute);
+    const auto color = emitter.column(kColorAttribute);
+    const double part = emitter.description().parent->inherit_color;
+    for (std::size_t k = 0; k < child.attributes.size() && k < parent.attributes.size(); ++k) {
+        if (!emitter.sets(k)) {
+            if (k != size) child.attributes[k] = parent.attributes[k];
+        } else if (k == color && part > 0.0) {
+            child.attributes[k] = (1.0 - part) * child.attributes[k] + part * parent.attributes[k];
+        }
+    }
+}
+
+// Shares in the proportion of the weights, as whole multiples of a unit of which the mass is one too: sums are exact.
+std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
+    int exponent = 0;
+    (void)std::frexp(mass, &exponent);
+    const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
+    double sum = 0.0;
+    for (const double weight : weights) sum += weight;
+    std::vector<double> shares;
+    double left = mass;
+    for (const double weight : weights) {
+        const double share = std::max(1.0, std::floor(mass / unit * (weight / sum))) * unit;
+        shares.push_back(share);
+        left -= share;
+    }
+    *std::max_element(shares.begin(), shares.end()) += left;
+    return shares;
+}
+
+// Launches relative to the common centre of mass, on top of the parent's velocity.
+void share_momentum(const Vec3& velocity, double mass, std::vector<Particle>& fragments) {
+    Vec3 momentum;
+    for (const Particle& fragment : fragments) momentum += fragment.mass * fragment.velocity;
+    const Vec3 drift = momentum / mass;
+    for (Particle& fragment : fragments) fragment.velocity += velocity - drift;
+}
+
+}  // namespace
+
+std::optional<BirthEvent> birth_event_from_name(std::string_view name) {
+    if (name == "life") return BirthEvent::life;
+    if (name == "death") return BirthEvent::death;
+    if (name == "impact") return BirthEvent::impact;
+    return std::nullopt;
+}
+
+std::vector<LifeBirth> births_in_life(const Emitter& emitter, const Particle& parent, double from, double to) {
+    const std::uint64_t key = mixed_key(parent.origin.lineage, emitter.number(), 0xFFFFFFFFU);
+    const double rate = emitter.draw_once(key, kLifeRatePurpose, emitter.description().rate);
+    std::vector<LifeBirth> births;
+    if (!(rate > 0.0)) return births;
+    const auto time_of = [&](double ordinal) { return parent.birth_time + (ordinal + 0.5) / rate; };
+    const double most = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
+    // One early, for rounding: whether a birth counts is decided by its time alone.
+    double ordinal = std::max(0.0, std::floor((from - parent.birth_time) * rate - 0.5) - 1.0);
+    for (; ordinal < most && time_of(ordinal) < to; ordinal += 1.0) {
+        if (time_of(ordinal) >= from) births.push_back({time_of(ordinal), static_cast<std::uint32_t>(ordinal)});
+    }
+    return births;
+}
+
+std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event) {
+    const std::uint64_t key = mixed_key(parent.origin.lineage, emitter.number(), ~event);
+    const double count = emitter.draw_once(key, kCountPurpose, emitter.description().parent->count);
+    return static_cast<std::uint32_t>(std::clamp(std::floor(count + 0.5), 0.0, kMostChildren));
+}
+
+Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time) {
+    const std::uint64_t lineage = mixed_key(parent.origin.lineage, emitter.number(), ordinal);
+    Particle child = emitter.draw(lineage, 0);
+    child.position = parent.position;
+    child.velocity += emitter.description().parent->inherit_velocity * parent.velocity;
+    child.birth_time = time;
+    child.origin = {emitter.number(), parent.origin.generation + 1, lineage, 0, 0};
+    inherit_attributes(emitter, parent, child);
+    return child;
+}
+
+std::vector<Particle> make_fragments(const Emitter& emitter, const Particle& parent, std::uint32_t count,
+                                     std::uint32_t first_ordinal, double time) {
+    Particle still = parent;
+    still.velocity = {};
+    std::vector<Particle> fragments;
+    std::vector<double> weights;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        fragments.push_back(make_child(emitter, still, first_ordinal + k, time));
+        weights.push_back(fragments.back().mass);
+    }
+    const std::vector<double> masses = shares_of(parent.mass, weights);
+    for (std::size_t k = 0; k < fragments.size(); ++k) {
+        fragments[k].mass = masses[k];
+        const double part = masses[k] / parent.mass;
+        fragments[k].radius = parent.radius > 0.0 ? parent.radius * portable_pow(part, 1.0 / 3.0) : 0.0;
+        fragments[k].spin = parent.spin;
+    }
+    share_momentum(parent.velocity, parent.mass, fragments);
+    return fragments;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,241 @@
+#include "ricochet/dynamics/emitter_shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/portable_math.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh_topology.h"
+#include "ricochet/geometry/predicates.h"
+
+namespace ricochet {
+namespace {
+
+void require(bool condition, const char* what) {
+    if (!condition) throw InputError(what);
+}
+
+bool is_length(double x) { return std::isfinite(x) && x > 0.0; }
+
+struct CheckShape {
+    void operator()(const PointShape& /*point*/) const {}
+    void operator()(const DiskShape& disk) const {
+        require(is_finite(disk.normal) && length(disk.normal) > 0.0, "the disk's normal must not be zero");
+        require(is_length(disk.radius), "the disk's radius must be > 0");
+    }
+    void operator()(const BoxShape& box) const {
+        const bool good = is_finite(box.size) && std::min({box.size.x, box.size.y, box.size.z}) >= 0.0;
+        require(good, "the box's size must be >= 0");
+    }
+    void operator()(const SphereShape& sphere) const {
+        require(is_length(sphere.radius), "the sphere's radius must be > 0");
+    }
+    void operator()(const MeshSurfaceShape& surface) const { require(surface.mesh != nullptr, "the mesh is missing"); }
+    void operator()(const ConeShape& cone) const {
+        require(is_finite(cone.axis) && length(cone.axis) > 0.0, "the cone's axis must not be zero");
+        require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0,
+                "the cone's angle must be 0 to below 90 degrees");
+        require(is_length(cone.height), "the cone's height must be > 0");
+    }
+    void operator()(const MeshVolumeShape& volume) const { require(volume.mesh != nullptr, "the mesh is missing"); }
+};
+
+// Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate triangles,
+// which have no normal, add nothing even where rounding gives them an area.
+std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
+    std::vector<double> sums;
+    sums.reserve(mesh.triangles.size());
+    double sum = 0.0;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3& a = mesh.vertices[t[0]];
+        const Vec3& b = mesh.vertices[t[1]];
+        const Vec3& c = mesh.vertices[t[2]];
+        if (!are_collinear(a, b, c)) sum += length(cross(b - a, c - a));
+        sums.push_back(sum);
+    }
+    return sums;
+}
+
+void check_volume(const TriangleMesh& mesh) {
+    const TopologyReport report = MeshTopology(mesh).report();
+    require(report.closed && report.nonmanifold_edges == 0, "the mesh is not closed, so it has no inside");
+    const Vec3 size = bounds(mesh).size();
+    const double box = size.x * size.y * size.z;
+    require(std::isfinite(box) && std::fabs(signed_volume(mesh)) >= ShapeSampler::kSmallestFill * box && box > 0.0,
+            "the mesh's volume is less than a ten thousandth of its box");
+}
+
+Vec3 uniform_in(const Box3& box, RandomSequence& random) {
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = box.lower[axis] + (box.upper[axis] - box.lower[axis]) * random.uniform();
+    }
+    return point;
+}
+
+double cosine_of_turns(double turns) { return sine_of_turns(turns + 0.25); }
+
+double tangent_of_degrees(double degrees) { return sine_of_turns(degrees / 360.0) / cosine_of_turns(degrees / 360.0); }
+
+void append_circle(const Vec3& center, const Vec3& normal, double radius, int segments, std::vector<Vec3>& points) {
+    const auto [first, second] = tangent_frame(normal);
+    for (int k = 0; k < segments; ++k) {
+        const double turns = static_cast<double>(k) / segments;
+        points.push_back(center + radius * (cosine_of_turns(turns) * first + sine_of_turns(turns) * second));
+    }
+}
+
+Vec3 end_of(const ConeShape& cone) { return cone.apex + cone.height * normalized(cone.axis); }
+
+double end_radius(const ConeShape& cone) { return cone.height * tangent_of_degrees(cone.angle_degrees); }
+
+struct OutlinePoints {
+    const Vec3& seen_from;
+    int segments;
+
+    std::vector<Vec3> operator()(const PointShape& point) const { return {point.center}; }
+    std::vector<Vec3> operator()(const DiskShape& disk) const {
+        std::vector<Vec3> points;
+        append_circle(disk.center, normalized(disk.normal), disk.radius, segments, points);
+        return points;
+    }
+    std::vector<Vec3> operator()(const BoxShape& box) const {
+        std::vector<Vec3> points;
+        for (int corner = 0; corner < 8; ++corner) {
+            Vec3 point = box.center;
+            for (int axis = 0; axis < 3; ++axis) point[axis] += box.size[axis] * ((corner >> axis & 1) - 0.5);
+            points.push_back(point);
+        }
+        return points;
+    }
+    // The circle in which lines from the eye touch the ball.
+    std::vector<Vec3> operator()(const SphereShape& sphere) const {
+        const Vec3 away = sphere.center - seen_from;
+        const double distance = length(away);
+        if (!(distance > sphere.radius)) return {};
+        const double sine = sphere.radius / distance;
+        std::vector<Vec3> points;
+        append_circle(sphere.center - sphere.radius * sine * (away / distance), away / distance,
+                      sphere.radius * std::sqrt(1.0 - sine * sine), segments, points);
+        return points;
+    }
+    std::vector<Vec3> operator()(const MeshSurfaceShape& surface) const { return used_vertices(*surface.mesh); }
+    std::vector<Vec3> operator()(const ConeShape& cone) const {
+        std::vector<Vec3> points{cone.apex};
+        append_circle(end_of(cone), normalized(cone.axis), end_radius(cone), segments, points);
+        return points;
+    }
+    std::vector<Vec3> operator()(const MeshVolumeShape& volume) const { return used_vertices(*volume.mesh); }
+
+    static std::vector<Vec3> used_vertices(const TriangleMesh& mesh) {
+        std::vector<Vec3> points;
+        for (const Triangle& t : mesh.triangles) {
+            for (const std::uint32_t v : t) points.push_back(mesh.vertices[v]);
+        }
+        return points;
+    }
+};
+
+}  // namespace
+
+ShapeSampler::ShapeSampler(const EmitterShape& shape) : shape_(shape) {
+    std::visit(CheckShape{}, shape_);
+    if (const auto* surface = std::get_if<MeshSurfaceShape>(&shape_)) {
+        cumulative_area_ = cumulative_areas(*surface->mesh);
+        require(!cumulative_area_.empty() && cumulative_area_.back() > 0.0, "the mesh has no area");
+        require(std::isfinite(cumulative_area_.back()), "the mesh is too large");
+    } else if (const auto* volume = std::get_if<MeshVolumeShape>(&shape_)) {
+        check_volume(*volume->mesh);
+        inside_ = std::make_shared<const MeshInterior>(volume->mesh);
+    } else if (const auto* cone = std::get_if<ConeShape>(&shape_)) {
+        cone_slope_ = tangent_of_degrees(cone->angle_degrees);
+    }
+}
+
+LaunchPlace ShapeSampler::draw(double radius, RandomSequence& random) const {
+    if (const auto* disk = std::get_if<DiskShape>(&shape_)) return on_disk(*disk, random);
+    if (const auto* box = std::get_if<BoxShape>(&shape_)) {
+        Vec3 position = box->center;
+        for (int axis = 0; axis < 3; ++axis) position[axis] += box->size[axis] * (random.uniform() - 0.5);
+        return {position, random.unit_vector()};
+    }
+    if (const auto* sphere = std::get_if<SphereShape>(&shape_)) {
+        if (!sphere->surface) return {sphere->center + sphere->radius * random.in_unit_ball(), random.unit_vector()};
+        const Vec3 normal = random.unit_vector();
+        return {sphere->center + sphere->radius * normal, normal};
+    }
+    if (const auto* surface = std::get_if<MeshSurfaceShape>(&shape_)) return on_mesh(*surface->mesh, radius, random);
+    if (const auto* cone = std::get_if<ConeShape>(&shape_)) return in_cone(*cone, random);
+    if (inside_) return in_mesh(random);
+    return {std::get<PointShape>(shape_).center, random.unit_vector()};
+}
+
+LaunchPlace ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random) const {
+    const Vec3 normal = normalized(disk.normal);
+    const auto [first, second] = tangent_frame(normal);
+    const Vec3 p = random.in_unit_disk();
+    return {disk.center + disk.radius * (first * p.x + second * p.y), normal};
+}
+
+// The largest of three uniform numbers has the distribution x^3, which is that of the height in a cone.
+LaunchPlace ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random) const {
+    const double first_draw = random.uniform();
+    const double second_draw = random.uniform();
+    const double height = cone.height * std::max({first_draw, second_draw, random.uniform()});
+    const Vec3 axis = normalized(cone.axis);
+    const auto [first, second] = tangent_frame(axis);
+    const Vec3 p = cone_slope_ * random.in_unit_disk();
+    const Vec3 line = axis + first * p.x + second * p.y;  // from the apex to the height 1
+    return {cone.apex + height * line, normalized(line)};
+}
+
+// The point's rounding error is a few ulp of the corners, not of the point; a gap taken from the corners is larger.
+LaunchPlace ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
+    const double area = random.uniform() * cumulative_area_.back();
+    const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
+    const Triangle& t = mesh.triangles[static_cast<std::size_t>(found - cumulative_area_.begin())];
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3& b = mesh.vertices[t[1]];
+    const Vec3& c = mesh.vertices[t[2]];
+    double u = random.uniform();
+    double v = random.uniform();
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    const Vec3 normal = unit_normal(a, b, c);
+    const double gap = parking_gap(max(max(abs(a), abs(b)), abs(c)));
+    return {a + u * (b - a) + v * (c - a) + (radius + gap) * normal, normal};
+}
+
+LaunchPlace ShapeSampler::in_mesh(RandomSequence& random) const {
+    Vec3 position = flush_tiny(uniform_in(inside_->box(), random));
+    while (!inside_->contains(position)) position = flush_tiny(uniform_in(inside_->box(), random));
+    return {position, random.unit_vector()};
+}
+
+std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments) {
+    return std::visit(OutlinePoints{seen_from, segments}, shape);
+}
+
+Box3 bounds(const EmitterShape& shape) {
+    Box3 box;
+    const auto around = [&](const Vec3& center, double radius) {
+        box.include(center - Vec3{radius, radius, radius});
+        box.include(center + Vec3{radius, radius, radius});
+    };
+    if (const auto* disk = std::get_if<DiskShape>(&shape)) {
+        around(disk->center, disk->radius);
+    } else if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+        around(sphere->center, sphere->radius);
+    } else if (const auto* cone = std::get_if<ConeShape>(&shape)) {
+        box.include(cone->apex);
+        around(end_of(*cone), end_radius(*cone));
+    } else {
+        for (const Vec3& point : outline_points(shape, {}, 0)) box.include(point);
+    }
+    return box;
+}
+
+}  // namespace ricochet

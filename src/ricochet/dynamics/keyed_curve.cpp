@@ -1,0 +1,161 @@
+#include "ricochet/dynamics/keyed_curve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::array<Interpolation, 3> kInterpolations = {Interpolation::linear, Interpolation::slow_in_slow_out,
+                                                          Interpolation::spline};
+
+bool is_good(double value) { return std::isfinite(value); }
+bool is_good(const Vec3& value) { return is_finite(value); }
+
+// Mean slope of the segment that begins at a key.
+template <class Value>
+Value chord_slope(const std::vector<CurveKey<Value>>& keys, std::size_t k) {
+    return (keys[k + 1].value - keys[k].value) / (keys[k + 1].time - keys[k].time);
+}
+
+template <class Value>
+void check(const std::vector<CurveKey<Value>>& keys, CurveEnds ends) {
+    if (keys.empty()) throw InputError("a curve has no keys, expected at least one");
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        if (!std::isfinite(keys[k].time) || !is_good(keys[k].value)) {
+            throw InputError(fmt::format("key {} of a curve is not finite", k));
+        }
+        if (k == 0) continue;
+        if (!(keys[k - 1].time < keys[k].time)) {
+            throw InputError(fmt::format("key {} of a curve is at {} s, expected a time after key {}'s {} s", k,
+                                         keys[k].time, k - 1, keys[k - 1].time));
+        }
+        if (!is_good(chord_slope(keys, k - 1))) {
+            throw InputError(fmt::format("keys {} and {} of a curve are too near in time for their values", k - 1, k));
+        }
+    }
+    if (ends == CurveEnds::repeat && keys.size() < 2) {
+        throw InputError("a curve that repeats has one key, expected at least two");
+    }
+}
+
+// Slope at a key between two segments: of the parabola through the three keys.
+template <class Value>
+Value parabola_slope(double before, const Value& slope_before, double after, const Value& slope_after) {
+    const double weight = before / (before + after);
+    return slope_before + weight * (slope_after - slope_before);
+}
+
+}  // namespace
+
+std::optional<Interpolation> interpolation_from_name(std::string_view name) {
+    for (const Interpolation interpolation : kInterpolations) {
+        if (name_of(interpolation) == name) return interpolation;
+    }
+    return std::nullopt;
+}
+
+std::string_view name_of(Interpolation interpolation) {
+    switch (interpolation) {
+        case Interpolation::linear:
+            return "linear";
+        case Interpolation::slow_in_slow_out:
+            return "slow_in_slow_out";
+        case Interpolation::spline:
+            return "spline";
+    }
+    return "";
+}
+
+std::span<const Interpolation> interpolations() { return kInterpolations; }
+
+template <class Value>
+KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation, CurveEnds ends)
+    : keys_(std::move(keys)), interpolation_(interpolation), ends_(ends) {
+    check(keys_, ends_);
+    set_slopes();
+}
+
+// At the ends of a held curve the slope is 0; a repeated one has the last segment before the first key.
+template <class Value>
+void KeyedCurve<Value>::set_slopes() {
+    const std::size_t count = keys_.size();
+    slopes_.assign(count, Value{});
+    const auto span = [&](std::size_t k) { return keys_[k + 1].time - keys_[k].time; };
+    for (std::size_t k = 1; k + 1 < count; ++k) {
+        slopes_[k] = parabola_slope(span(k - 1), chord_slope(keys_, k - 1), span(k), chord_slope(keys_, k));
+    }
+    if (ends_ == CurveEnds::hold) return;
+    slopes_.front() = parabola_slope(span(count - 2), chord_slope(keys_, count - 2), span(0), chord_slope(keys_, 0));
+    slopes_.back() = slopes_.front();
+}
+
+template <class Value>
+bool KeyedCurve<Value>::is_held(double time) const {
+    return ends_ == CurveEnds::hold && !(time >= keys_.front().time && time < keys_.back().time);
+}
+
+template <class Value>
+typename KeyedCurve<Value>::Phase KeyedCurve<Value>::phase_of(double time) const {
+    const double first = keys_.front().time;
+    const double last = keys_.back().time;
+    if (ends_ == CurveEnds::hold || (time >= first && time < last)) return {std::clamp(time, first, last), 0.0};
+    const double period = last - first;
+    double rounds = std::floor((time - first) / period);
+    double phase = time - rounds * period;
+    if (phase >= last) {  // by rounding
+        phase = first;
+        rounds += 1.0;
+    }
+    return {std::max(phase, first), rounds};
+}
+
+template <class Value>
+std::size_t KeyedCurve<Value>::segment_at(double time) const {
+    const auto after = std::upper_bound(keys_.begin(), keys_.end(), time,
+                                        [](double t, const CurveKey<Value>& key) { return t < key.time; });
+    const auto place = static_cast<std::size_t>(after - keys_.begin());
+    return std::min(std::max<std::size_t>(place, 1), keys_.size() - 1) - 1;
+}
+
+template <class Value>
+Value KeyedCurve<Value>::value(double time) const {
+    if (is_held(time)) return time < keys_.front().time ? keys_.front().value : keys_.back().value;
+    const auto [phase, rounds] = phase_of(time);
+    const std::size_t k = segment_at(phase);
+    const double span = keys_[k + 1].time - keys_[k].time;
+    const double s = (phase - keys_[k].time) / span;
+    const Value way = keys_[k + 1].value - keys_[k].value;
+    const double ease = s * s * (3.0 - 2.0 * s);
+    Value value = keys_[k].value + (interpolation_ == Interpolation::linear ? s : ease) * way;
+    if (interpolation_ == Interpolation::spline) {
+        const double r = 1.0 - s;
+        value += (span * s * r) * (r * slopes_[k] - s * slopes_[k + 1]);
+    }
+    return rounds == 0.0 ? value : value + rounds * (keys_.back().value - keys_.front().value);
+}
+
+template <class Value>
+Value KeyedCurve<Value>::derivative(double time) const {
+    if (is_held(time)) return Value{};
+    const double phase = phase_of(time).time;
+    const std::size_t k = segment_at(phase);
+    const Value chord = chord_slope(keys_, k);
+    if (interpolation_ == Interpolation::linear) return chord;
+    const double s = (phase - keys_[k].time) / (keys_[k + 1].time - keys_[k].time);
+    const double r = 1.0 - s;
+    const Value eased = (6.0 * s * r) * chord;
+    if (interpolation_ == Interpolation::slow_in_slow_out) return eased;
+    return eased + (r * (1.0 - 3.0 * s)) * slopes_[k] + (s * (3.0 * s - 2.0)) * slopes_[k + 1];
+}
+
+template class KeyedCurve<double>;
+template class KeyedCurve<Vec3>;
+
+}  // namespace ricochet

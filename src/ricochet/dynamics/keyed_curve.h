@@ -1,0 +1,87 @@
+/// \file
+/// Values keyed in time, as animators set them: a curve through keys, with its exact first derivative.
+/// Sources: ease in and out as the cubic 3 s^2 - 2 s^3: J. Lasseter, "Principles of Traditional Animation Applied to 3D
+/// Computer Animation", SIGGRAPH 1987 (slow in and out). Splines: E. Catmull, R. Rom, "A class of local interpolating
+/// splines", 1974; on uneven keys with the tangents of C. de Boor, "A Practical Guide to Splines", 1978, chapter IV
+/// (piecewise cubic Bessel interpolation).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// What holds between two keys.
+enum class Interpolation {
+    linear,            ///< a straight line; the derivative jumps at keys
+    slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the way: at rest at every key, continuous derivative
+    spline,            ///< a cubic whose slope at a key is that of the parabola through it and both its neighbours
+                       ///< (Catmull-Rom where keys are evenly spaced): continuous derivative
+};
+
+[[nodiscard]] std::optional<Interpolation> interpolation_from_name(std::string_view name);
+[[nodiscard]] std::string_view name_of(Interpolation interpolation);
+/// All of them, in the order of the enumeration.
+[[nodiscard]] std::span<const Interpolation> interpolations();
+
+/// What holds before the first and after the last key.
+enum class CurveEnds {
+    hold,    ///< the value of that key; a spline is at rest there, so that its derivative stays continuous
+    repeat,  ///< the keys again and again, each round beginning with the value that the one before ended with; a spline
+             ///< goes on smoothly
+};
+
+/// One key. Value: double or Vec3.
+template <class Value>
+struct CurveKey {
+    double time = 0.0;  ///< s
+    Value value{};
+};
+
+/// A curve through keys, for Value = double and Value = Vec3. Immutable: safe from any number of threads. Time is in s,
+/// values are in the user's unit.
+template <class Value>
+class KeyedCurve {
+public:
+    /// The same value at all times.
+    explicit KeyedCurve(const Value& constant = Value{}) : keys_{{0.0, constant}}, slopes_{Value{}} {}
+    /// Throws InputError unless there is a key, all are finite, times strictly increase, and no two keys are so near to
+    /// each other in time that the derivative between them overflows.
+    explicit KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation = Interpolation::linear,
+                        CurveEnds ends = CurveEnds::hold);
+
+    /// The value at a time; a key's own value exactly at that key.
+    [[nodiscard]] Value value(double time) const;
+    /// Derivative by time, per s; at a key the one of what follows it.
+    [[nodiscard]] Value derivative(double time) const;
+
+    [[nodiscard]] const std::vector<CurveKey<Value>>& keys() const { return keys_; }
+    [[nodiscard]] Interpolation interpolation() const { return interpolation_; }
+    [[nodiscard]] CurveEnds ends() const { return ends_; }
+
+private:
+    // A time within the keys, and how many rounds were taken off.
+    struct Phase {
+        double time;
+        double rounds;
+    };
+    [[nodiscard]] Phase phase_of(double time) const;
+    [[nodiscard]] bool is_held(double time) const;
+    // The segment that begins at or before a time within the keys.
+    [[nodiscard]] std::size_t segment_at(double time) const;
+    void set_slopes();
+
+    std::vector<CurveKey<Value>> keys_;
+    std::vector<Value> slopes_;  // of a spline, one a key
+    Interpolation interpolation_ = Interpolation::linear;
+    CurveEnds ends_ = CurveEnds::hold;
+};
+
+extern template class KeyedCurve<double>;
+extern template class KeyedCurve<Vec3>;
+
+}  // namespace ricochet

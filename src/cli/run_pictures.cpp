@@ -29,7 +29,7 @@ constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
 constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
 constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
-constexpr Vec3 kClothColor{0.24, 0.035, 0.035};
+constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
 constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
 constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 

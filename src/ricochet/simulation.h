@@ -62,7 +62,7 @@ struct SimulationSetup {
     std::vector<ColliderDescription> colliders;
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
-    std::vector<Spring> springs;           ///< between these particles: their ids are places in the list
+    std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
     std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
     /// An own method for all particles together, in place of options.integrator, which then says only how particles go
     /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.

@@ -99,5 +99,18 @@ TEST(ForceField, WithoutForcesIsFreeFlight) {
     EXPECT_EQ(*none.potential_energy(kState), 0.0);
 }
 
+TEST(ForceOnSome, IsFeltByThoseOnly) {
+    const auto force = make_force_on({9, 2}, make_gravity({0, 0, -2}));
+    for (const std::uint64_t id : {0U, 2U, 3U, 9U}) {
+        const ForceInput state{{0, 0, 5}, {}, 2.0, 0.0, 0.0, id};
+        const bool feels = id == 2 || id == 9;
+        EXPECT_EQ(force->acceleration(state).z, feels ? -2.0 : 0.0) << id;
+        EXPECT_EQ(*force->potential_energy(state), feels ? 20.0 : 0.0) << id;
+    }
+    EXPECT_FALSE(force->is_uniform());
+    EXPECT_TRUE(force->is_steady());
+    EXPECT_THROW((void)make_force_on({1}, nullptr), InputError);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -220,7 +220,7 @@ std::vector<Damage> damages() {
         {"count wraps around", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"768614336404564651\""), "entries"},
         {"negative count", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"-4\""), "not a count"},
         {"wrong count", swap("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""), "entries"},
-        {"huge cells", swap("NumberOfPolys=\"4\"", "NumberOfPolys=\"6148914691236517206\""), "entries"},
+        {"huge cells", swap("NumberOfPolys=\"4\"", "NumberOfPolys=\"6148914691236517206\""), "too many cells"},
         {"no such cells", swap("NumberOfPolys=\"4\"", "NumberOfPolys=\"3\""), "entries"},
         {"offset past end", swap("offset=\"0\"", "offset=\"99999999\""), "past the end"},
         {"offset wraps", swap("offset=\"0\"", "offset=\"18446744073709551610\""), "past the end"},

@@ -45,7 +45,34 @@ private:
     CallableTraits traits_;
 };
 
+// Not uniform even where the other is: it differs from particle to particle.
+class ForceOnSome final : public Force {
+public:
+    ForceOnSome(std::vector<std::uint64_t> ids, std::unique_ptr<Force> force)
+        : ids_(std::move(ids)), force_(std::move(force)) {
+        std::sort(ids_.begin(), ids_.end());
+    }
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
+        return holds(input.id) ? force_->acceleration(input) : Vec3{};
+    }
+    [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
+        return holds(input.id) ? force_->potential_energy(input) : 0.0;
+    }
+    [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
+
+private:
+    [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
+
+    std::vector<std::uint64_t> ids_;  // in order
+    std::unique_ptr<Force> force_;
+};
+
 }  // namespace
+
+std::unique_ptr<Force> make_force_on(std::vector<std::uint64_t> particles, std::unique_ptr<Force> force) {
+    if (!force) throw InputError("force on some particles: there is no force");
+    return std::make_unique<ForceOnSome>(std::move(particles), std::move(force));
+}
 
 std::unique_ptr<Force> make_gravity(const Vec3& acceleration) {
     detail::require_finite(acceleration, "gravity: the acceleration", "m/s^2");

@@ -56,6 +56,9 @@ struct CallableTraits {
 [[nodiscard]] std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> acceleration,
                                                        CallableTraits traits = {});
 
+/// A force on the particles of these ids only; it does nothing to others.
+[[nodiscard]] std::unique_ptr<Force> make_force_on(std::vector<std::uint64_t> particles, std::unique_ptr<Force> force);
+
 /// A sum of forces, added in the order given.
 class ForceField {
 public:

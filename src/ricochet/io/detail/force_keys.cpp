@@ -242,11 +242,7 @@ Variant anchor_force() {
                      number_key("stiffness", "Spring constant.", "N/m", kNotNegative),
                      number_key("rest_length", "Length at which it does not pull.", "m",
                                 {.lower = 0.0, .upper = kLargestCoordinate}, "0"),
-                     number_key("damping", "Force over the speed along the spring.", "kg/s", kNotNegative, "0"),
-                     {.name = "particles",
-                      .type = ValueType::integers,
-                      .description = "Ids of the particles that hang on it.",
-                      .without = "all"}}};
+                     number_key("damping", "Force over the speed along the spring.", "kg/s", kNotNegative, "0")}};
 }
 
 std::vector<Variant> fields() {
@@ -315,8 +311,13 @@ const ObjectSpec& flow_spec() {
 }
 
 const ObjectSpec& force_spec() {
-    static const ObjectSpec spec{
-        .title = "force", .description = "Forces on all particles; they add up.", .keys = {}, .variants = all_forces()};
+    static const ObjectSpec spec{.title = "force",
+                                 .description = "Forces on particles; they add up.",
+                                 .keys = {{.name = "particles",
+                                           .type = ValueType::integers,
+                                           .description = "Ids of the particles that feel it.",
+                                           .without = "all"}},
+                                 .variants = all_forces()};
     return spec;
 }
 

@@ -36,7 +36,9 @@ public:
 
     /// Null pointer after reporting why there is none.
     [[nodiscard]] ForcePointer force(const ObjectView& view) const {
-        return made(view, [&] { return force_of(view); });
+        ForcePointer force = made(view, [&] { return force_of(view); });
+        if (!force || !view.has("particles")) return force;
+        return make_force_on(view.whole_numbers("particles"), std::move(force));
     }
 
     // What the key "flow" says: an object, or the name of one.
@@ -140,7 +142,7 @@ private:
         }
         if (type == "anchor") {
             return make_anchor({view.vector("position"), view.number("stiffness"), view.number("rest_length"),
-                                view.number("damping"), view.whole_numbers("particles")});
+                                view.number("damping")});
         }
         return force_with_flow(view);
     }

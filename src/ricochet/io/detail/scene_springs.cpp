@@ -16,6 +16,8 @@
 namespace ricochet::detail {
 namespace {
 
+constexpr double kMostVertices = 1e8;  // of a sheet
+
 // Direction in which things fall at first.
 Vec3 fall_of(const SimulationSetup& setup) {
     Vec3 fall;
@@ -38,9 +40,12 @@ public:
         for (const ObjectView& view : views) {
             if (view.type() == "list" || view.type().empty()) continue;
             try {
-                all_.append(body_of(view));
+                const SpringBody body = body_of(view);
+                is_complete_ = is_complete_ && !body.particles.empty();
+                all_.append(body);
             } catch (const InputError& problem) {
                 context_.diagnostics().error(view.place(), view.path(), problem.what());
+                is_complete_ = false;
             }
         }
         for (const ObjectView& view : views) {
@@ -95,6 +100,11 @@ private:
         if (!is_complete(view, {"corner", "side_u", "side_v", "cells_u", "cells_v", "stiffness"}, "mass",
                          "mass_per_area")) {
             return {};
+        }
+        const double vertices = (static_cast<double>(view.whole_number("cells_u")) + 1.0) *
+                                (static_cast<double>(view.whole_number("cells_v")) + 1.0);
+        if (vertices > kMostVertices) {
+            throw InputError(fmt::format("{:.3g} vertices, expected at most {:.3g}", vertices, kMostVertices));
         }
         return cloth_of(view, sheet_mesh(view.vector("corner"), view.vector("side_u"), view.vector("side_v"),
                                          static_cast<std::size_t>(view.whole_number("cells_u")),
@@ -183,6 +193,7 @@ private:
         if (!view.has(key)) return false;
         const std::uint64_t number = view.whole_number(key);
         if (number < all_.particles.size()) return true;
+        if (!is_complete_) return false;  // it may be one of a body that was refused
         context_.error(view, key,
                        fmt::format("there is no particle {}, the scene has {} from the start (numbered from 0)", number,
                                    all_.particles.size()));
@@ -192,6 +203,7 @@ private:
     SceneContext& context_;
     SpringBody all_;
     Vec3 fall_;
+    bool is_complete_ = true;  // no body has been refused
 };
 
 }  // namespace

@@ -168,6 +168,12 @@ inline constexpr double kNegligibleStretch = 1e-6;
 /// so are wrong or the step is too long for them; the run stops. Particles that start faster are let be.
 inline constexpr double kFastestSpeed = 299792458.0;
 
+/// Parking gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a gap
+/// above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then hold.
+/// Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond convex
+/// edges by that distance (some 1e-12 of the coordinates).
+inline constexpr double kRimGaps = 256.0;
+
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;

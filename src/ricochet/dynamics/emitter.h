@@ -15,9 +15,9 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/attributes.h"
 #include "ricochet/dynamics/emitter_shape.h"
+#include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/life_curve.h"
 #include "ricochet/dynamics/mean_spread.h"
 #include "ricochet/dynamics/parent_rule.h"

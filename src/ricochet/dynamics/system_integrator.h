@@ -26,10 +26,10 @@ struct SystemStep {
 /// flies the same parabolas.
 ///
 /// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method with sparse
-/// factorizations: first with a positive definite matrix, in which compressed springs count as slack across (which
-/// leads to the stable one of several solutions and changes none), then, where that is slow, with the exact one. Where
-/// a violent step is not solved by either, half of it is taken. Source: D. Baraff, A. Witkin, "Large Steps in Cloth
-/// Simulation", SIGGRAPH 1998.
+/// factorizations: first with symmetric matrices in which, far from the solution, compressed springs count as slack
+/// across (which leads to the stable one of several solutions and changes none), then, where that is slow, with the
+/// exact one. Where a violent step is not solved by either, half of it is taken. Source: D. Baraff, A. Witkin, "Large
+/// Steps in Cloth Simulation", SIGGRAPH 1998.
 [[nodiscard]] SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration,
                                      double first_try);
 

@@ -13,12 +13,6 @@
 
 namespace ricochet {
 
-/// Parking gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a gap
-/// above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then hold.
-/// Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond convex
-/// edges by that distance (some 1e-12 of the coordinates).
-inline constexpr double kRimGaps = 256.0;
-
 /// A flow without its part into surfaces.
 class FlowAlong final : public FlowField {
 public:

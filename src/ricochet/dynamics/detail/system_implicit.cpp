@@ -21,8 +21,11 @@ constexpr int kMostHalvedSteps = 10;
 /// Halvings of a correction that makes the residual larger.
 constexpr int kMostCuts = 8;
 
-/// Newton's steps with the positive definite matrix before the exact one is taken.
-constexpr int kMostDefiniteSteps = 16;
+/// Newton's steps with symmetric matrices before the exact one is taken.
+constexpr int kMostDefiniteSteps = 24;
+
+/// Corrections, relative to the largest speed, from which on compressed springs are counted in.
+constexpr double kNear = 0.02;
 
 /// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
 constexpr double kRoundingOfPlaces = 0x1p-49;
@@ -43,42 +46,70 @@ public:
         system_.accelerations(system_.time(), system_.positions(), v1_, step.start_accelerations);
         residual_ = evaluate(v1_);
         // Far from the solution only the definite matrix leads to it: compressed springs have others, all unstable.
-        using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
-        const bool is_symmetric = system_.has_uniform_forces();
-        step.solved =
-            (is_symmetric ? iterate<Eigen::SimplicialLDLT<Matrix>>(Slope::definite) : iterate<Lu>(Slope::definite)) ||
-            iterate<Lu>(Slope::exact);
+        step.solved = solve_symmetric() || solve_exact();
         step.positions = x1_;
         step.velocities = v1_;
         return step;
     }
 
 private:
-    /// The matrix: the derivative itself, or one that is positive definite and close to it, which costs less to factor
-    /// and converges as fast while springs pull.
-    enum class Slope { exact, definite };
+    /// What of the derivative the matrix holds.
+    enum class Slope {
+        definite,   ///< compressed springs count as slack across: positive definite
+        symmetric,  ///< all of springs; of dampers' turning and of forces the symmetric part
+        exact,
+    };
 
-    /// Newton's method from where it is. Returns whether it converged.
-    template <class Solver>
-    bool iterate(Slope slope) {
-        Solver solver;
-        const int most = slope == Slope::definite ? kMostDefiniteSteps : kMostNewtonSteps;
-        for (int iteration = 0; iteration < most; ++iteration) {
-            if (right_.size() == 0 || right_.lpNorm<Eigen::Infinity>() <= rounding()) return true;
-            const Matrix matrix = jacobian(slope);
-            if (iteration == 0) solver.analyzePattern(matrix);
-            solver.factorize(matrix);
-            if (solver.info() != Eigen::Success) return false;
-            const Eigen::VectorXd correction = solver.solve(right_);
-            if (!correction.allFinite()) return false;
-            take(correction);
-            if (is_converged(correction.lpNorm<Eigen::Infinity>(), largest_speed())) return true;
+    /// Newton's method with matrices that Cholesky's factorization takes: cheap. Returns whether it converged.
+    bool solve_symmetric() {
+        Eigen::SimplicialLDLT<Matrix> solver;
+        solver.analyzePattern(jacobian(Slope::definite));
+        Slope slope = Slope::definite;
+        for (int iteration = 0; iteration < kMostDefiniteSteps; ++iteration) {
+            const Progress progress = newton_step(solver, slope);
+            if (progress.done) return true;
+            if (progress.failed && slope == Slope::definite) return false;
+            // Near the solution springs under pressure have found their place, and counting them in is quadratic.
+            const bool is_near = !progress.failed && !progress.cut && progress.correction < kNear * largest_speed();
+            slope = is_near ? Slope::symmetric : Slope::definite;
         }
         return false;
     }
 
-    /// Goes along the correction, or along a part of it where the whole makes things worse.
-    void take(const Eigen::VectorXd& correction) {
+    /// Newton's method itself, from where it is. Returns whether it converged.
+    bool solve_exact() {
+        Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> solver;
+        solver.analyzePattern(jacobian(Slope::exact));
+        for (int iteration = 0; iteration < kMostNewtonSteps; ++iteration) {
+            const Progress progress = newton_step(solver, Slope::exact);
+            if (progress.done || progress.failed) return progress.done;
+        }
+        return false;
+    }
+
+    struct Progress {
+        bool done = false;        // what is left is below the tolerance, or rounding
+        bool failed = false;      // no factorization; nothing was changed
+        bool cut = false;         // only a part of the correction was taken
+        double correction = 0.0;  // largest component, m/s
+    };
+
+    template <class Solver>
+    Progress newton_step(Solver& solver, Slope slope) {
+        if (right_.size() == 0 || right_.lpNorm<Eigen::Infinity>() <= rounding()) return {.done = true};
+        solver.factorize(jacobian(slope));
+        if (solver.info() != Eigen::Success) return {.failed = true};
+        const Eigen::VectorXd correction = solver.solve(right_);
+        if (!correction.allFinite()) return {.failed = true};
+        Progress progress;
+        progress.cut = !take(correction);
+        progress.correction = correction.lpNorm<Eigen::Infinity>();
+        progress.done = is_converged(progress.correction, largest_speed());
+        return progress;
+    }
+
+    /// Goes along the correction, or along a part of it where the whole makes things worse. Returns whether it was all.
+    bool take(const Eigen::VectorXd& correction) {
         const std::vector<Vec3> before = v1_;
         double part = 1.0;
         for (int cut = 0;; ++cut, part *= 0.5) {
@@ -89,7 +120,7 @@ private:
             const double residual = evaluate(v1_);
             if (residual > residual_ && cut < kMostCuts) continue;
             residual_ = residual;
-            return;
+            return cut == 0;
         }
     }
 
@@ -119,7 +150,7 @@ private:
 
     [[nodiscard]] Matrix jacobian(Slope slope) const {
         Triplets entries;
-        for (std::size_t i = 0; i < system_.size(); ++i) add_own(entries, i);
+        for (std::size_t i = 0; i < system_.size(); ++i) add_own(entries, i, slope);
         for (const ParticleSystem::Bond& bond : system_.bonds()) add_bond(entries, bond, slope);
         const auto size = static_cast<Eigen::Index>(3 * system_.size());
         Matrix matrix(size, size);
@@ -127,15 +158,19 @@ private:
         return matrix;
     }
 
-    /// Mass, and what the forces on one particle add. A pinned member's rows are those of the unit matrix.
-    void add_own(Triplets& entries, std::size_t i) const {
+    /// Mass, and what the forces on one particle add: its symmetric part where the matrix has to be symmetric. A pinned
+    /// member's rows are those of the unit matrix.
+    void add_own(Triplets& entries, std::size_t i, Slope kind) const {
         Block block{};
         for (std::size_t k = 0; k < 3; ++k) block[k][k] = system_.is_pinned(i) ? 1.0 : system_.mass(i);
         if (!system_.is_pinned(i) && !system_.has_uniform_forces()) {
             const Columns3 slope = system_.own_slope(i, v1_[i], h_);
             for (std::size_t row = 0; row < 3; ++row) {
                 for (std::size_t column = 0; column < 3; ++column) {
-                    block[row][column] -= h_ * system_.mass(i) * slope[column][static_cast<int>(row)];
+                    const double here = slope[column][static_cast<int>(row)];
+                    const double mirrored = slope[row][static_cast<int>(column)];
+                    block[row][column] -=
+                        h_ * system_.mass(i) * (kind == Slope::exact ? here : 0.5 * (here + mirrored));
                 }
             }
         }
@@ -154,19 +189,21 @@ private:
         const double along = h2 * spring.stiffness + h_ * spring.damping;
         double across = h2 * spring.stiffness * (1.0 - spring.rest_length / now);
         Vec3 turn;  // the damper's force turns with the spring
-        if (slope == Slope::exact) {
+        if (slope == Slope::definite) {
+            across = std::max(0.0, across);
+        } else {
             across += h2 * spring.damping * dot(w, u) / now;
             turn = (h2 * spring.damping / now) * (w - dot(w, u) * u);
-        } else {
-            across = std::max(0.0, across);
         }
         Block block{};
         for (std::size_t row = 0; row < 3; ++row) {
             const double u_row = u[static_cast<int>(row)];
             for (std::size_t column = 0; column < 3; ++column) {
                 const double outer = u_row * u[static_cast<int>(column)];
+                const double here = u_row * turn[static_cast<int>(column)];
+                const double mirrored = u[static_cast<int>(column)] * turn[static_cast<int>(row)];
                 block[row][column] = along * outer + across * ((row == column ? 1.0 : 0.0) - outer) +
-                                     u_row * turn[static_cast<int>(column)];
+                                     (slope == Slope::exact ? here : 0.5 * (here + mirrored));
             }
         }
         const bool first_moves = !system_.is_pinned(bond.first);

@@ -235,7 +235,7 @@ int run(const RunArguments& arguments) {
     summary.interrupted = !simulation.finished() && !diverged;
     writer.write_summary(summary);
     if (!arguments.quiet) print_report(summary, arguments.output);
-    if (diverged) throw RunError(fmt::format("{}: stopped after {} frames: {}", info.scene, summary.frames, *diverged));
+    if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
     if (print_violations(simulation)) return 1;
     return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
 }

@@ -55,7 +55,8 @@ TEST(MeshTopology, FindsTheLoopOfAMissingFace) {
 TEST(MeshTopology, ListsEveryEdgeOnceWithTheCornersAcrossIt) {
     const std::vector<MeshEdge> edges = MeshTopology(faces(4, {{0, 1, 2}, {2, 1, 3}})).edges();
     ASSERT_EQ(edges.size(), 5U);
-    const auto is = [&](std::size_t i, std::uint32_t first, std::uint32_t second, std::set<std::uint32_t> across) {
+    const auto is = [&](std::size_t i, std::uint32_t first, std::uint32_t second,
+                        const std::set<std::uint32_t>& across) {
         EXPECT_EQ(edges[i].first, first);
         EXPECT_EQ(edges[i].second, second);
         EXPECT_EQ((std::set<std::uint32_t>{edges[i].opposite[0], edges[i].opposite[1]}), across) << first << second;

@@ -61,7 +61,9 @@ TEST(MotionScene, SaysWhatDoesNotGoWithAFlow) {
     EXPECT_EQ(errors_of(scene_of(R"("motion": "flow", "flow": "steam")")),
               (Lines{"simulation.flow: there is no flow \"steam\"; did you mean \"stream\"?"}));
     for (const std::string kind : {"ballistic", "symplectic_euler", "velocity_verlet"}) {
-        EXPECT_EQ(errors_of(scene_of(carried + R"(, "integrator": ")" + kind + "\"")),
+        std::string keys = carried;
+        keys.append(R"(, "integrator": ")").append(kind).append("\"");
+        EXPECT_EQ(errors_of(scene_of(keys)),
                   (Lines{"simulation.integrator: found \"" + kind +
                          "\", which has no meaning where a flow carries the particles, expected \"forward_euler\", "
                          "\"midpoint\", \"rk4\" or \"dormand_prince\""}));

@@ -67,7 +67,7 @@ Json quantity_schema(const KeySpec& key) {
 // A number, a vector, or a pair of two alike, the second of which is a spread.
 Json spread_schema(const KeySpec& key) {
     const Range spread{.lower = 0.0, .upper = key.range.upper};
-    const auto pair = [](Json mean, Json width) {
+    const auto pair = [](const Json& mean, const Json& width) {
         return Json{{"type", "array"}, {"prefixItems", Json::array({mean, width})}, {"minItems", 2}, {"maxItems", 2}};
     };
     return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key),

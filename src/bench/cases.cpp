@@ -78,7 +78,7 @@ Case rain(std::string_view suite, std::string_view name, std::size_t triangles, 
             .restitution = 0.5,
             .gravity = 9.81,
             .box = {{-0.45, -0.45, 0.0}, {0.45, 0.45, 0.4}},
-            .drift = {0.0, 0.0, -60.0},
+            .drift = {0.0, 0.0, -71.0},
             .speed = 3.0,
             .spread = 1.0};
 }

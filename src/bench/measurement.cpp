@@ -11,8 +11,8 @@
 
 #include "bench/case_setup.h"
 #include "bench/insides.h"
+#include "bench/memory_use.h"
 #include "bench/reference.h"
-#include "bench/resident_memory.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 

@@ -103,6 +103,7 @@ TEST(BenchCases, OfRainHitWithFourDropsInFive) {
     const auto& contacts = simulation.particles().contacts;
     const auto dry = std::count(contacts.begin(), contacts.end(), 0U);
     EXPECT_NEAR(static_cast<double>(dry) / 5000.0, 0.2, 0.05);
+    EXPECT_LT(contacts_per_step(simulation), 1.3);
 }
 
 TEST(BenchCases, OfSettlingEndAtRest) {

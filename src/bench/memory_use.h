@@ -1,5 +1,5 @@
 /// \file
-/// How much memory the process holds right now, and what a simulation takes of it.
+/// What a case's simulation holds of the process's memory.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,16 @@
 
 namespace ricochet::bench {
 
-/// Resident set of this process, bytes, after the allocator has given back what it can; 0 where the system does not
-/// tell.
-[[nodiscard]] std::uint64_t resident_memory_bytes();
+/// Bytes that the process has allocated and not freed; 0 where the allocator does not tell.
+[[nodiscard]] std::uint64_t allocated_bytes();
 
-/// What a case's simulation holds.
+/// What a case's simulation holds after a step.
 struct MemoryUse {
-    double bytes_per_particle = 0.0;  ///< after a step
+    double bytes_per_particle = 0.0;  ///< with what the step itself keeps for the next one
     double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
 };
 
-/// Builds the case's simulation with and without its particles and looks at what the process holds. Good to some
-/// kilobytes in all.
+/// Builds the case's simulation with and without its particles and looks at what it has allocated.
 [[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                                        const std::vector<Particle>& particles);
 

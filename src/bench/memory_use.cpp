@@ -1,10 +1,9 @@
-#include "bench/resident_memory.h"
+#include "bench/memory_use.h"
 
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <utility>
 
 #include "bench/case_setup.h"
 
@@ -12,21 +11,18 @@ namespace ricochet::bench {
 namespace {
 
 double held_by_simulation(SimulationSetup setup, const std::vector<Particle>& particles) {
-    const std::uint64_t before = resident_memory_bytes();
+    const auto before = static_cast<double>(allocated_bytes());
     setup.particles = particles;
     Simulation simulation(std::move(setup));
     simulation.step();
-    return std::max(0.0, static_cast<double>(resident_memory_bytes()) - static_cast<double>(before));
+    return static_cast<double>(allocated_bytes()) - before;
 }
 
 }  // namespace
 
-std::uint64_t resident_memory_bytes() {
-    (void)::malloc_trim(0);
-    std::uint64_t total = 0;
-    std::uint64_t resident = 0;
-    std::ifstream("/proc/self/statm") >> total >> resident;
-    return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+std::uint64_t allocated_bytes() {
+    const auto info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
 }
 
 MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,

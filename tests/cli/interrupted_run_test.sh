@@ -94,7 +94,7 @@ if [[ -f "$folder/resumed/checkpoint.bin" ]]; then
         grep -q "$(basename "$frame")" "$folder/resumed/particles.pvd" || fail "a frame is missing in the series"
     done
     grep -q '"interrupted": false' "$folder/resumed/summary.json" || fail "the resumed run was not finished"
-    open_with_vtk resumed
+    open_with_vtk resumed --attribute charge
 else
     echo "the run was too fast to be interrupted: resuming was not tried"
 fi

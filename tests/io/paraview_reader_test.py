@@ -1,5 +1,8 @@
-"""Opens a series with VTK's own readers, the ones that ParaView uses: paraview_reader_test.py FOLDER [--killed].
+"""Opens a series with VTK's own readers, the ones that ParaView uses.
 
+paraview_reader_test.py FOLDER [--killed] [--attribute NAME]...
+
+--attribute: the frames also hold this attribute of one component.
 --killed: the run was ended without warning, so its last frame may not be listed yet.
 """
 
@@ -122,11 +125,12 @@ def listed_files(folder, name, killed):
     return files
 
 
-def main(folder, killed):
+def main(folder, killed, attributes):
     vtkOutputWindow.SetGlobalWarningDisplay(0)
     frames = listed_files(folder, "particles", killed)
     first = read(os.path.join(folder, frames[0][1])).GetPointData()
     arrays = {**POINT_ARRAYS, **(SPHERE_ARRAYS if first.GetArray("spin") else {})}
+    arrays |= {name: ("double", 1) for name in attributes}
     counts = [check_frame(folder, time, name, arrays) for time, name in frames]
     if os.path.exists(os.path.join(folder, "contacts.pvd")):
         files = listed_files(folder, "contacts", killed)
@@ -135,4 +139,9 @@ def main(folder, killed):
     print(f"{len(frames)} frames with {counts} particles, colliders of {triangles} triangles, last time {frames[-1][0]!r}")
 
 
-main(sys.argv[1], "--killed" in sys.argv[2:])
+options = sys.argv[2:]
+main(
+    sys.argv[1],
+    "--killed" in options,
+    [name for flag, name in zip(options, options[1:]) if flag == "--attribute"],
+)

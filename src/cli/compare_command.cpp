@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "cli/option_values.h"
 #include "cli/progress_line.h"
 #include "cli/scene_arguments.h"
+#include "cli/text_table.h"
 #include "ricochet/compare/comparison.h"
 #include "ricochet/compare/comparison_files.h"
 #include "ricochet/core/atomic_file.h"
@@ -106,23 +106,11 @@ void write_report(const std::filesystem::path& folder, const Comparison& compari
     write_file(folder / kComparisonHtmlFile, comparison_html(comparison, source, pictures, remark));
 }
 
-void print_table(const std::vector<std::vector<std::string>>& table) {
-    std::vector<std::size_t> widths(table.front().size(), 0);
-    for (const auto& row : table) {
-        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-    }
-    for (const auto& row : table) {
-        std::string line = fmt::format("  {:<{}}", row.front(), widths.front());
-        for (std::size_t k = 1; k < row.size(); ++k) line += fmt::format("  {:>{}}", row[k], widths[k]);
-        fmt::print("{}\n", line);
-    }
-}
-
 void print_report(const Comparison& comparison, const CompareArguments& arguments, const std::string& failure) {
     fmt::print("{}: {} particles, {:.6g} s; reference exact at {:.4g} s\n", arguments.scene.file,
                comparison.reference.figures.statistics.emitted, comparison.options.duration,
                comparison.plan.reference_step);
-    print_table(comparison_table(comparison));
+    cli::print_table(comparison_table(comparison));
     for (const ComparisonRow* row : comparison.listed_rows()) {
         for (const std::string& warning : row->figures.warnings) {
             fmt::print("  note: {} at {:.4g} s: {}\n", name_of(row->response), row->time_step, warning);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/bench_command.h"
 #include "cli/check_command.h"
 #include "cli/compare_command.h"
 #include "cli/info_command.h"
@@ -35,8 +36,8 @@ using AddCommand = void (*)(CLI::App& app, int& exit_code);
 // One line a command.
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
-        add_check_command,  add_compare_command, add_info_command,
-        add_render_command, add_run_command,     add_schema_command,
+        add_bench_command,  add_check_command, add_compare_command, add_info_command,
+        add_render_command, add_run_command,   add_schema_command,
     };
     return list;
 }

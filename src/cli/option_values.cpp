@@ -59,4 +59,31 @@ int parse_thread_count(const std::string& text) {
                                  text, kMost));
 }
 
+std::vector<int> parse_thread_counts(const std::string& text) {
+    constexpr int kMost = 1024;
+    if (text.empty()) return {0};
+    std::vector<int> counts;
+    std::string_view rest = text;
+    while (true) {
+        const std::size_t comma = rest.find(',');
+        const auto threads = parse_all<int>(rest.substr(0, comma));
+        if (!threads || *threads < 1 || *threads > kMost) {
+            throw InputError(
+                fmt::format("--threads {}: expected whole numbers from 1 to {} with commas between them; "
+                            "leave it out for all processors",
+                            text, kMost));
+        }
+        counts.push_back(*threads);
+        if (comma == std::string_view::npos) return counts;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+std::uint32_t parse_repeats(const std::string& text) {
+    constexpr std::uint32_t kMost = 1000;
+    const auto repeats = parse_all<std::uint32_t>(text);
+    if (repeats && *repeats >= 1 && *repeats <= kMost) return *repeats;
+    throw InputError(fmt::format("--repeats {}: expected a whole number from 1 to {}", text, kMost));
+}
+
 }  // namespace ricochet::cli

@@ -1,6 +1,7 @@
 // Values of options that are more than one number.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,11 @@ struct PictureSize {
 
 /// A number of worker threads, 1..1024; 0 (all) for an empty text. Throws InputError.
 [[nodiscard]] int parse_thread_count(const std::string& text);
+
+/// Numbers of worker threads with commas between them, 1..1024 each; {0} (all) for an empty text. Throws InputError.
+[[nodiscard]] std::vector<int> parse_thread_counts(const std::string& text);
+
+/// How often something is timed, 1..1000. Throws InputError.
+[[nodiscard]] std::uint32_t parse_repeats(const std::string& text);
 
 }  // namespace ricochet::cli

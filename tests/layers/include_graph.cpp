@@ -28,8 +28,11 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
+        {"generators", {"core", "geometry"}},  // the mesh generator's library
+        {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"cli",
-         {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare"}},
+         {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare",
+          "bench"}},
     };
     return table;
 }
@@ -52,10 +55,10 @@ struct Door {
 constexpr std::array kDoors = {
     Door{"embree[34]/", "src/ricochet/geometry/embree\\.h"},
     Door{"ricochet/geometry/embree\\.h",
-         "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|bench/.*\\.cpp"},
+         "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|src/bench/native_rays\\.cpp"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
-    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|cli)/.*\\.cpp|tests/.*"},
+    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
@@ -70,10 +73,13 @@ bool matches(const std::string& text, const std::string& pattern) {
     return std::regex_match(text, std::regex(pattern));
 }
 
-/// The layer of a file of the library or the tool; nothing for other files and the umbrella header.
+/// The layer of a file of the library, the tool or what the tool alone is made of; nothing for other files and the
+/// umbrella header.
 std::optional<std::string> layer_of(const std::string& path) {
     if (path == kUmbrella) return std::nullopt;
     if (path.starts_with("src/cli/")) return "cli";
+    if (path.starts_with("src/bench/")) return "bench";
+    if (path.starts_with("meshes/generators/")) return "generators";
     if (!path.starts_with(kLibrary)) return std::nullopt;
     const std::string below = path.substr(kLibrary.size());
     const std::size_t slash = below.find('/');

@@ -13,7 +13,9 @@ namespace {
 SourceTree planted(const std::string& path, const std::string& name) {
     SourceTree tree;
     tree.files.push_back({path, {{7, name}}});
-    if (name.starts_with("ricochet/") || name.starts_with("cli/")) tree.files.push_back({"src/" + name, {}});
+    if (name.starts_with("ricochet/") || name.starts_with("cli/") || name.starts_with("bench/"))
+        tree.files.push_back({"src/" + name, {}});
+    if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
     tree.private_headers = {"src/ricochet/geometry/embree.h"};
     if (name != "ricochet/geometry/embree.h") tree.files.push_back({"src/ricochet/geometry/embree.h", {}});
@@ -60,8 +62,12 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
         {"src/ricochet/verify/verifier.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
         {"src/ricochet/geometry/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
-        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},        // in a public header
-        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},  // in a public header, of the right layer
+        {"src/ricochet/compare/comparison.cpp", "bench/cases.h"},  // the library knows no benchmark
+        {"src/bench/cases.cpp", "ricochet/io/scene.h"},            // whose cases are no scene files
+        {"src/bench/cases.cpp", "cli/run.h"},                      // and which knows no tool
+        {"src/bench/cases.cpp", "ricochet/geometry/embree.h"},     // only the reference rays open it
+        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},          // in a public header
+        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},    // in a public header, of the right layer
         {"src/ricochet/geometry/triangle_bvh.h", "ricochet/geometry/embree.h"},  // public includes private
         {"src/ricochet/io/scene.h", "ricochet/io/detail/json_node.h"},           // the same, by its folder
         {"src/ricochet/core/error.h", "fmt/core.h"},                             // in a public header
@@ -97,6 +103,10 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
         {"src/ricochet/simulation.cpp", "ricochet/verify/verifier.h"},
         {"src/cli/main.cpp", "CLI/CLI.hpp"},
         {"src/cli/main.cpp", "cli/run.h"},
+        {"src/cli/main.cpp", "bench/cases.h"},
+        {"src/bench/cases.cpp", "generators/rock.h"},
+        {"src/bench/measurement.cpp", "ricochet/simulation.h"},
+        {"src/bench/native_rays.cpp", "ricochet/geometry/embree.h"},
         {"tests/core/vec3_test.cpp", "support/counts.h"},
         {"tests/core/vec3_test.cpp", "ricochet/simulation.h"},
     };

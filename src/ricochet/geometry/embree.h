@@ -53,6 +53,19 @@ inline void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit
 #endif
 }
 
+/// Sixteen rays at once; those whose entry of `valid` is -1 are shot, the others (0) are left alone. `valid` wants to
+/// be aligned to 64 bytes.
+inline void intersect16(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit16& ray_hits) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context.base;
+    rtcIntersect16(valid, scene, &ray_hits, &arguments);
+#else
+    rtcIntersect16(valid, scene, &context.base, &ray_hits);
+#endif
+}
+
 /// Shoots a shadow ray; afterwards ray.tfar is -infinity when something is in the way.
 inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4

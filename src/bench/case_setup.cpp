@@ -1,0 +1,96 @@
+#include "bench/case_setup.h"
+
+#include <utility>
+
+#include "bench/insides.h"
+#include "generators/build_near.h"
+#include "generators/primitives.h"
+#include "generators/rock.h"
+#include "generators/terrain.h"
+#include "generators/vessels.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/random.h"
+#include "ricochet/dynamics/force.h"
+
+namespace ricochet::bench {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+
+// Edge length that build_near starts from, m: coarse for every ground but the terrain, where it is coarser still.
+constexpr double kCoarseEdge = 0.25;
+constexpr double kCoarseTerrainEdge = 15.0;
+
+TriangleMesh make_rough_bowl(double edge) {
+    TriangleMesh mesh = meshes::make_cavity({}, edge);
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        return mesh.vertices[t[0]].z + mesh.vertices[t[1]].z + mesh.vertices[t[2]].z > 0.0;
+    });
+    return mesh;
+}
+
+TriangleMesh make_ground(Ground ground, double edge) {
+    switch (ground) {
+        case Ground::cavity:
+            return meshes::make_cavity({}, edge);
+        case Ground::bowl:
+            return meshes::make_bowl({}, edge);
+        case Ground::rough_bowl:
+            return make_rough_bowl(edge);
+        case Ground::terrain:
+            return meshes::make_terrain({}, edge);
+        case Ground::wedge:
+            return meshes::make_wedge({.length = 1.0, .opening = 0.01, .width = 1.0}, edge);
+    }
+    throw InputError("a benchmark case names a ground that does not exist");
+}
+
+Vec3 place_in(const Case& c, RandomSequence& random) {
+    const Vec3 size = c.box.size();
+    Vec3 place = c.box.lower;
+    for (int axis = 0; axis < 3; ++axis) place[axis] += random.uniform() * size[axis];
+    if (c.start == Start::above_terrain) place.z += meshes::terrain_height({}, place.x, place.y);
+    return place;
+}
+
+}  // namespace
+
+std::optional<Vec3> heart_of(Ground ground) {
+    if (ground == Ground::cavity) return Vec3{};
+    if (ground == Ground::wedge) return Vec3{0.5, 0.0, 0.0};
+    return std::nullopt;
+}
+
+std::shared_ptr<const TriangleMesh> make_mesh(const Case& c) {
+    const double edge = c.ground == Ground::terrain ? kCoarseTerrainEdge : kCoarseEdge;
+    return std::make_shared<const TriangleMesh>(
+        meshes::build_near(c.triangles, edge, [&](double length) { return make_ground(c.ground, length); }));
+}
+
+std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh) {
+    std::optional<Insides> insides;
+    if (c.start == Start::inside) insides.emplace(mesh, heart_of(c.ground).value());
+    std::vector<Particle> particles(c.particles);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        RandomSequence random(kSeed, 0, i);
+        Vec3 place = place_in(c, random);
+        while (insides && !insides->contains(place)) place = place_in(c, random);
+        particles[i].position = place;
+        const double speed = random.uniform_around(c.speed, c.spread);
+        particles[i].velocity = c.drift + speed * random.unit_vector();
+    }
+    return particles;
+}
+
+SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh) {
+    SimulationSetup setup;
+    setup.options.time_step = c.time_step;
+    setup.options.duration = static_cast<double>(c.warm_up + c.steps) * c.time_step;
+    setup.options.seed = kSeed;
+    if (c.gravity != 0.0) setup.forces.push_back(make_gravity({0.0, 0.0, -c.gravity}));
+    setup.materials.push_back({.name = "ground", .restitution = c.restitution, .friction = c.friction});
+    setup.colliders.push_back({"ground", MeshShape{mesh, {}, ""}, 0});
+    return setup;
+}
+
+}  // namespace ricochet::bench

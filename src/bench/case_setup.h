@@ -1,0 +1,29 @@
+/// \file
+/// From a case to its mesh, its particles and its simulation.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bench/cases.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet::bench {
+
+/// A place that sees every point inside the ground in a straight line; nothing where the ground has no inside.
+[[nodiscard]] std::optional<Vec3> heart_of(Ground ground);
+
+/// The case's mesh, with about as many triangles as it wants.
+[[nodiscard]] std::shared_ptr<const TriangleMesh> make_mesh(const Case& c);
+
+/// The case's particles on its mesh; the same every time.
+[[nodiscard]] std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh);
+
+/// Everything for a simulation but the particles: exact response, ballistic steps, as many as the case has.
+[[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
+
+}  // namespace ricochet::bench

@@ -1,0 +1,62 @@
+/// \file
+/// The benchmark's table of cases: which mesh, which particles, which time step. The same table serves the program and
+/// the tests.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/vec3.h"
+
+namespace ricochet::bench {
+
+/// What particles run into.
+enum class Ground {
+    cavity,      ///< closed, rocky, about the origin, mean radius 1 m; particles inside
+    bowl,        ///< half a hollow sphere of 1 m, open at the top
+    rough_bowl,  ///< the lower half of the cavity, open at the top
+    terrain,     ///< open sheet of 120 m by 90 m
+    wedge,       ///< closed, two planes of 1 m that meet at a hundredth of a radian; particles inside
+};
+
+/// Where particles start.
+enum class Start {
+    box,            ///< anywhere in the box
+    inside,         ///< anywhere in the box that is inside the closed ground
+    above_terrain,  ///< anywhere over the box's base; z of the box counts from the ground
+};
+
+/// One case. Particles start at random places with random directions, so their order in memory is arbitrary.
+struct Case {
+    std::string_view suite = {};
+    std::string_view name = {};  ///< unique in its suite
+    Ground ground = Ground::cavity;
+    std::size_t triangles = 0;  ///< wanted; the mesh comes near it
+    std::size_t particles = 0;
+    double time_step = 0.0;  ///< s
+    double restitution = 1.0;
+    double friction = 0.0;
+    double gravity = 0.0;  ///< m/s^2, downward
+    Start start = Start::box;
+    Box3 box = {};              ///< m, of starting places
+    Vec3 drift = {};            ///< m/s, mean velocity
+    double speed = 0.0;         ///< m/s, added to the drift in a random direction
+    double spread = 0.0;        ///< m/s, the speed varies by as much up and down
+    std::uint64_t warm_up = 0;  ///< steps before what is measured
+    std::uint64_t steps = 1;    ///< measured steps
+};
+
+/// All cases, suite by suite.
+[[nodiscard]] const std::vector<Case>& all_cases();
+
+/// The names of the suites in the order of all_cases().
+[[nodiscard]] std::vector<std::string> suite_names();
+
+/// The cases of a suite. Throws InputError that lists the suites when there is none of this name.
+[[nodiscard]] std::vector<Case> cases_of(std::string_view suite);
+
+}  // namespace ricochet::bench

@@ -1,0 +1,28 @@
+/// \file
+/// What a case's simulation holds of the process's memory.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bench/cases.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::bench {
+
+/// Bytes that the process has allocated and not freed; 0 where the allocator does not tell.
+[[nodiscard]] std::uint64_t allocated_bytes();
+
+/// What a case's simulation holds after a step.
+struct MemoryUse {
+    double bytes_per_particle = 0.0;  ///< with what the step itself keeps for the next one
+    double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
+};
+
+/// Builds the case's simulation with and without its particles and looks at what it has allocated.
+[[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
+                                       const std::vector<Particle>& particles);
+
+}  // namespace ricochet::bench

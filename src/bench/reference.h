@@ -1,0 +1,52 @@
+/// \file
+/// The work that the ray library does by itself on a case's stretches, ready to be timed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bench/native_rays.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::bench {
+
+/// Rays and flights, in arbitrary and in spatial order. What can be prepared is prepared: rays are single precision
+/// already, and sorting takes no part in what is timed.
+class Reference {
+public:
+    /// The flights of some states of the simulation, as it has them: in arbitrary order.
+    Reference(const TriangleMesh& mesh, const std::vector<std::vector<Flight>>& states,
+              const NativeRays::BounceRules& rules);
+
+    /// One ray a flight, one at a time, in arbitrary order.
+    void trace() { rays_.trace(segments_, hits_); }
+    /// The same rays, each state's in spatial order, in packets of sixteen.
+    void trace_sorted() { rays_.trace_packets(sorted_segments_, hits_); }
+    /// The usual bounce loop, in arbitrary order.
+    void bounce() { bounces_ = rays_.bounce(flights_, rules_, ends_); }
+
+    /// Lets every flight bounce and counts those that end outside a closed mesh, seen from its heart.
+    void count_leaks(const TriangleMesh& mesh, const Vec3& heart);
+
+    [[nodiscard]] std::size_t rays() const { return flights_.size(); }
+    /// Of the last bounce().
+    [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
+    /// Nothing before count_leaks().
+    [[nodiscard]] std::optional<std::uint64_t> leaks() const { return leaks_; }
+
+private:
+    NativeRays rays_;
+    NativeRays::BounceRules rules_;
+    std::vector<Flight> flights_;
+    std::vector<RaySegment> segments_;
+    std::vector<RaySegment> sorted_segments_;
+    std::vector<std::uint32_t> hits_;
+    std::vector<Vec3> ends_;
+    std::uint64_t bounces_ = 0;
+    std::optional<std::uint64_t> leaks_;
+};
+
+}  // namespace ricochet::bench

@@ -1,5 +1,6 @@
 // A running simulation as bytes and back.
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <type_traits>
 
@@ -88,6 +89,20 @@ void archive_totals(Archive& a, std::vector<SurfaceTotals>& totals) {
     }
 }
 
+/// As it lies in memory, so that no counter can be forgotten; the gap behind its one short counter is made zero, since
+/// what it holds is nobody's.
+template <class Archive>
+void archive_statistics(Archive& a, SimulationStatistics& statistics) {
+    static_assert(std::is_trivially_copyable_v<SimulationStatistics>);
+    constexpr std::size_t kGap = offsetof(SimulationStatistics, bounces_per_step_max) + sizeof(std::uint32_t);
+    static_assert(offsetof(SimulationStatistics, resting) == kGap + sizeof(std::uint32_t));
+    std::array<std::byte, sizeof(SimulationStatistics)> bytes{};
+    std::memcpy(bytes.data(), &statistics, sizeof(statistics));
+    std::memset(bytes.data() + kGap, 0, sizeof(std::uint32_t));
+    a(bytes);
+    std::memcpy(&statistics, bytes.data(), sizeof(statistics));
+}
+
 /// Reading only: what is read must be what is expected.
 template <class Archive, class T>
 void expect(Archive& a, const T& expected, const char* complaint) {
@@ -111,7 +126,6 @@ std::uint64_t Simulation::Impl::collider_hash() const {
 
 template <class Archive>
 void Simulation::Impl::archive(Archive& a) {
-    static_assert(std::is_trivially_copyable_v<SimulationStatistics>);
     expect(a, kStateFormat, "not a state that this version can read");
     expect(a, collider_hash(), "the state belongs to other colliders");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
@@ -120,10 +134,7 @@ void Simulation::Impl::archive(Archive& a) {
            "the state belongs to other attributes");
     expect(a, static_cast<std::uint64_t>(totals.size()), "the state belongs to another choice of totals");
     expect(a, options.time_step, "the state belongs to another time step");
-    std::array<std::byte, sizeof(SimulationStatistics)> bytes{};
-    std::memcpy(bytes.data(), &statistics, sizeof(statistics));
-    a(bytes);
-    std::memcpy(&statistics, bytes.data(), sizeof(statistics));
+    archive_statistics(a, statistics);
     a(next_id);
     archive_particles(a, particles);
     archive_sides(a, sides);

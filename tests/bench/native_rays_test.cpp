@@ -43,7 +43,7 @@ std::vector<std::uint32_t> first_by_brute_force(const TriangleMesh& mesh, const 
     const Vec3 along = doubles(segment.along);
     const auto fraction_of = [&](const Triangle& t, double grow) {
         const Vec3 middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
-        const auto corner = [&](int k) { return middle + (1.0 + grow) * (mesh.vertices[t[k]] - middle); };
+        const auto corner = [&](std::size_t k) { return middle + (1.0 + grow) * (mesh.vertices[t[k]] - middle); };
         const Vec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
         const double fraction = dot(corner(0) - from, normal) / dot(along, normal);
         // The segment made longer at both ends where it is allowed to.

@@ -100,6 +100,12 @@ struct Simulation::Impl {
     void add_weight(std::size_t i, double until, double sign, BlockCounts& counts);
     void add_weights_of_sleepers(double sign);
     void collect_violations(const std::vector<BlockCounts>& blocks);
+    // In a part of a step: nothing moves it, or an earlier part has removed it.
+    [[nodiscard]] bool stands_still(std::size_t i) const {
+        return particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0;
+    }
+    void book(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+              BlockCounts& counts);
     void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
     void retire(double now);
     template <class Archive>

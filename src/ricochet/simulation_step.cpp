@@ -128,7 +128,7 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     scratch.record_contacts = keeps_records();
     scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
-        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || particles.absorbed[i] != 0) continue;
+        if (stands_still(i)) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
         if (stop <= start || is_asleep(i)) continue;
@@ -139,16 +139,21 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
         const double duration = as_planned ? particle.planned->path.duration : stop - start;
         const MoveOutcome outcome = response->move(particle, duration, scratch);
         if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
-        const bool was_slow = length_squared(particles.velocity[i]) <= kFastestSpeed * kFastestSpeed;
-        store(i, particle, outcome);
-        if (was_slow && length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed && !counts.runaway) {
-            counts.runaway = i;
-        }
-        particles.booked_until[i] = stop;
-        counts.add(outcome);
+        book(i, particle, outcome, stop, counts);
     }
     if (!totals.empty()) add_hits(scratch.hits, counts);
     counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
+}
+
+// Takes over what came out of a particle's move, and notices one that forces have brought beyond all bounds.
+void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                            BlockCounts& counts) {
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
+    const bool was_fast = is_fast();
+    store(i, moved, outcome);
+    if (!was_fast && is_fast() && !counts.runaway) counts.runaway = i;
+    particles.booked_until[i] = until;
+    counts.add(outcome);
 }
 
 // All particles go back together: see rollback.h.
@@ -161,7 +166,7 @@ void Simulation::Impl::move_system(std::size_t first, double from, double to, st
         system[k].particle = moving(i, start);
         system[k].start = start;
         system[k].stop = stop;
-        system[k].is_out = particles.frozen[i] != 0 || particles.pinned[i] != 0;
+        system[k].is_out = stands_still(i);
     }
     std::vector<MoveScratch> scratch(blocks.size());
     for (MoveScratch& block : scratch) {
@@ -172,16 +177,14 @@ void Simulation::Impl::move_system(std::size_t first, double from, double to, st
     for (std::size_t k = 0; k < system.size(); ++k) {
         const std::size_t i = first + k;
         SystemParticle& moved = system[k];
-        if (particles.frozen[i] != 0 || particles.pinned[i] != 0 || moved.stop <= moved.start) continue;
+        if (stands_still(i) || moved.stop <= moved.start) continue;
         BlockCounts& counts = blocks[k / kParticleBlock];
         if (check) check->look_at(i, particles, moved.particle.state, moved.stop, moved.legs, counts.violations);
-        store(i, moved.particle, moved.outcome);
-        particles.booked_until[i] = moved.stop;
-        counts.add(moved.outcome);
+        book(i, moved.particle, moved.outcome, moved.stop, counts);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         if (!totals.empty()) add_hits(scratch[k].hits, blocks[k]);
-        if (keeps_records()) blocks[k].records = std::move(scratch[k].records);
+        blocks[k].records.insert(blocks[k].records.end(), scratch[k].records.begin(), scratch[k].records.end());
     }
 }
 

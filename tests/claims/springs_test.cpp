@@ -101,15 +101,19 @@ TEST(Springs, AnExplodingRunStopsAndSaysWhenAndWhoAndHowFast) {
 }
 
 TEST(Springs, AForceThatOutrunsLightStopsTheRun) {
-    SimulationSetup setup;
-    setup.particles.push_back(particle_at({1, 0, 0}));
-    setup.forces.push_back(make_acceleration([](const ForceInput& p) { return -1e6 * p.position; }));
-    setup.options.integrator = IntegratorKind::forward_euler;
-    setup.options.time_step = 0.1;
-    setup.options.duration = 100.0;
-    Simulation simulation(std::move(setup));
-    EXPECT_THROW(while (!simulation.finished()) simulation.step();, DivergedError);
-    EXPECT_LT(simulation.time(), 2.0);
+    for (const bool together : {false, true}) {
+        SimulationSetup setup;
+        setup.options.response = together ? ResponseKind::rollback : ResponseKind::exact;
+        setup.options.rollback.global = together;
+        setup.particles.push_back(particle_at({1, 0, 0}));
+        setup.forces.push_back(make_acceleration([](const ForceInput& p) { return -1e6 * p.position; }));
+        setup.options.integrator = IntegratorKind::forward_euler;
+        setup.options.time_step = 0.1;
+        setup.options.duration = 100.0;
+        Simulation simulation(std::move(setup));
+        EXPECT_THROW(while (!simulation.finished()) simulation.step();, DivergedError);
+        EXPECT_LT(simulation.time(), 2.0);
+    }
 }
 
 TEST(Springs, StableRunsAreNotStopped) {

@@ -64,7 +64,6 @@
 #include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/distance_polynomials.h"
-#include "ricochet/geometry/line_probe.h"
 #include "ricochet/geometry/local_shape.h"
 #include "ricochet/geometry/mesh_format.h"
 #include "ricochet/geometry/mesh_interior.h"

@@ -105,6 +105,8 @@ struct Simulation::Impl {
     void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     [[nodiscard]] DueParticles coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
+    [[nodiscard]] std::size_t coast_block(std::size_t begin, std::size_t end, double from, double to,
+                                          BlockCounts& counts);
     void order_by_place(DueParticles& due) const;
     void move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts);
     void add_cut_off(const std::vector<BlockCounts>& blocks);

@@ -89,10 +89,6 @@ void CollisionWorld::prepare_radius(double radius) {
     classes_.insert(at, RadiusClass{largest, TriangleBvh(clusters_, reach)});
 }
 
-void CollisionWorld::prepare_clearance() {
-    if (!clearance_ && !triangles_.empty()) clearance_.emplace(vertices_, triangles_);
-}
-
 const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
     for (const RadiusClass& c : classes_) {
         if (radius <= c.largest_radius) return c.bvh;

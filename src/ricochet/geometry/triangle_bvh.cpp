@@ -176,7 +176,6 @@ struct TriangleBvh::Impl {
     Clusters clusters;
     double reach = 0.0;
     double slack = 0.0;
-    double largest = 0.0;  ///< m, coordinate
     FloatFrame frame;
     double padding = 0.0;  ///< in the float frame: rounding, slack and reach
     Box3 clip_box;         ///< world; generously larger than the padded boxes
@@ -203,10 +202,9 @@ void TriangleBvh::Impl::set_frame() {
     Box3 box;
     for (const TriangleCluster& cluster : *clusters) box.include(cluster.box());
     frame = frame_of(box);
-    largest = max_abs(max(abs(box.lower), abs(box.upper)));
     // Half extent H and a clipped leg of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
-    slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * largest;
+    slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
     const double beside = frame.scale * (reach + slack);
     padding = kBoxPaddingUnits * 0x1p-24 * (4.5 * half_extent + beside) + beside;
     clip_box = grown(box, 2.0 * padding / frame.scale);
@@ -306,7 +304,7 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
 
 void TriangleBvh::visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visitor) const {
     Query query{context, impl_->clusters.get(), nullptr, visitor};
-    query.tube = {from, to - from, margin, std::max({max_abs(from), max_abs(to), impl_->largest})};
+    query.tube = {from, to - from, margin, length(to - from)};
     impl_->visit_segment(from, to, query);
 }
 

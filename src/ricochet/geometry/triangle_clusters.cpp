@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "ricochet/core/morton.h"
 #include "ricochet/core/parallel.h"
@@ -11,16 +12,23 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 12;
 
-/// Of a triple product with coordinates below 1: some twenty roundings of 2^-53 and the size 4 of differences.
-constexpr double kRounding = 0x1p-46;
+/// Of the height of a point above a triangle's plane times the size of its normal, in single precision, for corners and
+/// points of size 1: some sixty roundings of 2^-24, times the edges' sizes.
+constexpr float kRounding = 0x1p-18F;
+
+/// Of the direction of an edge, whose ends are rounded to 2^-25.
+constexpr float kEdgeRounding = 0x1p-21F;
+
+/// Of a fraction that is a quotient of such numbers.
+constexpr float kFractionRounding = 0x1p-20F;
 
 /// How much longer than its largest triangle's box a cluster's may be: next to each other along the curve need not be
 /// next to each other in space.
 constexpr double kLongestBox = 2.0;
 
-// Four numbers at once, in whatever registers the processor has (GCC's and Clang's vector extensions).
-using Quad = double __attribute__((vector_size(32)));
-using Mask = long long __attribute__((vector_size(32)));
+// Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
+using Quad = float __attribute__((vector_size(16)));
+using Mask = int __attribute__((vector_size(16)));
 
 struct QuadVec {
     Quad x;
@@ -28,147 +36,117 @@ struct QuadVec {
     Quad z;
 };
 
-#define RICOCHET_INLINE [[gnu::always_inline]] inline
-
-RICOCHET_INLINE void load(const TriangleCluster::Lanes& lanes, Quad& quad) {
-    __builtin_memcpy(&quad, lanes.data(), sizeof(quad));
+Quad loaded(const TriangleCluster::Lanes& lanes) {
+    Quad quad;
+    std::memcpy(&quad, lanes.data(), sizeof(quad));
+    return quad;
 }
 
-RICOCHET_INLINE void subtract(const QuadVec& a, const QuadVec& b, QuadVec& result) {
-    result.x = a.x - b.x;
-    result.y = a.y - b.y;
-    result.z = a.z - b.z;
+QuadVec operator-(const QuadVec& a, const QuadVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+QuadVec cross(const QuadVec& a, const QuadVec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-RICOCHET_INLINE void take_cross(const QuadVec& a, const QuadVec& b, QuadVec& result) {
-    result.x = a.y * b.z - a.z * b.y;
-    result.y = a.z * b.x - a.x * b.z;
-    result.z = a.x * b.y - a.y * b.x;
-}
+Quad dot(const QuadVec& a, const QuadVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-RICOCHET_INLINE void take_dot(const QuadVec& a, const QuadVec& b, Quad& result) {
-    result = a.x * b.x + a.y * b.y + a.z * b.z;
-}
+Quad abs(const Quad& a) { return a < 0.0F ? -a : a; }
 
-RICOCHET_INLINE void take_abs(const Quad& a, Quad& result) { result = a < 0.0 ? -a : a; }
+Quad min(const Quad& a, const Quad& b) { return a < b ? a : b; }
+
+Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
 
 /// |x| + |y| + |z|, at least the length and at most sqrt(3) of it.
-RICOCHET_INLINE void take_size(const QuadVec& a, Quad& result) {
-    Quad x;
-    Quad y;
-    Quad z;
-    take_abs(a.x, x);
-    take_abs(a.y, y);
-    take_abs(a.z, z);
-    result = x + y + z;
+Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+
+/// The part of a segment that passes by a cluster, in the cluster's units.
+struct LocalSegment {
+    double begin;  ///< fractions of the whole segment
+    double end;
+    std::array<float, 3> from;
+    std::array<float, 3> along;
+    float margin;
+    float reach;  ///< at least the size of all numbers here and of differences to the corners
+
+    [[nodiscard]] QuadVec at(const QuadVec& start, const Quad& fraction) const {
+        return {start.x + fraction * along[0], start.y + fraction * along[1], start.z + fraction * along[2]};
+    }
+};
+
+/// Only what is within a size and the margin of the centre can be within the margin of a triangle. The part is empty
+/// (begin > end) when nothing is.
+LocalSegment localized(const TriangleCluster& cluster, const SegmentTube& tube) {
+    const double margin = tube.margin * (1.0 + 0x1p-20);  // what else rounding does here is far below the bounds' own
+    LocalSegment local{0.0, 1.0, {}, {}, static_cast<float>(margin / cluster.size), 0.0F};
+    if (tube.length > 0.0) {
+        const double middle = dot(cluster.center - tube.from, tube.along) / (tube.length * tube.length);
+        const double half = (cluster.size + margin) / tube.length;
+        local.begin = std::max(0.0, middle - half);
+        local.end = std::min(1.0, middle + half);
+    }
+    const double scale = 1.0 / cluster.size;
+    const Vec3 from = scale * (tube.from + local.begin * tube.along - cluster.center);
+    const Vec3 along = (scale * (local.end - local.begin)) * tube.along;
+    local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
+    local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
+    local.reach = static_cast<float>(1.0 + max_abs(from) + max_abs(along));
+    return local;
 }
 
-RICOCHET_INLINE void at_fraction(const QuadVec& from, const Vec3& along, const Quad& fraction, QuadVec& result) {
-    result.x = from.x + fraction * along.x;
-    result.y = from.y + fraction * along.y;
-    result.z = from.z + fraction * along.z;
-}
-
-/// All bits where both points are further than the bound beyond the edge that leaves the corner; offsets are from the
-/// cluster's first corners.
-RICOCHET_INLINE void beyond_edge(const QuadVec& corner, const QuadVec& edge, const QuadVec& normal, const Quad& bound,
-                                 const QuadVec& p, const QuadVec& q, Mask& result) {
-    QuadVec outward;
-    take_cross(edge, normal, outward);
-    QuadVec from_corner;
-    Quad at_p;
-    Quad at_q;
-    subtract(p, corner, from_corner);
-    take_dot(outward, from_corner, at_p);
-    subtract(q, corner, from_corner);
-    take_dot(outward, from_corner, at_q);
-    const Quad nearest = at_p < at_q ? at_p : at_q;
-    Quad edge_squared;
-    take_dot(edge, edge, edge_squared);
-    result = (nearest > 0.0) & (nearest * nearest > edge_squared * bound * bound);
+/// All bits where both points are further than the bound beyond the edge that leaves the corner.
+Mask beyond_edge(const QuadVec& corner, const QuadVec& edge, const QuadVec& normal, const Quad& bound,
+                 const Quad& rounding, const QuadVec& p, const QuadVec& q) {
+    const QuadVec outward = cross(edge, normal);
+    const Quad nearest = min(dot(outward, p - corner), dot(outward, q - corner));
+    return nearest > size_of(edge) * bound + rounding;
 }
 
 // The tube can touch a triangle only while its segment is within the margin of the triangle's plane. It does not when
 // over all of that stretch the segment stays beyond one edge: heights over the edge are linear, so both ends of the
 // stretch tell. Everything is compared without dividing by the normal's length, so slivers only make the bound larger.
 // A NaN, from a segment in the plane, counts as near.
-RICOCHET_INLINE unsigned near_lanes(const TriangleCluster& cluster, const SegmentTube& tube, TubeStretches& stretches) {
-    std::array<QuadVec, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-        load(cluster.x[k], corner[k].x);
-        load(cluster.y[k], corner[k].y);
-        load(cluster.z[k], corner[k].z);
-    }
-    QuadVec ab;
-    QuadVec bc;
-    QuadVec ca;
-    QuadVec ac;
-    subtract(corner[1], corner[0], ab);
-    subtract(corner[2], corner[1], bc);
-    subtract(corner[0], corner[2], ca);
-    subtract(corner[2], corner[0], ac);
-    QuadVec normal;
-    take_cross(ab, ac, normal);
-    Quad size;
-    Quad size_ab;
-    Quad size_ac;
-    take_size(normal, size);
-    take_size(ab, size_ab);
-    take_size(ac, size_ac);
-    const Quad bound = tube.margin * size + (kRounding * tube.largest) * (size_ab * size_ac);
-    QuadVec start;
-    start.x = tube.from.x - corner[0].x;
-    start.y = tube.from.y - corner[0].y;
-    start.z = tube.from.z - corner[0].z;
-    Quad height;
-    take_dot(normal, start, height);
-    const Quad slope = normal.x * tube.along.x + normal.y * tube.along.y + normal.z * tube.along.z;
+unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, TubeStretches& stretches) {
+    const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
+    const QuadVec b{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])};
+    const QuadVec c{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])};
+    const QuadVec ab = b - a;
+    const QuadVec ac = c - a;
+    const QuadVec normal = cross(ab, ac);
+    const Quad size = size_of(normal);
+    const Quad rounding = (kRounding * segment.reach) * (size_of(ab) + size_of(ac));
+    const Quad bound = segment.margin * size + rounding;
+    const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
+    const Quad height = dot(normal, start);
+    const Quad slope = normal.x * segment.along[0] + normal.y * segment.along[1] + normal.z * segment.along[2];
     const Quad first = (-bound - height) / slope;
     const Quad second = (bound - height) / slope;
-    Quad enter = first < second ? first : second;
-    Quad leave = first < second ? second : first;
     const Quad none{};
-    enter = enter > 0.0 ? enter : none;
-    leave = leave < 1.0 ? leave : none + 1.0;
-    Mask near = ~(enter > leave);
+    const Quad lower = min(first, second);
+    const Quad upper = max(first, second);
+    Quad enter = lower > 0.0F ? lower - kFractionRounding * lower : none;
+    Quad leave = upper < 1.0F ? upper + kFractionRounding * abs(upper) : none + 1.0F;
+    // A slope that is rounding says nothing about where.
+    const Mask is_level = abs(slope) <= rounding;
+    enter = is_level ? none : enter;
+    leave = is_level ? none + 1.0F : leave;
+    Mask near = is_level ? abs(height) <= bound + abs(slope) + rounding : ~(enter > leave);
     if ((near[0] | near[1] | near[2] | near[3]) == 0) return 0;
-    QuadVec p;
-    QuadVec q;
-    at_fraction(start, tube.along, enter, p);
-    at_fraction(start, tube.along, leave, q);
-    Mask beyond;
-    const QuadVec origin{none, none, none};
-    beyond_edge(origin, ab, normal, bound, p, q, beyond);
-    near &= ~beyond;
-    beyond_edge(ab, bc, normal, bound, p, q, beyond);
-    near &= ~beyond;
-    beyond_edge(ac, ca, normal, bound, p, q, beyond);
-    near &= ~beyond;
-    __builtin_memcpy(stretches.enter.data(), &enter, sizeof(enter));
-    __builtin_memcpy(stretches.leave.data(), &leave, sizeof(leave));
+    const QuadVec p = segment.at(start, enter);
+    const QuadVec q = segment.at(start, leave);
+    const Quad of_edges = (kEdgeRounding * segment.reach) * size;
+    near &= ~beyond_edge({none, none, none}, ab, normal, bound, of_edges, p, q);
+    near &= ~beyond_edge(ab, c - b, normal, bound, of_edges, p, q);
+    near &= ~beyond_edge(ac, a - c, normal, bound, of_edges, p, q);
+    const double span = segment.end - segment.begin;
     unsigned bits = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
-        if (near[lane] != 0 && cluster.triangle[lane] != kNoTriangle) bits |= 1U << lane;
+        if (near[lane] == 0 || cluster.triangle[lane] == kNoTriangle) continue;
+        bits |= 1U << lane;
+        stretches.enter[lane] = segment.begin + static_cast<double>(enter[lane]) * span;
+        stretches.leave[lane] = segment.begin + static_cast<double>(leave[lane]) * span;
     }
     return bits;
 }
-
-using NearLanes = unsigned (*)(const TriangleCluster&, const SegmentTube&, TubeStretches&);
-
-unsigned near_lanes_plain(const TriangleCluster& cluster, const SegmentTube& tube, TubeStretches& stretches) {
-    return near_lanes(cluster, tube, stretches);
-}
-
-#if defined(__x86_64__)
-[[gnu::target("avx2")]] unsigned near_lanes_wide(const TriangleCluster& cluster, const SegmentTube& tube,
-                                                 TubeStretches& stretches) {
-    return near_lanes(cluster, tube, stretches);
-}
-
-NearLanes fastest() { return __builtin_cpu_supports("avx2") != 0 ? near_lanes_wide : near_lanes_plain; }
-#else
-NearLanes fastest() { return near_lanes_plain; }
-#endif
 
 Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {
     Box3 box;
@@ -196,16 +174,21 @@ std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std:
 
 TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                            std::span<const std::uint32_t> members) {
+    Box3 box;
+    for (const std::uint32_t triangle : members) box.include(box_of(vertices, triangles[triangle]));
     TriangleCluster cluster;
+    cluster.center = box.center();
+    const double extent = max_abs(box.size());
+    if (extent > 0.0) cluster.size = std::ldexp(1.0, std::ilogb(extent) + 1);
     for (std::size_t lane = 0; lane < 4; ++lane) {
         const bool is_there = lane < members.size();
         const std::uint32_t triangle = members[is_there ? lane : 0];
         cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3& corner = vertices[triangles[triangle][k]];
-            cluster.x[k][lane] = corner.x;
-            cluster.y[k][lane] = corner.y;
-            cluster.z[k][lane] = corner.z;
+            const Vec3 corner = (vertices[triangles[triangle][k]] - cluster.center) / cluster.size;
+            cluster.x[k][lane] = static_cast<float>(corner.x);
+            cluster.y[k][lane] = static_cast<float>(corner.y);
+            cluster.z[k][lane] = static_cast<float>(corner.z);
         }
     }
     return cluster;
@@ -238,16 +221,18 @@ std::vector<std::uint32_t> cluster_ends(std::span<const Vec3> vertices, std::spa
 }  // namespace
 
 unsigned TriangleCluster::near(const SegmentTube& tube, TubeStretches& stretches) const {
-    static const NearLanes function = fastest();
-    return function(*this, tube, stretches);
+    const LocalSegment segment = localized(*this, tube);
+    return segment.begin > segment.end ? 0 : near_lanes(*this, segment, stretches);
 }
 
 Box3 TriangleCluster::box() const {
     Box3 result;
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        for (std::size_t k = 0; k < 3; ++k) result.include({x[k][lane], y[k][lane], z[k][lane]});
+        for (std::size_t k = 0; k < 3; ++k) result.include(center + size * Vec3{x[k][lane], y[k][lane], z[k][lane]});
     }
-    return result;
+    const double rounding = 0x1p-23 * size;
+    const Vec3 by{rounding, rounding, rounding};
+    return {result.lower - by, result.upper + by};
 }
 
 std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {

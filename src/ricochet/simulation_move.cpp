@@ -13,8 +13,8 @@ namespace ricochet {
 namespace {
 
 /// Order pays for neither few particles nor few triangles, whose hierarchy stays in the nearest memory anyway.
-constexpr std::size_t kFewDue = 4096;
-constexpr std::size_t kFewTriangles = 4096;
+constexpr std::size_t kFewDue = 512;
+constexpr std::size_t kFewTriangles = 1024;
 
 }  // namespace
 

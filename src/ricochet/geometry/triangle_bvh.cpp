@@ -304,7 +304,7 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
 
 void TriangleBvh::visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visitor) const {
     Query query{context, impl_->clusters.get(), nullptr, visitor};
-    query.tube = {from, to - from, margin, length(to - from)};
+    query.tube = {from, to, margin};
     impl_->visit_segment(from, to, query);
 }
 

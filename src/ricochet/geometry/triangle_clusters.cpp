@@ -1,6 +1,7 @@
 #include "ricochet/geometry/triangle_clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -12,12 +13,15 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 12;
 
-/// Of the height of a point above a triangle's plane times the size of its normal, in single precision, for corners and
-/// points of size 1: some sixty roundings of 2^-24, times the edges' sizes.
-constexpr float kRounding = 0x1p-18F;
+/// Of the height of a point of size 1 above a triangle's plane, times the length of its normal, in single precision:
+/// some sixty roundings of 2^-24 of edges that are no longer than 2.
+constexpr float kRounding = 0x1p-17F;
 
 /// Of the direction of an edge, whose ends are rounded to 2^-25.
-constexpr float kEdgeRounding = 0x1p-21F;
+constexpr float kEdgeRounding = 0x1p-20F;
+
+/// No edge is longer: the diagonal of the unit cube and a little more.
+constexpr float kLongestEdge = 1.75F;
 
 /// Of a fraction that is a quotient of such numbers.
 constexpr float kFractionRounding = 0x1p-20F;
@@ -50,7 +54,9 @@ QuadVec cross(const QuadVec& a, const QuadVec& b) {
 
 Quad dot(const QuadVec& a, const QuadVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-Quad abs(const Quad& a) { return a < 0.0F ? -a : a; }
+Quad dot(const QuadVec& a, const std::array<float, 3>& b) { return a.x * b[0] + a.y * b[1] + a.z * b[2]; }
+
+Quad abs(const Quad& a) { return std::bit_cast<Quad>(std::bit_cast<Mask>(a) & 0x7FFFFFFF); }
 
 Quad min(const Quad& a, const Quad& b) { return a < b ? a : b; }
 
@@ -67,76 +73,70 @@ struct LocalSegment {
     std::array<float, 3> along;
     float margin;
     float reach;  ///< at least the size of all numbers here and of differences to the corners
-
-    [[nodiscard]] QuadVec at(const QuadVec& start, const Quad& fraction) const {
-        return {start.x + fraction * along[0], start.y + fraction * along[1], start.z + fraction * along[2]};
-    }
 };
 
 /// Only what is within a size and the margin of the centre can be within the margin of a triangle. The part is empty
 /// (begin > end) when nothing is.
 LocalSegment localized(const TriangleCluster& cluster, const SegmentTube& tube) {
     const double margin = tube.margin * (1.0 + 0x1p-20);  // what else rounding does here is far below the bounds' own
-    LocalSegment local{0.0, 1.0, {}, {}, static_cast<float>(margin / cluster.size), 0.0F};
-    if (tube.length > 0.0) {
-        const double middle = dot(cluster.center - tube.from, tube.along) / (tube.length * tube.length);
-        const double half = (cluster.size + margin) / tube.length;
+    LocalSegment local{0.0, 1.0, {}, {}, static_cast<float>(margin * cluster.per_size), 0.0F};
+    const Vec3 offset = cluster.center - tube.from;
+    if (std::isfinite(tube.per_length)) {
+        const double middle = dot(offset, tube.along) * (tube.per_length * tube.per_length);
+        const double half = (1.0 / cluster.per_size + margin) * tube.per_length;
         local.begin = std::max(0.0, middle - half);
         local.end = std::min(1.0, middle + half);
     }
-    const double scale = 1.0 / cluster.size;
-    const Vec3 from = scale * (tube.from + local.begin * tube.along - cluster.center);
-    const Vec3 along = (scale * (local.end - local.begin)) * tube.along;
+    const Vec3 from = cluster.per_size * (local.begin * tube.along - offset);
+    const Vec3 along = (cluster.per_size * (local.end - local.begin)) * tube.along;
     local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
     local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
     local.reach = static_cast<float>(1.0 + max_abs(from) + max_abs(along));
     return local;
 }
 
-/// All bits where both points are further than the bound beyond the edge that leaves the corner.
-Mask beyond_edge(const QuadVec& corner, const QuadVec& edge, const QuadVec& normal, const Quad& bound,
-                 const Quad& rounding, const QuadVec& p, const QuadVec& q) {
-    const QuadVec outward = cross(edge, normal);
-    const Quad nearest = min(dot(outward, p - corner), dot(outward, q - corner));
-    return nearest > size_of(edge) * bound + rounding;
+/// How far beyond an edge the ends of a stretch are, at least; times the lengths of edge and normal.
+Quad beyond(const QuadVec& outward, const QuadVec& from_corner, const LocalSegment& segment, const Quad& enter,
+            const Quad& leave, Quad& at_enter, Quad& at_leave) {
+    const Quad start = dot(outward, from_corner);
+    const Quad slope = dot(outward, segment.along);
+    at_enter = start + enter * slope;
+    at_leave = start + leave * slope;
+    return min(at_enter, at_leave);
 }
 
 // The tube can touch a triangle only while its segment is within the margin of the triangle's plane. It does not when
 // over all of that stretch the segment stays beyond one edge: heights over the edge are linear, so both ends of the
-// stretch tell. Everything is compared without dividing by the normal's length, so slivers only make the bound larger.
-// A NaN, from a segment in the plane, counts as near.
+// stretch tell, and the three of them always add up to -|normal|^2. Everything is compared without dividing by the
+// normal's length, so slivers only make the bound larger.
 unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, TubeStretches& stretches) {
     const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
-    const QuadVec b{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])};
-    const QuadVec c{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])};
-    const QuadVec ab = b - a;
-    const QuadVec ac = c - a;
+    const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
+    const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
     const QuadVec normal = cross(ab, ac);
     const Quad size = size_of(normal);
-    const Quad rounding = (kRounding * segment.reach) * (size_of(ab) + size_of(ac));
+    const float rounding = kRounding * segment.reach;
     const Quad bound = segment.margin * size + rounding;
     const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
     const Quad height = dot(normal, start);
-    const Quad slope = normal.x * segment.along[0] + normal.y * segment.along[1] + normal.z * segment.along[2];
-    const Quad first = (-bound - height) / slope;
-    const Quad second = (bound - height) / slope;
+    const Quad slope = dot(normal, segment.along);
+    const Quad per_slope = 1.0F / slope;
+    const Quad first = (-bound - height) * per_slope;
+    const Quad second = (bound - height) * per_slope;
     const Quad none{};
     const Quad lower = min(first, second);
     const Quad upper = max(first, second);
-    Quad enter = lower > 0.0F ? lower - kFractionRounding * lower : none;
-    Quad leave = upper < 1.0F ? upper + kFractionRounding * abs(upper) : none + 1.0F;
     // A slope that is rounding says nothing about where.
     const Mask is_level = abs(slope) <= rounding;
-    enter = is_level ? none : enter;
-    leave = is_level ? none + 1.0F : leave;
-    Mask near = is_level ? abs(height) <= bound + abs(slope) + rounding : ~(enter > leave);
-    if ((near[0] | near[1] | near[2] | near[3]) == 0) return 0;
-    const QuadVec p = segment.at(start, enter);
-    const QuadVec q = segment.at(start, leave);
-    const Quad of_edges = (kEdgeRounding * segment.reach) * size;
-    near &= ~beyond_edge({none, none, none}, ab, normal, bound, of_edges, p, q);
-    near &= ~beyond_edge(ab, c - b, normal, bound, of_edges, p, q);
-    near &= ~beyond_edge(ac, a - c, normal, bound, of_edges, p, q);
+    const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
+    const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);
+    Mask near = is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave;
+    const Quad far = kLongestEdge * bound + (kEdgeRounding * segment.reach) * size;
+    std::array<Quad, 4> heights;
+    near &= beyond(cross(ab, normal), start, segment, enter, leave, heights[0], heights[1]) <= far;
+    near &= beyond(cross(normal, ac), start, segment, enter, leave, heights[2], heights[3]) <= far;
+    const Quad all = -dot(normal, normal);
+    near &= min(all - heights[0] - heights[2], all - heights[1] - heights[3]) <= far;
     const double span = segment.end - segment.begin;
     unsigned bits = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
@@ -179,13 +179,13 @@ TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Trian
     TriangleCluster cluster;
     cluster.center = box.center();
     const double extent = max_abs(box.size());
-    if (extent > 0.0) cluster.size = std::ldexp(1.0, std::ilogb(extent) + 1);
+    if (extent > 0.0) cluster.per_size = std::ldexp(1.0, -std::ilogb(extent) - 1);
     for (std::size_t lane = 0; lane < 4; ++lane) {
         const bool is_there = lane < members.size();
         const std::uint32_t triangle = members[is_there ? lane : 0];
         cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner = (vertices[triangles[triangle][k]] - cluster.center) / cluster.size;
+            const Vec3 corner = cluster.per_size * (vertices[triangles[triangle][k]] - cluster.center);
             cluster.x[k][lane] = static_cast<float>(corner.x);
             cluster.y[k][lane] = static_cast<float>(corner.y);
             cluster.z[k][lane] = static_cast<float>(corner.z);
@@ -226,6 +226,7 @@ unsigned TriangleCluster::near(const SegmentTube& tube, TubeStretches& stretches
 }
 
 Box3 TriangleCluster::box() const {
+    const double size = 1.0 / per_size;
     Box3 result;
     for (std::size_t lane = 0; lane < 4; ++lane) {
         for (std::size_t k = 0; k < 3; ++k) result.include(center + size * Vec3{x[k][lane], y[k][lane], z[k][lane]});

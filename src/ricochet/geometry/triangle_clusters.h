@@ -16,11 +16,17 @@ namespace ricochet {
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
 /// A segment and everything within a margin of it.
-struct SegmentTube {
-    Vec3 from;                 ///< m
-    Vec3 along;                ///< m, to the other end
-    double margin = 0.0;       ///< m, >= 0
-    double length = 0.0;       ///< of the segment, m
+class SegmentTube {
+public:
+    SegmentTube() = default;
+    /// margin >= 0, m.
+    SegmentTube(const Vec3& start, const Vec3& end, double distance)
+        : from(start), along(end - start), margin(distance), per_length(1.0 / length(along)) {}
+
+    Vec3 from;
+    Vec3 along;               ///< to the other end
+    double margin = 0.0;
+    double per_length = 0.0;  ///< 1/m; not finite for a point
 };
 
 /// Stretches of a tube's segment, in fractions of it, one a lane.
@@ -34,12 +40,12 @@ struct TubeStretches {
 struct alignas(64) TriangleCluster {
     using Lanes = std::array<float, 4>;
 
-    std::array<Lanes, 3> x;  ///< of the corners, in units of `size` from the centre
+    std::array<Lanes, 3> x;  ///< of the corners, in parts of `size` from the centre
     std::array<Lanes, 3> y;
     std::array<Lanes, 3> z;
     std::array<std::uint32_t, 4> triangle;  ///< numbers; kNoTriangle last, its corners those of the first
     Vec3 center;                            ///< m
-    double size = 1.0;                      ///< m, a power of two: corners are within [-1, 1]
+    double per_size = 1.0;                  ///< 1/size, a power of two: corners are within [-1/2, 1/2]
 
     /// Bits of the lanes whose triangle may come within the margin of the segment, and for these a stretch outside of
     /// which it certainly does not. Errs on the side of more. Triangles may be degenerate.

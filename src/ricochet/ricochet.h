@@ -81,6 +81,7 @@
 #include "ricochet/geometry/sphere_sweep.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/triangle_clusters.h"
 #include "ricochet/geometry/triangle_mesh.h"
 #include "ricochet/geometry/triangulation.h"
 #include "ricochet/io/checkpoint.h"

@@ -32,7 +32,8 @@ struct SurfaceTotals {
     FixedPointSum z;
 };
 
-/// In Simulation::Impl::searched_again: the particle is left alone for good (pinned, frozen, asleep) or about to be removed.
+/// In Simulation::Impl::searched_again: the particle is left alone for good (pinned, frozen, asleep) or about to be
+/// removed.
 inline constexpr std::uint32_t kStill = 0xFFFFFFFFU;
 
 /// The particles of a step that must be searched for, in the parts that one thread moves at a time.

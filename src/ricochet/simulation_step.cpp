@@ -205,8 +205,7 @@ void Simulation::Impl::add_weights_of_sleepers(double sign) {
 
 bool Simulation::Impl::is_leaving(std::size_t i, double now) const {
     if (bounds && !bounds->contains(particles.position[i])) return true;
-    return !coasts(i) &&
-           (particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= now);
+    return !coasts(i) && (particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= now);
 }
 
 void Simulation::Impl::retire(double now) {

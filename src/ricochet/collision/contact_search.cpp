@@ -110,8 +110,7 @@ std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
     const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
     const Vec3 by{margin, margin, margin};
     const Box3& box = world_.triangle_bounds();
-    const double duration =
-        std::min(free_until_, time_of_leaving(outlook.path, {box.lower - by, box.upper + by}));
+    const double duration = std::min(free_until_, time_of_leaving(outlook.path, {box.lower - by, box.upper + by}));
     const bool boxes_hold = kPathRounding * largest_coordinate(shortened(outlook.path, duration)) <= bvh_->slack();
     return boxes_hold ? std::optional(duration) : std::nullopt;
 }

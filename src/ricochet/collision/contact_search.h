@@ -69,8 +69,8 @@ public:
     /// path begins with this one, the same search also finds out free_until(); the contact is the same.
     [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr);
 
-    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin. Where the path
-    /// meets something, or looking ahead is not worth the while: no more than the path's duration.
+    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin. Where the
+    /// path meets something, or looking ahead is not worth the while: no more than the path's duration.
     [[nodiscard]] double free_until() const { return free_until_; }
 
     /// The smallest numbered surface that stands in the way of the closed leg [p, q] of the centre: one that the

@@ -1,8 +1,8 @@
 /// \file
 /// Looking ahead: how long may a particle go on as foreseen before any surface comes near its way?
 ///
-/// What is found serves speed only. A particle whose way is certainly free needs no search, and its state after the step
-/// is what the search would have left: the end of the same path.
+/// What is found serves speed only. A particle whose way is certainly free needs no search, and its state after the
+/// step is what the search would have left: the end of the same path.
 #pragma once
 
 #include "ricochet/core/box3.h"

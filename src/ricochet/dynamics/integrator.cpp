@@ -182,8 +182,9 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
 Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
     const Vec3& a = flight.acceleration;
     const double h = flight.path.duration;
-    const double kicks = kicks_first(integrator.kind) ? 0.5
-                         : integrator.kind == IntegratorKind::forward_euler ? -0.5 : 0.0;
+    const double kicks = kicks_first(integrator.kind)                       ? 0.5
+                         : integrator.kind == IntegratorKind::forward_euler ? -0.5
+                                                                            : 0.0;
     const Vec3 velocity = flight.end_velocity + (kicks * time_step) * a;
     return parabola_path(flight.path.end - h * velocity + (0.5 * h * h) * a, velocity - h * a, a, duration);
 }

@@ -1,9 +1,9 @@
 #include "ricochet/geometry/triangle_bvh.h"
 
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <bit>
 #include <optional>
 #include <type_traits>
 
@@ -107,7 +107,8 @@ double Query::look_at(const TriangleCluster& cluster) {
     unsigned bits = cluster.near(tube, stretches);
     for (; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-        limit = std::min(limit, visit_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
+        limit =
+            std::min(limit, visit_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
     }
     return limit;
 }

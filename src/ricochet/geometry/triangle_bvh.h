@@ -53,8 +53,8 @@ public:
               [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
-    /// Called for a triangle that the tube may touch, with the stretch of the segment (fractions of it) outside of which
-    /// it certainly does not. Returns as Visit does.
+    /// Called for a triangle that the tube may touch, with the stretch of the segment (fractions of it) outside of
+    /// which it certainly does not. Returns as Visit does.
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
     /// Visits every triangle whose distance from the segment [from, to] is at most `margin` (m, at most reach() +

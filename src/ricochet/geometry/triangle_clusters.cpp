@@ -168,7 +168,8 @@ std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std:
     });
     parallel_sort(keys);
     std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(), [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+    std::transform(keys.begin(), keys.end(), order.begin(),
+                   [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
     return order;
 }
 

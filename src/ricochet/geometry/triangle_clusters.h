@@ -24,7 +24,7 @@ public:
         : from(start), along(end - start), margin(distance), per_length(1.0 / length(along)) {}
 
     Vec3 from;
-    Vec3 along;               ///< to the other end
+    Vec3 along;  ///< to the other end
     double margin = 0.0;
     double per_length = 0.0;  ///< 1/m; not finite for a point
 };

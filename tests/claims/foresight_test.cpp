@@ -1,0 +1,173 @@
+// Particles that certainly meet nothing are not searched for, and those that are searched for are moved in spatial
+// order: no bit of any result may tell.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+/// Long flights between small things: most steps of most particles meet nothing. Everything follows from the number.
+class SparseCase {
+public:
+    explicit SparseCase(std::uint64_t seed) : random_(seed, 31, 0) {}
+
+    SimulationSetup setup() {
+        SimulationSetup setup;
+        const auto kinds = std::array{IntegratorKind::ballistic, IntegratorKind::symplectic_euler,
+                                      IntegratorKind::forward_euler, IntegratorKind::rk4};
+        setup.options.integrator = kinds[pick(4)];
+        setup.options.time_step = std::array{1e-3, 4e-3, 0.015}[pick(3)];
+        setup.options.duration = (150.0 + (pick(2) == 0 ? 0.37 : 0.0)) * setup.options.time_step;
+        setup.options.record_contacts = true;
+        setup.options.verify = pick(3) == 0;
+        if (pick(2) == 0) setup.forces.push_back(make_gravity(9.0 * random_.uniform() * random_.unit_vector()));
+        setup.materials.push_back({"wall", pick(2) == 0 ? 1.0 : random_.uniform(), pick(2) == 0 ? 0.0 : 0.3});
+        setup.colliders.push_back({"mesh", MeshShape{mesh(), {}, "", {}}, 0});
+        if (pick(2) == 0) setup.colliders.push_back({"floor", PlaneShape{{0, 0, -0.9}, random_.unit_vector()}, 0});
+        if (pick(2) == 0) setup.colliders.push_back({"ball", BallShape{0.2, {}}, 0});
+        if (pick(3) == 0) setup.bounds = Box3{{-2, -2, -2}, {2, 2, 2}};
+        const double largest = std::array{0.0, 1e-4, 0.03}[pick(3)];
+        for (int i = 0; i < 40; ++i) setup.particles.push_back(particle(largest));
+        return setup;
+    }
+
+private:
+    std::size_t pick(int count) { return static_cast<std::size_t>(random_.uniform() * count); }
+
+    Vec3 place() {
+        const double x = random_.uniform();
+        const double y = random_.uniform();
+        return {2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * random_.uniform() - 1.0};
+    }
+
+    Particle particle(double largest_radius) {
+        Particle particle;
+        particle.position = place();
+        particle.velocity = std::array{0.5, 2.0, 8.0}[pick(3)] * random_.unit_vector();
+        particle.radius = largest_radius * random_.uniform();
+        particle.birth_time = pick(4) == 0 ? 0.2 * random_.uniform() : 0.0;
+        if (pick(3) == 0) particle.lifetime = random_.uniform();
+        return particle;
+    }
+
+    /// A rough ball around everything, or triangles here and there, slivers among them.
+    std::shared_ptr<const TriangleMesh> mesh() {
+        auto result = std::make_shared<TriangleMesh>();
+        if (pick(2) == 0) {
+            *result = testing::sphere_mesh({}, 1.9, 3);
+            for (Vec3& v : result->vertices) v *= 1.0 + 0.05 * random_.uniform();
+            return result;
+        }
+        for (std::uint32_t k = 0; k < 80; ++k) {
+            const Vec3 corner = place();
+            const double size = 0.02 + 0.2 * random_.uniform();
+            const double width = pick(4) == 0 ? 1e-5 : size;
+            result->vertices.insert(result->vertices.end(), {corner, corner + size * random_.unit_vector(),
+                                                             corner + width * random_.unit_vector()});
+            result->triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+        }
+        return result;
+    }
+
+    RandomSequence random_;
+};
+
+void expect_same_records(const Simulation& a, const Simulation& b) {
+    ASSERT_EQ(a.contact_records().size(), b.contact_records().size());
+    for (std::size_t k = 0; k < a.contact_records().size(); ++k) {
+        const ContactRecord& x = a.contact_records()[k];
+        const ContactRecord& y = b.contact_records()[k];
+        ASSERT_EQ(x.surface, y.surface) << k;
+        ASSERT_EQ(x.particle, y.particle) << k;
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(x.time), std::bit_cast<std::uint64_t>(y.time)) << k;
+    }
+}
+
+void expect_same_statistics(const Simulation& a, const Simulation& b) {
+    EXPECT_EQ(a.statistics().particle_steps, b.statistics().particle_steps);
+    EXPECT_EQ(a.statistics().contacts, b.statistics().contacts);
+    EXPECT_EQ(a.statistics().expired, b.statistics().expired);
+    EXPECT_EQ(a.statistics().out_of_bounds, b.statistics().out_of_bounds);
+    EXPECT_EQ(a.statistics().resting, b.statistics().resting);
+    EXPECT_EQ(a.statistics().asleep, b.statistics().asleep);
+    EXPECT_EQ(a.statistics().unsimulated_time, b.statistics().unsimulated_time);
+    EXPECT_EQ(a.statistics().violations, b.statistics().violations);
+    EXPECT_EQ(a.kinetic_energy(), b.kinetic_energy());
+}
+
+TEST(Foresight, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
+    std::uint64_t impacts = 0;
+    for (int i = 0; i < test::scaled(150); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const auto seed = static_cast<std::uint64_t>(i);
+        SimulationSetup plain = SparseCase(seed).setup();
+        plain.options.foresight = false;
+        plain.options.spatial_order = false;
+        Simulation reference(std::move(plain));
+        Simulation simulation(SparseCase(seed).setup());
+        while (!simulation.finished()) {
+            simulation.step();
+            reference.step();
+            ASSERT_NO_FATAL_FAILURE(expect_same_records(simulation, reference));
+            ASSERT_EQ(simulation.state_hash(), reference.state_hash()) << "step " << simulation.step_index();
+        }
+        expect_same_statistics(simulation, reference);
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+        impacts += simulation.statistics().contacts;
+    }
+    EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(150)) * 20);
+}
+
+/// Enough particles and triangles for an order of their own.
+SimulationSetup crowd() {
+    SimulationSetup setup;
+    setup.options.time_step = 0.02;
+    setup.options.duration = 0.8;
+    setup.options.record_contacts = true;
+    setup.options.verify = true;
+    setup.options.bounce_budget = 4;
+    setup.forces.push_back(make_gravity({0, 0, -9.81}));
+    setup.materials.push_back({"wall", 0.6, 0.4});
+    setup.colliders.push_back(
+        {"body", MeshShape{std::make_shared<const TriangleMesh>(testing::sphere_mesh({}, 1.0, 4)), {}, "", {}}, 0});
+    RandomSequence random(5, 0, 0);
+    for (int i = 0; i < 4 * test::scaled(1000); ++i) {
+        Particle particle;
+        particle.position = 0.5 * random.in_unit_ball();
+        particle.velocity = 6.0 * random.unit_vector();
+        particle.lifetime = i % 3 == 0 ? random.uniform() : 10.0;
+        setup.particles.push_back(particle);
+    }
+    return setup;
+}
+
+TEST(SpatialOrder, ChangesNoRecordNoTotalAndNoStatistic) {
+    SimulationSetup plain = crowd();
+    plain.options.spatial_order = false;
+    Simulation reference(std::move(plain));
+    Simulation simulation(crowd());
+    while (!simulation.finished()) {
+        simulation.step();
+        reference.step();
+        ASSERT_NO_FATAL_FAILURE(expect_same_records(simulation, reference));
+    }
+    EXPECT_EQ(simulation.state_hash(), reference.state_hash());
+    EXPECT_GT(simulation.statistics().unsimulated_time, 0.0);
+    expect_same_statistics(simulation, reference);
+    EXPECT_EQ(simulation.triangle_totals(0).hits, reference.triangle_totals(0).hits);
+    EXPECT_EQ(simulation.triangle_totals(0).impulse, reference.triangle_totals(0).impulse);
+}
+
+}  // namespace
+}  // namespace ricochet

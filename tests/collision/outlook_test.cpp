@@ -1,0 +1,109 @@
+#include "ricochet/collision/outlook.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/collision/contact_search.h"
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/closest_point.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+double height(const Plane& plane, const Vec3& p) { return dot(plane.normal, p - plane.point); }
+
+TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
+    RandomSequence random(1, 0, 0);
+    for (int i = 0; i < test::scaled(5000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const Plane plane{random.in_unit_ball(), random.unit_vector()};
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const double margin = 0.1 * random.uniform();
+        const double time = time_free_of_plane(path, plane, margin);
+        ASSERT_GE(time, 0.0);
+        ASSERT_LE(time, path.duration);
+        const double side = height(plane, path.c[0]) < 0.0 ? -1.0 : 1.0;
+        for (int k = 0; k <= 50 && time > 0.0; ++k) {
+            ASSERT_GT(side * height(plane, path.position(0.02 * k * time)), margin - 1e-12);
+        }
+        if (time < path.duration) {
+            ASSERT_LT(side * height(plane, path.position(time)), margin + 1e-6);
+        }
+    }
+}
+
+TEST(Shortened, IsTheSamePathWithAnEarlierEnd) {
+    const Path path = parabola_path({1, 2, 3}, {4, 5, 6}, {0, 0, -9.81}, 2.0);
+    const Path part = shortened(path, 0.5);
+    EXPECT_EQ(part.duration, 0.5);
+    EXPECT_EQ(part.end, path.position(0.5));
+    EXPECT_EQ(part.position(0.25), path.position(0.25));
+    EXPECT_EQ(shortened(path, 5.0).duration, 2.0);
+    EXPECT_EQ(shortened(path, 5.0).end, path.end);
+}
+
+CollisionWorld rough_world(const TriangleMesh& mesh) {
+    std::vector<ColliderDescription> colliders;
+    colliders.push_back({"mesh", MeshShape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}}, 0});
+    return CollisionWorld(std::move(colliders));
+}
+
+double distance_from(const TriangleMesh& mesh, const Vec3& p) {
+    double least = 1e300;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        least = std::min(
+            least, closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
+    }
+    return std::sqrt(least);
+}
+
+TEST(Outlook, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
+    TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
+    RandomSequence random(2, 0, 0);
+    for (Vec3& v : mesh.vertices) v *= 1.0 + 0.1 * random.uniform();
+    CollisionWorld world = rough_world(mesh);
+    world.prepare_radius(0.03);
+    ContactScratch scratch;
+    double looked = 0.0;
+    double possible = 0.0;
+    for (int i = 0; i < test::scaled(600); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const double radius = i % 3 == 0 ? 0.03 : 0.0;
+        const bool is_straight = i % 2 == 0;
+        const Vec3 acceleration = is_straight ? Vec3{} : 0.5 * random.in_unit_ball();
+        const Vec3 start = (i % 5 == 0 ? 3.0 : 0.8) * random.in_unit_ball();
+        const Vec3 velocity = 2.0 * random.unit_vector();
+        const double h = 0.01;
+        const Path path = parabola_path(start, velocity, acceleration, h);
+        const Outlook outlook{parabola_path(start, velocity, acceleration, 1.0), 1e-9, 2.0 * h};
+        ContactSearch search(world, scratch);
+        const auto contact = search.search(path, radius, &outlook);
+        const double until = search.free_until();
+        ASSERT_EQ(contact.has_value(), ContactSearch(world, scratch).search(path, radius).has_value());
+        if (contact) {
+            ASSERT_EQ(until, 0.0);
+            continue;
+        }
+        ASSERT_LE(until, 1.0);
+        for (int k = 0; k < 40; ++k) {
+            const double time = h + (until - h) * k / 40.0;
+            if (until > h) ASSERT_GE(distance_from(mesh, outlook.path.position(time)), radius + 1e-9) << time;
+        }
+        if (!is_straight || radius > 0.0) continue;
+        ContactSearch whole(world, scratch);
+        const auto hit = whole.search(outlook.path, radius);
+        looked += until;
+        possible += hit ? hit->time : 1.0;
+    }
+    EXPECT_GT(looked, 0.95 * possible);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -136,7 +136,7 @@ SimulationSetup crowd() {
     setup.options.duration = 0.8;
     setup.options.record_contacts = true;
     setup.options.verify = true;
-    setup.options.bounce_budget = 4;
+    setup.options.bounce_budget = 1;
     setup.forces.push_back(make_gravity({0, 0, -9.81}));
     setup.materials.push_back({"wall", 0.6, 0.4});
     setup.colliders.push_back(

@@ -103,7 +103,9 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
                 const bool meets = squared_distance_of_segment_from_triangle(from, to, mesh.vertices[a],
                                                                              mesh.vertices[b], mesh.vertices[c]) == 0.0;
                 ++(meets ? right : wrong);
-                if (meets) EXPECT_LT(stretches.leave[lane] - stretches.enter[lane], 0.01);
+                if (meets) {
+                    EXPECT_LT(stretches.leave[lane] - stretches.enter[lane], 0.01);
+                }
             }
         }
     }
@@ -117,7 +119,8 @@ TEST(TriangleClusters, HoldEveryTriangleOnceAndNearlyFull) {
     std::set<std::uint32_t> seen;
     for (const TriangleCluster& cluster : clusters) {
         for (const std::uint32_t triangle : cluster.triangle) {
-            if (triangle != kNoTriangle) EXPECT_TRUE(seen.insert(triangle).second);
+            if (triangle == kNoTriangle) continue;
+            EXPECT_TRUE(seen.insert(triangle).second);
         }
     }
     EXPECT_EQ(seen.size(), mesh.triangles.size());

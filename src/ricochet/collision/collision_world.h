@@ -148,8 +148,10 @@ private:
     void add_shape(const AnalyticShape& shape);
     void add_plane(const ColliderDescription& collider, const PlaneShape& shape);
     void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
+    void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local, const AffineMap& map);
     void add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape);
     void flag_degenerate_triangles();
+    [[nodiscard]] Box3 box_of_triangles() const;
     [[nodiscard]] double eighth_of_mean_box() const;
     [[nodiscard]] double largest_radius_of_class(double radius) const;
     [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;

@@ -145,7 +145,7 @@ TEST(ObjReader, ReadsIndicesOfAnyLengthAndSpelling) {
 
 TEST(ObjReader, ReadsLinesWithAnyBlanksCommentsAndEnds) {
     const std::string text =
-        "v\t0  0\f0 # origin\n  v 1 0 0#\r\nv 0 1 0 \\\n 1\n\r\n\n#f 1 2 3\n \tf  1\t2 \\\r\n  3  # f 1 2 3\rf 3 2 1";
+        "v\t0  0\f0 # origin\n  v 1 0 0 #\r\nv 0 1 0 \\\n 1\n\r\n\n#f 1 2 3\n \tf  1\t2 \\\r\n  3  # f 1 2 3\rf 3 2 1";
     const ImportedMesh mesh = read_mesh("a.obj", text);
     EXPECT_EQ(mesh.mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));

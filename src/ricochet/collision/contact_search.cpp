@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/line_probe.h"
 #include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
@@ -41,7 +42,7 @@ Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, con
     return speed > 0.0 ? v / -speed : normal;
 }
 
-std::optional<Contact> ContactSearch::search(const Path& path, double radius) {
+std::optional<Contact> ContactSearch::search(const Path& path, double radius, const Outlook* outlook) {
     scratch_.triangles.clear();
     scratch_.planes.clear();
     scratch_.shapes.clear();
@@ -60,8 +61,15 @@ std::optional<Contact> ContactSearch::search(const Path& path, double radius) {
     search_planes(path);
     search_shapes(path);
     all_triangles_ = false;
-    if (!world_.triangles().empty()) search_meshes(path, largest);
+    free_until_ = 0.0;
+    if (outlook != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*outlook);
+    if (!world_.triangles().empty()) {
+        const auto duration = free_until_ > 0.0 ? visible_duration(*outlook) : std::nullopt;
+        free_until_ = duration ? free_until_ : 0.0;
+        duration ? search_ahead(path, *outlook, *duration) : search_meshes(path, largest);
+    }
     if (scratch_.found.empty()) return std::nullopt;
+    free_until_ = 0.0;
     return first_of_found(path);
 }
 
@@ -73,6 +81,61 @@ void ContactSearch::search_meshes(const Path& path, double largest) {
     } else if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) {
         search_all_triangles(path);
     }
+}
+
+// For shapes there is no time, only a yes or no: durations are tried, each half of the one before.
+void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
+    free_until_ = outlook.path.duration;
+    const double margin = radius_ + outlook.margin;
+    for (const auto& [plane, surface] : world_.planes()) {
+        free_until_ = std::min(free_until_, time_free_of_plane(outlook.path, plane, margin));
+    }
+    for (const auto& [shape, surface] : world_.shapes()) {
+        while (free_until_ >= outlook.least && !shape.clears(shortened(outlook.path, free_until_), margin)) {
+            free_until_ *= 0.5;
+        }
+    }
+    if (free_until_ < outlook.least) free_until_ = 0.0;
+}
+
+// One question to the boxes must do: over what is looked at, the path, the foreseen one and all their chords of a step
+// stay within what the boxes leave beside the segment that is asked about. A straight way that leaves all triangles
+// behind is free for good.
+std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
+    if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
+    if (outlook.path.degree > 1) {
+        const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
+        free_until_ = std::min(free_until_, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
+        if (!(free_until_ >= outlook.least)) return std::nullopt;
+    }
+    const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
+    const Vec3 by{margin, margin, margin};
+    const Box3& box = world_.triangle_bounds();
+    const double duration =
+        std::min(free_until_, time_of_leaving(outlook.path, {box.lower - by, box.upper + by}));
+    const bool boxes_hold = kPathRounding * largest_coordinate(shortened(outlook.path, duration)) <= bvh_->slack();
+    return boxes_hold ? std::optional(duration) : std::nullopt;
+}
+
+// A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
+// before that end does not matter to what comes after.
+void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
+    if (duration == 0.0) return;  // it never comes near the triangles
+    const Path way = shortened(outlook.path, duration);
+    const Box3& box = world_.triangle_bounds();
+    const double largest = std::max({largest_coordinate(way), max_abs(box.lower), max_abs(box.upper)});
+    const double margin = radius_ + outlook.margin + way.sagitta(0.0, duration) + kForesightSlack * largest;
+    const LineProbe probe(way.c[0], way.end, margin, largest);
+    bvh_->visit(way.c[0], way.end, [&](std::uint32_t triangle) {
+        if (!world_.is_left_out(triangle)) {
+            const auto [a, b, c] = world_.corners_of_triangle(triangle);
+            const LineProbe::Stretch near = probe.near(a, b, c);
+            if (near.enter * duration <= path.duration) (void)look_at_triangle(path, triangle);
+            if (near.leave * duration >= path.duration) free_until_ = std::min(free_until_, near.enter * duration);
+        }
+        const double until = std::min(first_time_, std::max(free_until_, path.duration));
+        return until < duration ? until / duration : 1.0;
+    });
 }
 
 void ContactSearch::note(const ContactScratch::Found& found) {

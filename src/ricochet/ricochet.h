@@ -59,6 +59,7 @@
 #include "ricochet/dynamics/turbulence.h"
 #include "ricochet/geometry/analytic_shape.h"
 #include "ricochet/geometry/centred_ellipsoid.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/distance_polynomials.h"
 #include "ricochet/geometry/line_probe.h"

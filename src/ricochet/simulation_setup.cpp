@@ -142,6 +142,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       steps(count_steps(options)),
       may_sleep(options.sleeping && forces.is_steady()) {
     world.set_culling(options.culling);
+    if (options.foresight) world.prepare_clearance();
     has_spheres = makes_spheres(setup);
     particles.attributes = AttributeTable(setup.attributes);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {

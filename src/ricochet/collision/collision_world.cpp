@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -28,15 +29,43 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
     return map;
 }
 
+void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local, const AffineMap& map,
+                   std::span<Vec3> world) {
+    parallel_for_blocks(local.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 placed = flush_tiny(map.point(local[i]));
+            if (!is_finite(placed) || max_abs(placed) > kLargestCoordinate) {
+                refuse(collider,
+                       "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
+            }
+            world[i] = placed;
+        }
+    });
+}
+
+Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    std::vector<Box3> boxes((triangles.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(triangles.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Box3 box;
+        for (std::size_t t = begin; t < end; ++t) {
+            for (const std::uint32_t v : triangles[t]) box.include(vertices[v]);
+        }
+        boxes[block] = box;
+    });
+    Box3 all;
+    for (const Box3& box : boxes) all.include(box);
+    return all;
+}
+
 }  // namespace
 
 CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders) : colliders_(std::move(colliders)) {
     for (ColliderDescription& collider : colliders_) add(collider);
     flag_degenerate_triangles();
-    triangle_bounds_ = box_of_triangles();
+    triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
-    bulge_ = eighth_of_mean_box();
+    bulge_ = part_of_mean_box();
     prepare_radius(0.0);
 }
 
@@ -84,6 +113,10 @@ void CollisionWorld::prepare_radius(double radius) {
     classes_.insert(at, RadiusClass{largest, TriangleBvh(vertices_, triangles_, reach)});
 }
 
+void CollisionWorld::prepare_clearance() {
+    if (!clearance_ && !triangles_.empty()) clearance_.emplace(vertices_, triangles_);
+}
+
 const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
     for (const RadiusClass& c : classes_) {
         if (radius <= c.largest_radius) return c.bvh;
@@ -119,7 +152,8 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
     const auto base = static_cast<std::uint32_t>(vertices_.size());
     ranges_.push_back(
         {static_cast<SurfaceId>(surface_count_), static_cast<std::uint32_t>(triangles_.size()), base, 0, Kind::mesh});
-    bake_vertices(collider, mesh.vertices, map);
+    vertices_.resize(vertices_.size() + mesh.vertices.size());
+    bake_vertices(collider, mesh.vertices, map, std::span(vertices_).subspan(base));
     const std::size_t first = triangles_.size();
     const bool flip = map.mirrors();
     triangles_.resize(triangles_after);
@@ -132,22 +166,6 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
     });
     surface_count_ += mesh.triangles.size();
     add_triangle_materials(collider, shape);
-}
-
-void CollisionWorld::bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local,
-                                   const AffineMap& map) {
-    const std::size_t first = vertices_.size();
-    vertices_.resize(first + local.size());
-    parallel_for_blocks(local.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 placed = flush_tiny(map.point(local[i]));
-            if (!is_finite(placed) || max_abs(placed) > kLargestCoordinate) {
-                refuse(collider,
-                       "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
-            }
-            vertices_[first + i] = placed;
-        }
-    });
 }
 
 void CollisionWorld::add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape) {
@@ -181,22 +199,9 @@ void CollisionWorld::flag_degenerate_triangles() {
     if (degenerate_count_ == 0) degenerate_ = {};
 }
 
-Box3 CollisionWorld::box_of_triangles() const {
-    std::vector<Box3> boxes((triangles_.size() + kBlock - 1) / kBlock);
-    parallel_for_blocks(triangles_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Box3 box;
-        for (std::size_t t = begin; t < end; ++t) {
-            for (const std::uint32_t v : triangles_[t]) box.include(vertices_[v]);
-        }
-        boxes[block] = box;
-    });
-    Box3 all;
-    for (const Box3& box : boxes) all.include(box);
-    return all;
-}
-
-// An eighth of the mean triangle's box: boxes grow little, and few paths need more than one chord.
-double CollisionWorld::eighth_of_mean_box() const {
+// A part of the mean triangle's box: boxes grow little, and few pieces of paths next to surfaces need more than one
+// chord.
+double CollisionWorld::part_of_mean_box() const {
     if (triangles_.empty()) return 0.0;
     const double sum = ordered_sum(triangles_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
@@ -207,7 +212,7 @@ double CollisionWorld::eighth_of_mean_box() const {
         }
         return partial;
     });
-    return 0.125 * sum / static_cast<double>(triangles_.size());
+    return 0.03125 * sum / static_cast<double>(triangles_.size());
 }
 
 std::uint32_t CollisionWorld::collider_of(SurfaceId surface) const {

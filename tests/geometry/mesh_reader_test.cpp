@@ -456,7 +456,8 @@ TriangleMesh sheet(std::uint32_t cells) {
     TriangleMesh mesh;
     const std::uint32_t row = cells + 1;
     for (std::uint32_t i = 0; i < row * row; ++i) {
-        mesh.vertices.push_back({static_cast<double>(i % row), static_cast<double>(i / row), 0.1 * (i % 7)});
+        const std::uint32_t line = i / row;
+        mesh.vertices.push_back({static_cast<double>(i % row), static_cast<double>(line), 0.1 * (i % 7)});
     }
     for (std::uint32_t i = 0; i < cells * cells; ++i) {
         const std::uint32_t a = i / cells * row + i % cells;

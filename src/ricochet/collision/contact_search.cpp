@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/line_probe.h"
 #include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
@@ -201,15 +200,12 @@ void ContactSearch::look_at_piece(const Path& path, const Outlook& outlook, doub
     const Box3& box = world_.triangle_bounds();
     const double largest = std::max({max_abs(p), max_abs(q), max_abs(box.lower), max_abs(box.upper)});
     const double margin = radius_ + outlook.margin + outlook.path.sagitta(from, to) + kForesightSlack * largest;
-    const LineProbe probe(p, q, margin, largest);
     const double span = to - from;
-    bvh_->visit(p, q, [&](std::uint32_t triangle) {
+    bvh_->visit_tube(p, q, margin, [&](std::uint32_t triangle, double enter, double leave) {
+        const double near_from = from + enter * span;
         if (!world_.is_left_out(triangle)) {
-            const auto [a, b, c] = world_.corners_of_triangle(triangle);
-            const LineProbe::Stretch near = probe.near(a, b, c);
-            const double enter = from + near.enter * span;
-            if (enter <= path.duration) (void)look_at_triangle(path, triangle);
-            if (from + near.leave * span >= path.duration) free_until_ = std::min(free_until_, enter);
+            if (near_from <= path.duration) (void)look_at_triangle(path, triangle);
+            if (from + leave * span >= path.duration) free_until_ = std::min(free_until_, near_from);
         }
         const double until = std::min(first_time_, std::max(free_until_, path.duration));
         return until < to ? (until - from) / span : 1.0;
@@ -295,10 +291,12 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
         return;
     }
     const double span = to - from;
-    bvh_->visit(path.position(from), path.position(to), [&](std::uint32_t triangle) {
-        const double first = look_at_triangle(path, triangle);
-        return first < to ? std::max(0.0, (first - from) / span) : 1.0;
-    });
+    const double margin = radius_ + 2.0 * slack_ + (path.degree > 1 ? bulge_ : 0.0);
+    bvh_->visit_tube(path.position(from), path.position(to), margin,
+                     [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
+                         const double first = look_at_triangle(path, triangle);
+                         return first < to ? std::max(0.0, (first - from) / span) : 1.0;
+                     });
 }
 
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {

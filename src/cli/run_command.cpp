@@ -63,7 +63,8 @@ class RunProgress {
 public:
     explicit RunProgress(bool quiet) : line_(quiet) {}
 
-    void show(const Simulation& simulation) {
+    // output_share: of the run's time so far.
+    void show(const Simulation& simulation, double output_share) {
         if (!line_.due()) return;
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - last_time_).count();
@@ -76,11 +77,11 @@ public:
         last_particle_steps_ = simulation.statistics().particle_steps;
         const auto left = static_cast<double>(simulation.step_count() - simulation.step_index());
         line_.show(fmt::format(
-            "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {} left",
+            "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {:.0f} % on output  {} left",
             100.0 * static_cast<double>(simulation.step_index()) / static_cast<double>(simulation.step_count()),
             simulation.step_index(), simulation.step_count(),
             cli::short_number(static_cast<double>(simulation.particles().size())), cli::short_number(moved / seconds),
-            cli::duration_text(left * seconds_per_step_)));
+            100.0 * output_share, cli::duration_text(left * seconds_per_step_)));
     }
 
 private:
@@ -114,7 +115,7 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
             return error.what();
         }
         writer.add_step(simulation);
-        progress.show(simulation);
+        progress.show(simulation, writer.output_seconds() / plan.seconds());
         const std::uint64_t step = simulation.step_index();
         if (step % plan.output.every != 0) continue;
         writer.write_frame(simulation);
@@ -228,8 +229,10 @@ int run(const RunArguments& arguments) {
     if (!diverged) settle_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
+        const Clock::time_point start = Clock::now();
         write_state_csv(arguments.output_state, simulation.particles(), simulation.shown_attributes(),
                         simulation.time());
+        summary.output_seconds += seconds_since(start);
     }
     complete(summary, info, plan);
     summary.interrupted = !simulation.finished() && !diverged;

@@ -99,6 +99,7 @@
 #include "ricochet/io/vti_reader.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/writer_thread.h"
 #include "ricochet/render/camera.h"
 #include "ricochet/render/color_map.h"
 #include "ricochet/render/corner_normals.h"

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "collision/worlds.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/geometry/placed_mesh.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -33,6 +36,28 @@ TEST(CollisionWorld, BakesScaleThenRotationThenPosition) {
     EXPECT_EQ(world.vertices().back(), (Vec3{7, 22, 34}));
     EXPECT_EQ(world.bounds().lower, (Vec3{7, 20, 30}));
     EXPECT_EQ(world.bounds().upper, (Vec3{10, 22, 34}));
+}
+
+// So many that they are baked in several blocks.
+TEST(CollisionWorld, BakesEveryVertexOfLargeMeshesToTheSameBitsForAnyNumberOfThreads) {
+    TriangleMesh large;
+    constexpr std::uint32_t kVertices = 50'001;
+    for (std::uint32_t i = 0; i < kVertices; ++i) {
+        large.vertices.push_back({0.1 * i, 1.0 / (1 + i), static_cast<double>(i % 11)});
+    }
+    for (std::uint32_t i = 0; i + 2 < kVertices; ++i) large.triangles.push_back({i, i + 1, i + 2});
+    const Placement placement{{0.3, -2, 5}, {1, 2, 3}, 40.0, {-1, 2, 0.5}};
+    const TriangleMesh expected = placed(large, placement);
+    for (const int threads : {1, 0}) {
+        const ThreadLimit limit(threads);
+        const auto world = world_of(mesh_collider(large, placement));
+        EXPECT_TRUE(std::equal(world.vertices().begin(), world.vertices().end(), expected.vertices.begin(),
+                               expected.vertices.end()));
+        EXPECT_TRUE(std::equal(world.triangles().begin(), world.triangles().end(), expected.triangles.begin(),
+                               expected.triangles.end()));
+        EXPECT_EQ(world.bounds().lower, bounds(expected).lower);
+        EXPECT_EQ(world.bounds().upper, bounds(expected).upper);
+    }
 }
 
 TEST(CollisionWorld, QuarterTurnsAboutAxesAreExact) {

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <vector>
+
 namespace ricochet {
 namespace {
 
@@ -63,6 +68,33 @@ TEST(Particles, OrderByIdListsEveryEntryOnce) {
     EXPECT_EQ(with_ids({5, 2, 9, 0}).order_by_id(), (std::vector<std::uint32_t>{3, 1, 0, 2}));
     EXPECT_EQ(with_ids({1, 4, 6}).order_by_id(), (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_TRUE(Particles{}.order_by_id().empty());
+}
+
+TEST(Particles, AreOrderedByIdsThatLieCloseFarApartOrRepeat) {
+    const std::vector<std::vector<std::uint64_t>> lists = {
+        {},
+        {5},
+        {0, 1, 2},
+        {3, 1, 2, 0},
+        {9, 4, 6, 30, 5},
+        {std::uint64_t{1} << 63U, 3, std::uint64_t{1} << 40U, 0},
+        {std::numeric_limits<std::uint64_t>::max(), 0},
+        {std::numeric_limits<std::uint64_t>::max(), std::numeric_limits<std::uint64_t>::max() - 2},
+        {2, 1, 2, 1},
+    };
+    for (const std::vector<std::uint64_t>& ids : lists) {
+        std::vector<std::uint64_t> ordered;
+        std::set<std::uint32_t> places;
+        const Particles particles = with_ids(ids);
+        for (const std::uint32_t i : particles.order_by_id()) {
+            ordered.push_back(ids[i]);
+            places.insert(i);
+        }
+        std::vector<std::uint64_t> expected = ids;
+        std::sort(expected.begin(), expected.end());
+        EXPECT_EQ(ordered, expected);
+        EXPECT_EQ(places.size(), ids.size());
+    }
 }
 
 }  // namespace

@@ -136,6 +136,21 @@ TEST(ObjReader, ReadsCornersInAllTheirForms) {
     for (const Triangle& t : mesh.mesh.triangles) EXPECT_EQ(t, (Triangle{0, 1, 2}));
 }
 
+TEST(ObjReader, ReadsIndicesOfAnyLengthAndSpelling) {
+    const ImportedMesh mesh =
+        read_mesh("a.obj", kVertices + "f +1 2/000000000000000000007 0000000000000000000000003\n" +
+                               "f 000000000000000001 2/1/1 3//4\nf 1 2 3/99999999999999999");
+    EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}, {0, 1, 2}}));
+}
+
+TEST(ObjReader, ReadsLinesWithAnyBlanksCommentsAndEnds) {
+    const std::string text =
+        "v\t0  0\f0 # origin\n  v 1 0 0 #\r\nv 0 1 0 \\\n 1\n\r\n\n#f 1 2 3\n \tf  1\t2 \\\r\n  3  # f 1 2 3\rf 3 2 1";
+    const ImportedMesh mesh = read_mesh("a.obj", text);
+    EXPECT_EQ(mesh.mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 0}}));
+}
+
 TEST(ObjReader, CountsNegativeIndicesBackFromTheLastVertexRead) {
     const ImportedMesh mesh = read_mesh("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 1 1 0\nf -3/-1 -1//-1 -2\n");
     EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
@@ -434,6 +449,56 @@ TEST(MeshReader, GivesASoundMeshOrOneLineForAnyDamage) {
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(sound, 0);
+}
+
+// A sheet of unit squares in the plane of x and y, each cut in two.
+TriangleMesh sheet(std::uint32_t cells) {
+    TriangleMesh mesh;
+    const std::uint32_t row = cells + 1;
+    for (std::uint32_t i = 0; i < row * row; ++i) {
+        const std::uint32_t line = i / row;
+        mesh.vertices.push_back({static_cast<double>(i % row), static_cast<double>(line), 0.1 * (i % 7)});
+    }
+    for (std::uint32_t i = 0; i < cells * cells; ++i) {
+        const std::uint32_t a = i / cells * row + i % cells;
+        mesh.triangles.push_back({a, a + 1, a + row + 1});
+        mesh.triangles.push_back({a, a + row + 1, a + row});
+    }
+    return mesh;
+}
+
+TEST(MeshReader, KeepsTheSameTrianglesWhereNothingElseIsWanted) {
+    const test::TemporaryFolder folder;
+    for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
+        write_mesh(sheet(20), folder.path(name));
+        const ImportedMesh all = read_mesh(folder.path(name));
+        const ImportedMesh some = read_mesh(folder.path(name), MeshContent::triangles);
+        EXPECT_EQ(some.mesh.vertices, all.mesh.vertices) << name;
+        EXPECT_EQ(some.mesh.triangles, all.mesh.triangles) << name;
+        EXPECT_EQ(some.format, all.format);
+        EXPECT_TRUE(some.polygons.vertices.empty() && some.polygons.corners.empty() && some.triangle_face.empty());
+        EXPECT_EQ(all.polygons.vertices, all.mesh.vertices);
+        EXPECT_EQ(all.triangle_face.size(), all.mesh.triangles.size());
+    }
+    const std::string grouped = kVertices + "g left\nf 1 2 4 3\ng right\nf 1 2 3\n";
+    const ImportedMesh some = read_mesh("a.obj", grouped, MeshContent::triangles);
+    EXPECT_EQ(some.triangle_face, (std::vector<std::uint32_t>{0, 0, 1}));
+    EXPECT_EQ(some.polygons.face_groups, read_mesh("a.obj", grouped).polygons.face_groups);
+    EXPECT_EQ(some.polygons.groups.size(), 2U);
+}
+
+// The most at any time, the file's own bytes included, over what is left at the end.
+TEST(MeshReader, TakesBoundedMemoryForMeshesOfTriangles) {
+    const test::TemporaryFolder folder;
+    const TriangleMesh mesh = sheet(150);
+    const std::size_t arrays = mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle);
+    for (const auto& [name, most] : {std::pair("a.ply", 2.5), std::pair("a.obj", 3.5), std::pair("a.stl", 4.5)}) {
+        write_mesh(mesh, folder.path(name));
+        const test::AllocationGuard guard;
+        const ImportedMesh read = read_mesh(folder.path(name), MeshContent::triangles);
+        EXPECT_LE(static_cast<double>(guard.peak_bytes()), most * static_cast<double>(arrays)) << name;
+        EXPECT_EQ(read.mesh.triangles.size(), mesh.triangles.size());
+    }
 }
 
 TEST(MeshReader, ReadsManyFilesAtTheSameTime) {

@@ -228,6 +228,15 @@ TEST(Triangulation, AcceptsAPolygonWithoutArea) {
     EXPECT_EQ(cut.crossing_faces, 0U);
 }
 
+TEST(Triangulation, CountsRepeatedCornersAlsoWhereEveryFaceIsATriangle) {
+    const PolygonMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 3, 6, 9}, {0, 1, 2, 1, 1, 0, 2, 1, 2}, {}, {}, {}};
+    const Triangulation cut = triangulate(mesh);
+    EXPECT_EQ(cut.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 1, 0}, {2, 1, 2}}));
+    EXPECT_EQ(cut.triangle_face, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(cut.faces_with_repeated_corners, 2U);
+    EXPECT_EQ(cut.crossing_faces, 0U);
+}
+
 TEST(Triangulation, RefusesPolygonsOutsideItsLimits) {
     PolygonMesh mesh = one_face(kLetterL);
     mesh.face_offsets = {0, 2};

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "geometry/temporary_folder.h"
 #include "io/example_frames.h"
@@ -76,6 +78,69 @@ TEST(FrameWriter, AnErrorInTheBackgroundComesOutInTheRun) {
             for (std::uint64_t step = 0; step < 10; ++step) other.submit(step, frame_at(0.0));
         },
         RunError);
+}
+
+TEST(FrameWriter, AFilledFrameIsTheSameWhateverItsMemoryHeldBefore) {
+    const TemporaryFolder folder;
+    FrameWriter writer(folder.path(""));
+    for (const std::uint64_t count : {50U, 3U, 0U, 80U}) {
+        const Particles particles = test::example_particles(count);
+        const AttributeTable none;
+        VtkPolyData frame = writer.blank_frame();
+        fill_particle_frame(frame, particles, none, 0.5, count == 3);
+        (void)write_vtp(folder.path("filled.vtp"), frame);
+        (void)write_vtp(folder.path("new.vtp"), particle_frame(particles, none, 0.5, count == 3));
+        EXPECT_EQ(folder.read("filled.vtp"), folder.read("new.vtp")) << count;
+        if (count > 0) frame.lines.assign(2, {0, 0});  // none of this may come back in a later one
+        frame.fields = {{"mark", {1.0}}};
+        frame.cell_arrays = {{"cell", std::vector<double>(frame.cell_count())}};
+        writer.submit(count, std::move(frame));
+        (void)writer.drain();
+    }
+}
+
+TEST(FrameWriter, UsesTheMemoryOfFramesThatAreWritten) {
+    const TemporaryFolder folder;
+    FrameWriter writer(folder.path(""));
+    VtkPolyData frame = writer.blank_frame();
+    fill_particle_frame(frame, test::example_particles(1000), AttributeTable(), 0.0, false);
+    const Vec3* const memory = frame.points.data();
+    writer.submit(0, std::move(frame));
+    (void)writer.drain();
+    frame = writer.blank_frame();
+    fill_particle_frame(frame, test::example_particles(900), AttributeTable(), 1.0, false);
+    EXPECT_EQ(frame.points.data(), memory);
+}
+
+TEST(FrameWriter, SeriesThatShareAThreadAreBothCompleteAndShareItsErrors) {
+    const TemporaryFolder folder;
+    const auto thread = std::make_shared<WriterThread>();
+    FrameWriter frames(folder.path(""), kParticleSeries, {}, thread);
+    FrameWriter contacts(folder.path(""), kContactSeries, {}, thread);
+    for (std::uint64_t step = 0; step < 5; ++step) {
+        contacts.submit(step, frame_at(0.0));
+        frames.submit(step, frame_at(0.0));
+    }
+    EXPECT_EQ(frames.drain().size(), 5U);
+    EXPECT_EQ(contacts.drain().size(), 5U);
+    EXPECT_NO_THROW(frames.check());
+    FrameWriter lost(folder.path("missing"), kContactSeries, {}, thread);
+    lost.submit(5, frame_at(0.0));
+    EXPECT_THROW(frames.finish(), RunError);
+    EXPECT_THROW(frames.check(), RunError);
+}
+
+TEST(FrameWriter, ASeriesMayGoBeforeTheThreadThatStillWritesIt) {
+    const TemporaryFolder folder;
+    const auto thread = std::make_shared<WriterThread>();
+    for (std::uint64_t step = 0; step < 20; ++step) {
+        FrameWriter frames(folder.path(""), kParticleSeries, {}, thread);
+        frames.submit(step, frame_at(0.0));
+    }
+    thread->drain();
+    for (std::uint64_t step = 0; step < 20; ++step) {
+        EXPECT_TRUE(std::filesystem::exists(folder.path(frame_file_name(step)))) << step;
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -105,6 +106,96 @@ TEST(RunWriter, CollidersHaveNoTotalsWhenTheSimulationKeepsNone) {
     while (!simulation.finished()) simulation.step();
     (void)writer.finish(simulation);
     for (const auto& file : open_run_folder(folder.path("")).colliders) EXPECT_TRUE(read_vtp(file).cell_arrays.empty());
+}
+
+// All files of a folder by their names.
+std::map<std::string, std::string> files_of(const TemporaryFolder& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path(""))) {
+        const std::string name = entry.path().filename().string();
+        files[name] = folder.read(name);
+    }
+    return files;
+}
+
+TEST(RunWriter, WritesTheSameBytesInTheBackgroundAndAtOnce) {
+    std::map<std::string, std::string> files[2];
+    for (const auto mode : {WriterThread::Mode::background, WriterThread::Mode::synchronous}) {
+        const TemporaryFolder folder;
+        SimulationSetup setup = falling_particles();
+        setup.options.record_contacts = true;
+        Simulation simulation(std::move(setup));
+        RunWriter writer(folder.path(""), {}, simulation, {}, std::nullopt, mode);
+        for (writer.write_frame(simulation); !simulation.finished(); writer.write_frame(simulation)) {
+            simulation.step();
+            writer.add_step(simulation);
+        }
+        RunSummary summary = writer.finish(simulation);
+        EXPECT_GT(summary.output_seconds, 0.0);
+        EXPECT_EQ(summary.output_seconds, writer.output_seconds());
+        summary.output_seconds = 0.0;
+        writer.write_summary(summary);
+        files[mode == WriterThread::Mode::background ? 0 : 1] = files_of(folder);
+    }
+    EXPECT_EQ(files[0].size(), 29U);  // 2 x 11 frames, 3 series, 2 colliders, run.json, summary.json
+    ASSERT_EQ(files[0].size(), files[1].size());
+    for (const auto& [name, bytes] : files[0]) EXPECT_EQ(bytes, files[1][name]) << name;
+}
+
+TEST(RunWriter, AFrameThatCannotBeWrittenEndsTheRunWithOneLineAlsoWhereNoFrameFollows) {
+    for (const auto mode : {WriterThread::Mode::background, WriterThread::Mode::synchronous}) {
+        const TemporaryFolder folder;
+        Simulation simulation(falling_particles());
+        RunWriter writer(folder.path(""), {}, simulation, {}, std::nullopt, mode);
+        std::filesystem::remove_all(folder.path(""));
+        std::string message;
+        try {
+            writer.write_frame(simulation);
+            // However late the thread is with the frame: some step finds out.
+            for (;;) writer.add_step(simulation);
+        } catch (const RunError& error) {
+            message = error.what();
+        }
+        EXPECT_NE(message.find(frame_file_name(0)), std::string::npos) << message;
+        EXPECT_NE(message.find("cannot create the file"), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        EXPECT_THROW((void)writer.finish(simulation), RunError);
+    }
+}
+
+TEST(RunWriter, ACheckpointNamesOnlyFramesThatAreCompleteOnDisk) {
+    const TemporaryFolder folder;
+    SimulationSetup setup = falling_particles();
+    setup.options.record_contacts = true;
+    Simulation simulation(std::move(setup));
+    RunWriter writer(folder.path(""), {}, simulation, {});
+    for (std::size_t frames = 1; !simulation.finished(); ++frames) {
+        simulation.step();
+        writer.add_step(simulation);
+        writer.write_frame(simulation);
+        writer.write_checkpoint(simulation, 7, 1.5);
+        SimulationSetup again = falling_particles();
+        again.options.record_contacts = true;
+        Simulation resumed(std::move(again));
+        const Checkpoint checkpoint = read_checkpoint(folder.path(kCheckpointFile), 7, resumed);
+        EXPECT_EQ(resumed.step_index(), simulation.step_index());
+        EXPECT_EQ(checkpoint.frames.size(), frames);
+        EXPECT_EQ(checkpoint.contacts.size(), frames);
+        EXPECT_GT(checkpoint.output_seconds, 0.0);
+        EXPECT_LE(checkpoint.output_seconds, writer.output_seconds());
+        for (const PvdEntry& entry : checkpoint.frames) EXPECT_EQ(read_vtp(folder.path(entry.file)).points.size(), 50U);
+        for (const PvdEntry& entry : checkpoint.contacts) EXPECT_NO_THROW((void)read_vtp(folder.path(entry.file)));
+        EXPECT_EQ(folder.read(kParticleSeriesFile), pvd_text(checkpoint.frames));
+    }
+}
+
+TEST(RunWriter, AResumedRunCountsTheOutputBefore) {
+    const TemporaryFolder folder;
+    Simulation simulation(falling_particles());
+    Checkpoint earlier;
+    earlier.output_seconds = 1000.0;
+    const RunWriter writer(folder.path(""), {}, simulation, {}, earlier);
+    EXPECT_GT(writer.output_seconds(), 1000.0);
 }
 
 // A force that breaks down for one particle, one born with a velocity that is none, and one that is absurdly fast.

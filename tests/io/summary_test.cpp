@@ -19,6 +19,7 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
                             "steps",
                             "simulated_time",
                             "wall_seconds",
+                            "output_seconds",
                             "particles_alive",
                             "particles_emitted",
                             "particle_steps",

@@ -51,6 +51,46 @@ TEST(Vtk, FramesListParticlesInTheOrderOfTheirIds) {
     EXPECT_EQ(ages.front(), 2.0 - particles.birth_time.back());
 }
 
+// So many that they are copied in several blocks; with attributes, and in no order at all.
+TEST(Vtk, FramesOfParticlesStoredInAnyOrderAreThoseOfSortedOnes) {
+    constexpr std::uint64_t kCount = 40'000;
+    const auto attributes = [] { return AttributeTable({{"charge", 1, {1.5, 0, 0}}, {"wind", 3, {1, 2, 3}}}); };
+    Particles sorted;
+    Particles mixed;
+    sorted.attributes = attributes();
+    mixed.attributes = attributes();
+    const auto append = [](Particles& particles, std::uint64_t id) {
+        Particle particle;
+        const auto x = static_cast<double>(id);
+        particle.id = id;
+        particle.position = {x, 1, -x};
+        particle.velocity = {1, x, 2};
+        particle.spin = {x, x, 0};
+        particle.mass = 1.0 + x;
+        particle.radius = 2.0 + x;
+        particle.birth_time = -x;
+        particle.attributes = {{3.0 * x, 0, 0}, {x, 5, 6}};
+        particles.append(particle);
+        particles.contacts.back() = static_cast<std::uint32_t>(id);
+        particles.resting.back() = id % 2 == 0 ? 1 : 0;
+        particles.frozen.back() = id % 3 == 0 ? 1 : 0;
+        particles.unsimulated_time.back() = 0.5 * x;
+    };
+    for (std::uint64_t i = 0; i < kCount; ++i) {
+        append(sorted, i);
+        append(mixed, (i * 7919) % kCount);  // a prime that does not divide the count
+    }
+    const VtkPolyData a = particle_frame(sorted, 1.0, true);
+    const VtkPolyData b = particle_frame(mixed, 1.0, true);
+    EXPECT_TRUE(a.points == b.points);
+    EXPECT_EQ(a.point_arrays.size(), 12U);
+    expect_same_arrays(a.point_arrays, b.point_arrays);
+    EXPECT_EQ(a.points[777], (Vec3{777, 1, -777}));
+    EXPECT_EQ(std::get<std::vector<double>>(find_array(b.point_arrays, "age")->values)[777], 778.0);
+    EXPECT_EQ(std::get<std::vector<Vec3>>(find_array(b.point_arrays, "wind")->values)[777], (Vec3{777, 5, 6}));
+    EXPECT_EQ(std::get<std::vector<double>>(find_array(b.point_arrays, "charge")->values)[777], 2331.0);
+}
+
 TEST(Vtk, AFrameWithoutParticlesIsAValidFile) {
     const VtkPolyData read = written_and_read(particle_frame(Particles{}, 4.0));
     EXPECT_EQ(read.time, 4.0);

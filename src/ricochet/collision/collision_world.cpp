@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -28,14 +29,40 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
     return map;
 }
 
+void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local, const AffineMap& map,
+                   std::span<Vec3> world) {
+    parallel_for_blocks(local.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 placed = flush_tiny(map.point(local[i]));
+            if (!is_finite(placed) || max_abs(placed) > kLargestCoordinate) {
+                refuse(collider,
+                       "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
+            }
+            world[i] = placed;
+        }
+    });
+}
+
+Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    std::vector<Box3> boxes((triangles.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(triangles.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Box3 box;
+        for (std::size_t t = begin; t < end; ++t) {
+            for (const std::uint32_t v : triangles[t]) box.include(vertices[v]);
+        }
+        boxes[block] = box;
+    });
+    Box3 all;
+    for (const Box3& box : boxes) all.include(box);
+    return all;
+}
+
 }  // namespace
 
 CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders) : colliders_(std::move(colliders)) {
     for (ColliderDescription& collider : colliders_) add(collider);
     flag_degenerate_triangles();
-    for (const Triangle& t : triangles_) {
-        for (const std::uint32_t v : t) triangle_bounds_.include(vertices_[v]);
-    }
+    triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
     bulge_ = part_of_mean_box();
@@ -124,20 +151,18 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
     const auto base = static_cast<std::uint32_t>(vertices_.size());
     ranges_.push_back(
         {static_cast<SurfaceId>(surface_count_), static_cast<std::uint32_t>(triangles_.size()), base, 0, Kind::mesh});
-    vertices_.reserve(vertices_.size() + mesh.vertices.size());
-    for (const Vec3& v : mesh.vertices) {
-        const Vec3 placed = flush_tiny(map.point(v));
-        if (!is_finite(placed) || max_abs(placed) > kLargestCoordinate) {
-            refuse(collider, "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
-        }
-        vertices_.push_back(placed);
-    }
+    vertices_.resize(vertices_.size() + mesh.vertices.size());
+    bake_vertices(collider, mesh.vertices, map, std::span(vertices_).subspan(base));
+    const std::size_t first = triangles_.size();
     const bool flip = map.mirrors();
-    triangles_.reserve(triangles_after);
-    for (const Triangle& t : mesh.triangles) {
-        triangles_.push_back(flip ? Triangle{base + t[0], base + t[2], base + t[1]}
-                                  : Triangle{base + t[0], base + t[1], base + t[2]});
-    }
+    triangles_.resize(triangles_after);
+    parallel_for_blocks(mesh.triangles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Triangle& t = mesh.triangles[i];
+            triangles_[first + i] = flip ? Triangle{base + t[0], base + t[2], base + t[1]}
+                                         : Triangle{base + t[0], base + t[1], base + t[2]};
+        }
+    });
     surface_count_ += mesh.triangles.size();
     add_triangle_materials(collider, shape);
 }

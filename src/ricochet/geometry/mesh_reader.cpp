@@ -53,32 +53,45 @@ ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view byt
     return parsed;
 }
 
-ImportedMesh finish(ParsedMesh parsed) {
+// Frees what collisions do not need, the triangles' own memory being taken already.
+void keep_triangles(ImportedMesh& imported) {
+    imported.mesh.vertices = std::move(imported.polygons.vertices);
+    imported.polygons.vertices = {};
+    imported.polygons.corners = {};
+    imported.polygons.face_offsets = {};
+    if (imported.polygons.face_groups.empty()) imported.triangle_face = {};
+}
+
+ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
     ImportedMesh result;
     result.polygons = std::move(parsed.polygons);
     result.format = std::move(parsed.format);
     result.weld = parsed.weld;
     Triangulation triangulation = triangulate(result.polygons);
-    result.mesh.vertices = result.polygons.vertices;
     result.mesh.triangles = std::move(triangulation.triangles);
     result.triangle_face = std::move(triangulation.triangle_face);
     result.faces_with_repeated_corners = triangulation.faces_with_repeated_corners;
     result.crossing_faces = triangulation.crossing_faces;
+    if (content == MeshContent::everything) {
+        result.mesh.vertices = result.polygons.vertices;
+    } else {
+        keep_triangles(result);
+    }
     return result;
 }
 
 }  // namespace
 
-ImportedMesh read_mesh(const std::filesystem::path& path) {
+ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
     ParsedMesh parsed = [&path] {
         const FileBytes bytes = read_regular_file(path);
         return parse_checked(path, bytes.view());
     }();  // the file's bytes are gone before the triangles are made
-    return finish(std::move(parsed));
+    return finish(std::move(parsed), content);
 }
 
-ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes) {
-    return finish(parse_checked(name, bytes));
+ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes, MeshContent content) {
+    return finish(parse_checked(name, bytes), content);
 }
 
 }  // namespace ricochet

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <cstring>
+#include <functional>
+#include <unordered_map>
 
 #include "ricochet/geometry/text_cursor.h"
 #include "ricochet/geometry/triangulation.h"
@@ -27,10 +29,40 @@ bool contains(const List& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
+// Lines that begin as vertices and faces do: what the lists will hold, as a rule.
+struct LineCounts {
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+};
+
+LineCounts count_lines(std::string_view text) {
+    LineCounts counts;
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); end - at > 1;) {
+        if (at[1] == ' ') {
+            counts.vertices += at[0] == 'v' ? 1 : 0;
+            counts.faces += at[0] == 'f' ? 1 : 0;
+        }
+        const auto* const line_end =
+            static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
+        if (line_end == nullptr) break;
+        at = line_end + 1;
+    }
+    return counts;
+}
+
+struct FaceGroupHash {
+    std::size_t operator()(const FaceGroup& group) const {
+        const std::hash<std::uint64_t> hash;
+        return hash(hash(std::uint64_t{group.material} << 32U | group.group) * 31 + group.object);
+    }
+};
+
 class ObjReader {
 public:
     explicit ObjReader(const MeshSource& source)
         : cursor_(source, {.hash_comments = true, .backslash_continues_line = true}) {
+        reserve(source.bytes);
         mesh_.face_offsets.push_back(0);
     }
 
@@ -49,6 +81,17 @@ private:
         std::int64_t index = 0;
         std::size_t line = 0;
     };
+
+    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes: whatever the lines turn out to hold, the
+    // lists take no more than a small multiple of the file's size.
+    void reserve(std::string_view text) {
+        constexpr std::size_t kShortestLine = 8;
+        const LineCounts counts = count_lines(text);
+        const std::size_t most = text.size() / kShortestLine + 1;
+        mesh_.vertices.reserve(std::min(counts.vertices, most));
+        mesh_.face_offsets.reserve(std::min(counts.faces, most) + 1);
+        mesh_.corners.reserve(3 * std::min(counts.faces, most));
+    }
 
     void read_statement() {
         const std::string_view keyword = cursor_.word();
@@ -169,8 +212,9 @@ private:
     bool has_names_ = false;
     bool group_is_known_ = false;
     std::uint32_t current_group_ = 0;
-    std::map<FaceGroup, std::uint32_t> groups_;
-    std::map<std::string, std::uint32_t> names_;
+    // Numbers go by first use, so that the tables' own order reaches nothing.
+    std::unordered_map<FaceGroup, std::uint32_t, FaceGroupHash> groups_;
+    std::unordered_map<std::string, std::uint32_t> names_;
 };
 
 }  // namespace

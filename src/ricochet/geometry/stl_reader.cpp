@@ -48,6 +48,7 @@ public:
     void reserve(std::size_t facets) {
         mesh_.corners.reserve(3 * facets);
         mesh_.face_offsets.reserve(facets + 1);
+        welder_.reserve(facets / 2 + 2);  // of a closed surface, by Euler's formula; others grow
     }
     ParsedMesh finish(std::string format) {
         const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};

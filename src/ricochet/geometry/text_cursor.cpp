@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -43,11 +42,6 @@ bool is_too_small(std::string_view text) {
 
 }  // namespace
 
-std::optional<double> accepted_coordinate(double value) {
-    if (!(std::fabs(value) <= kLargestCoordinate)) return std::nullopt;
-    return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
-}
-
 bool TextCursor::skip_continuation() {
     if (!syntax_.backslash_continues_line || *at_ != '\\' || end_ - at_ < 2 || !is_line_break(at_[1])) return false;
     ++at_;
@@ -68,12 +62,12 @@ void TextCursor::skip_blanks() {
     }
 }
 
-bool TextCursor::at_word_end() const {
+bool TextCursor::at_word_end_slowly() const {
     if (at_ == end_ || is_blank(*at_) || is_line_break(*at_)) return true;
     return syntax_.backslash_continues_line && *at_ == '\\' && end_ - at_ > 1 && is_line_break(at_[1]);
 }
 
-bool TextCursor::at_line_end() {
+bool TextCursor::at_line_end_slowly() {
     skip_blanks();
     return at_ == end_ || is_line_break(*at_);
 }
@@ -100,7 +94,7 @@ std::string_view TextCursor::rest_of_line() {
     return {start, static_cast<std::size_t>(last - start)};
 }
 
-void TextCursor::next_line() {
+void TextCursor::next_line_slowly() {
     while (at_ != end_ && !is_line_break(*at_)) ++at_;
     if (at_ == end_) return;
     const bool carriage_return = *at_++ == '\r';
@@ -159,7 +153,20 @@ Vec3 TextCursor::point(const char* what) {
     return {x, y, z};
 }
 
+// Digits without a sign, too few to overflow: what nearly every index is.
+std::optional<std::int64_t> TextCursor::small_number() {
+    constexpr std::ptrdiff_t kSafeDigits = 18;
+    const char* const most = end_ - at_ > kSafeDigits ? at_ + kSafeDigits : end_;
+    std::int64_t value = 0;
+    const char* at = at_;
+    for (; at != most && is_digit(*at); ++at) value = 10 * value + (*at - '0');
+    if (at == at_ || (at == most && at != end_)) return std::nullopt;
+    at_ = at;
+    return value;
+}
+
 std::int64_t TextCursor::integer_part(const char* what) {
+    if (const std::optional<std::int64_t> number = small_number()) return *number;
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(skip_plus(at_, end_), end_, value);
     if (error != std::errc{}) fail(fmt::format("{} is {}, expected an integer", what, in_quotes(word_here())));

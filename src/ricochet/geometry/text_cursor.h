@@ -2,15 +2,22 @@
 /// Private to the mesh readers: words and numbers of a text, line by line, with the line number for errors.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh_source.h"
+#include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
 
 /// Walks through a text once. Lines end with LF, CR LF or CR. Numbers are read without any locale.
+///
+/// What is asked for every character or word is inline and answers the common case (a printable character, one blank,
+/// a lone LF) at once; everything else, comments and continuation lines too, is left to the `_slowly` functions, which
+/// hold the whole rule.
 class TextCursor {
 public:
     /// How a format writes what is not data.
@@ -31,14 +38,21 @@ public:
           syntax_(syntax) {}
 
     /// True when nothing but blanks (and a comment) is left on the line.
-    [[nodiscard]] bool at_line_end();
+    [[nodiscard]] bool at_line_end() {
+        if (comes_next(' ')) ++at_;
+        return !comes_plain() && at_line_end_slowly();
+    }
     [[nodiscard]] bool at_text_end() const { return at_ == end_; }
     /// Next word of the line; empty at its end.
     [[nodiscard]] std::string_view word();
     /// Rest of the line without blanks at its ends, comments included.
     [[nodiscard]] std::string_view rest_of_line();
     /// Goes to the start of the next line.
-    void next_line();
+    void next_line() {
+        if (!comes_next('\n')) return next_line_slowly();
+        ++at_;
+        ++line_;
+    }
     /// Goes to the next line that has a word; false when there is none.
     [[nodiscard]] bool next_filled_line();
     /// Number of the line the cursor is in; 1 for the first.
@@ -60,14 +74,20 @@ public:
     /// True if the character comes next, without skipping blanks.
     [[nodiscard]] bool comes_next(char c) const { return at_ != end_ && *at_ == c; }
     /// True at a blank, a line end or the text's end.
-    [[nodiscard]] bool at_word_end() const;
+    [[nodiscard]] bool at_word_end() const { return !comes_plain() && at_word_end_slowly(); }
 
     /// Throws InputError with the file and the line.
     [[noreturn]] void fail(const std::string& what) const { source_.fail_at_line(line_, what); }
 
 private:
+    // A character that belongs to a word in every syntax.
+    [[nodiscard]] bool comes_plain() const { return at_ != end_ && *at_ > ' ' && *at_ != '#' && *at_ != '\\'; }
+    [[nodiscard]] bool at_line_end_slowly();
+    [[nodiscard]] bool at_word_end_slowly() const;
+    void next_line_slowly();
     void skip_blanks();
     [[nodiscard]] bool skip_continuation();
+    [[nodiscard]] std::optional<std::int64_t> small_number();
     [[nodiscard]] std::string_view word_here() const;
     [[nodiscard]] double limit_value(const char* word_start, const char* what) const;
 
@@ -79,6 +99,9 @@ private:
 };
 
 /// Brings a coordinate into the range in which predicates are exact; nothing when it is too large or not finite.
-[[nodiscard]] std::optional<double> accepted_coordinate(double value);
+[[nodiscard]] inline std::optional<double> accepted_coordinate(double value) {
+    if (!(std::fabs(value) <= kLargestCoordinate)) return std::nullopt;
+    return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
+}
 
 }  // namespace ricochet

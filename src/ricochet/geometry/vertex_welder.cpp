@@ -1,5 +1,6 @@
 #include "ricochet/geometry/vertex_welder.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -7,6 +8,8 @@ namespace ricochet {
 namespace {
 
 constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
+constexpr std::size_t kFewestSlots = 64;
 
 // Mixing step of MurmurHash3's 64-bit finaliser (A. Appleby, public domain).
 std::uint64_t mixed(std::uint64_t x) {
@@ -32,7 +35,7 @@ std::size_t VertexWelder::slot_of(const Vec3& position) const {
 }
 
 std::uint32_t VertexWelder::index_of(const Vec3& position) {
-    if (slots_.size() <= 2 * vertices_.size()) grow();
+    if (slots_.size() <= 2 * vertices_.size()) set_slots(slots_.empty() ? kFewestSlots : 2 * slots_.size());
     const Vec3 key = position + Vec3{};  // -0 + 0 = 0
     const std::size_t slot = slot_of(key);
     if (slots_[slot] == kFree) {
@@ -42,9 +45,14 @@ std::uint32_t VertexWelder::index_of(const Vec3& position) {
     return slots_[slot];
 }
 
-void VertexWelder::grow() {
-    constexpr std::size_t kSmallest = 64;
-    slots_.assign(slots_.empty() ? kSmallest : 2 * slots_.size(), kFree);
+void VertexWelder::reserve(std::size_t positions) {
+    const std::size_t count = std::bit_ceil(2 * positions + 1);
+    if (count > std::max(slots_.size(), kFewestSlots)) set_slots(count);
+    vertices_.reserve(positions);
+}
+
+void VertexWelder::set_slots(std::size_t count) {
+    slots_.assign(count, kFree);
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) slots_[slot_of(vertices_[i])] = i;
 }
 

@@ -16,12 +16,14 @@ public:
     /// Vertices are appended to a list of the caller's.
     explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices) {}
 
+    /// Makes room for that many different positions: 8 to 16 bytes each, besides the list.
+    void reserve(std::size_t positions);
     /// Number of the position; a new one is appended to the list (with -0 stored as 0).
     [[nodiscard]] std::uint32_t index_of(const Vec3& position);
 
 private:
     [[nodiscard]] std::size_t slot_of(const Vec3& position) const;
-    void grow();
+    void set_slots(std::size_t count);
 
     std::vector<Vec3>& vertices_;
     std::vector<std::uint32_t> slots_;  // open addressing, power-of-two size, at most half full

@@ -14,7 +14,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last digit changes with the layout.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b31ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b32ULL;
 
 /// FNV-1a over the bytes, to notice damage (not malice).
 class Checksum {
@@ -46,6 +46,7 @@ void archive_series(Archive& a, std::vector<PvdEntry>& series) {
 template <class Archive>
 void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     a(checkpoint.wall_seconds);
+    a(checkpoint.output_seconds);
     archive_series(a, checkpoint.frames);
     archive_series(a, checkpoint.contacts);
 }

@@ -15,6 +15,7 @@ namespace ricochet {
 struct Checkpoint {
     std::uint64_t scene = 0;         ///< SceneDescription::fingerprint
     double wall_seconds = 0.0;       ///< spent so far
+    double output_seconds = 0.0;     ///< of it on output, see RunWriter::output_seconds()
     std::vector<PvdEntry> frames;    ///< written so far
     std::vector<PvdEntry> contacts;  ///< the same of the contact log
 };

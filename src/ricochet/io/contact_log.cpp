@@ -46,8 +46,10 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
 }
 
 ContactLog::ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows,
-                       std::vector<PvdEntry> earlier)
-    : files_(folder, kContactSeries, std::move(earlier)), most_rows_(most_rows), step_(simulation.step_index()) {
+                       std::vector<PvdEntry> earlier, std::shared_ptr<WriterThread> thread)
+    : files_(folder, kContactSeries, std::move(earlier), std::move(thread)),
+      most_rows_(most_rows),
+      step_(simulation.step_index()) {
     if (step_ > 0) written_ = step_;  // an interrupted run has written all of its steps
     if (!simulation.options().record_contacts) {
         throw std::logic_error("a contact log needs a simulation that records its contacts");

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -45,9 +46,9 @@ public:
     static constexpr std::size_t kMostRows = std::size_t{1} << 19;
 
     /// The simulation must record its contacts (SimulationOptions::record_contacts); its steps from now on are logged.
-    /// earlier: the files of an interrupted run that goes on here.
+    /// earlier: the files of an interrupted run that goes on here. thread: as of FrameWriter.
     ContactLog(const std::filesystem::path& folder, const Simulation& simulation, std::size_t most_rows = kMostRows,
-               std::vector<PvdEntry> earlier = {});
+               std::vector<PvdEntry> earlier = {}, std::shared_ptr<WriterThread> thread = nullptr);
 
     /// Takes the rows of the last step; to be called after every step (again for the same step: no effect). Throws
     /// std::logic_error when a step was left out, and what an earlier file's writing threw.

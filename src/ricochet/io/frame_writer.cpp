@@ -1,5 +1,6 @@
 #include "ricochet/io/frame_writer.h"
 
+#include <mutex>
 #include <utility>
 
 #include "ricochet/core/atomic_file.h"
@@ -13,86 +14,77 @@ constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
-    : folder_(std::move(folder)),
-      files_(files),
-      series_(std::move(earlier)),
-      submitted_(series_.size()),
-      thread_([this] { work(); }) {}
+/// The files of a series and their list. Touched by the writer's thread, and by others only while that has no job; the
+/// frames to be used again are the exception.
+class FrameWriter::Series {
+public:
+    Series(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
+        : folder_(std::move(folder)), files_(files), entries_(std::move(earlier)) {}
 
-FrameWriter::~FrameWriter() {
-    {
+    void write(std::uint64_t step, VtkPolyData& frame) {
+        const std::string name = files_.file_name(step);
+        bytes_since_list_ += write_vtp(folder_ / name, frame);
+        entries_.push_back({frame.time, 0, name});
+        const std::size_t list_bytes = 100 * entries_.size();
+        if (entries_.size() <= kAlwaysListed || bytes_since_list_ >= list_bytes) write_list();
         const std::lock_guard lock(mutex_);
-        abandoned_ = true;
+        if (keeps_frames_) written_.push_back(std::move(frame));
     }
-    stop();
+
+    // What is lost after a checkpoint must not leave the list behind.
+    const std::vector<PvdEntry>& bring_up_to_date() {
+        if (listed_ != entries_.size()) write_list();
+        return entries_;
+    }
+
+    [[nodiscard]] const std::vector<PvdEntry>& entries() const { return entries_; }
+
+    [[nodiscard]] VtkPolyData take_written_frame() {
+        const std::lock_guard lock(mutex_);
+        keeps_frames_ = true;
+        if (written_.empty()) return {};
+        VtkPolyData frame = std::move(written_.back());
+        written_.pop_back();
+        return frame;
+    }
+
+private:
+    void write_list() {
+        write_file(folder_ / files_.list, pvd_text(entries_));
+        listed_ = entries_.size();
+        bytes_since_list_ = 0;
+    }
+
+    std::filesystem::path folder_;
+    FileSeries files_;
+    std::vector<PvdEntry> entries_;
+    std::uint64_t bytes_since_list_ = 0;
+    std::size_t listed_ = 0;  // entries that are in the series file
+    std::mutex mutex_;
+    bool keeps_frames_ = false;         // from the first blank_frame() on
+    std::vector<VtkPolyData> written_;  // to be filled again
+};
+
+FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier,
+                         std::shared_ptr<WriterThread> thread)
+    : series_(std::make_shared<Series>(std::move(folder), files, std::move(earlier))),
+      submitted_(series_->entries().size()),
+      thread_(thread ? std::move(thread) : std::make_shared<WriterThread>()) {}
+
+VtkPolyData FrameWriter::blank_frame() {
+    thread_->wait_for_room();
+    return series_->take_written_frame();
 }
 
 void FrameWriter::submit(std::uint64_t step, VtkPolyData frame) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return queue_.size() < kQueueLength || error_; });
-    if (error_) std::rethrow_exception(error_);
-    queue_.push_back({step, std::move(frame)});
+    const auto held = std::make_shared<VtkPolyData>(std::move(frame));
+    thread_->submit([series = series_, step, held] { series->write(step, *held); });
     ++submitted_;
-    changed_.notify_all();
 }
 
-// The list of the series is kept up to date too: what is lost after a checkpoint must not leave it behind.
 std::vector<PvdEntry> FrameWriter::drain() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return queue_.empty() || error_; });
-    if (error_) std::rethrow_exception(error_);
-    if (listed_ != series_.size()) write_series();
-    return series_;
-}
-
-void FrameWriter::finish() {
-    stop();
-    if (error_) std::rethrow_exception(error_);
-    if (listed_ != series_.size()) write_series();
-}
-
-void FrameWriter::stop() {
-    {
-        const std::lock_guard lock(mutex_);
-        closing_ = true;
-    }
-    changed_.notify_all();
-    if (thread_.joinable()) thread_.join();
-}
-
-void FrameWriter::work() {
-    std::unique_lock lock(mutex_);
-    while (true) {
-        changed_.wait(lock, [this] { return !queue_.empty() || closing_; });
-        if (queue_.empty() || abandoned_ || error_) return;
-        const Frame& frame = queue_.front();  // stays put: only this thread takes it away
-        lock.unlock();
-        std::exception_ptr error;
-        try {
-            write_one(frame);
-        } catch (...) {
-            error = std::current_exception();
-        }
-        lock.lock();
-        queue_.pop_front();
-        if (error) error_ = error;
-        changed_.notify_all();
-    }
-}
-
-void FrameWriter::write_one(const Frame& frame) {
-    const std::string name = files_.file_name(frame.step);
-    bytes_since_series_ += write_vtp(folder_ / name, frame.data);
-    series_.push_back({frame.data.time, 0, name});
-    const std::size_t series_bytes = 100 * series_.size();
-    if (series_.size() <= kAlwaysListed || bytes_since_series_ >= series_bytes) write_series();
-}
-
-void FrameWriter::write_series() {
-    write_file(folder_ / files_.list, pvd_text(series_));
-    listed_ = series_.size();
-    bytes_since_series_ = 0;
+    thread_->drain();
+    return series_->bring_up_to_date();
 }
 
 }  // namespace ricochet

@@ -2,33 +2,114 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 #include <utility>
+
+#include "ricochet/core/parallel.h"
 
 namespace ricochet {
 namespace {
 
-template <typename T>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::uint32_t>& order) {
-    std::vector<T> sorted;
-    sorted.reserve(order.size());
-    for (const std::uint32_t i : order) sorted.push_back(values[i]);
-    return sorted;
+/// Particles per unit of parallel work.
+constexpr std::size_t kBlock = 1 << 14;
+
+// The arrays of a frame that is filled, each with the memory of the one that stood in its place before.
+class ArrayList {
+public:
+    ArrayList(std::vector<VtkArray>& arrays, std::size_t length) : arrays_(arrays), length_(length) {}
+
+    // The values of the next array, to be set.
+    template <typename T>
+    T* next(std::string_view name) {
+        if (used_ == arrays_.size()) arrays_.emplace_back();
+        VtkArray& array = arrays_[used_++];
+        array.name = name;
+        if (!std::holds_alternative<std::vector<T>>(array.values)) array.values = std::vector<T>();
+        auto& values = std::get<std::vector<T>>(array.values);
+        values.resize(length_);
+        return values.data();
+    }
+    void end() { arrays_.resize(used_); }
+
+private:
+    std::vector<VtkArray>& arrays_;
+    std::size_t length_;
+    std::size_t used_ = 0;
+};
+
+// Copies entries of the particles into the order of their ids, the entries [begin, end) of that order.
+struct Gather {
+    const std::vector<std::uint32_t>& order;
+    std::size_t begin;
+    std::size_t end;
+
+    template <typename To, typename From>
+    void operator()(const std::vector<From>& from, To* to) const {
+        for (std::size_t k = begin; k < end; ++k) to[k] = static_cast<To>(from[order[k]]);
+    }
+};
+
+// The arrays that every frame has.
+class OwnArrays {
+public:
+    OwnArrays(VtkPolyData& frame, ArrayList& list, bool has_spheres)
+        : points_(frame.points.data()),
+          id_(list.next<std::int64_t>("id")),
+          velocity_(list.next<Vec3>("velocity")),
+          mass_(list.next<double>("mass")),
+          radius_(list.next<double>("radius")),
+          age_(list.next<double>("age")),
+          contacts_(list.next<std::uint32_t>("contacts")),
+          resting_(list.next<std::uint8_t>("resting")),
+          frozen_(list.next<std::uint8_t>("frozen")),
+          unsimulated_time_(list.next<double>("unsimulated_time")),
+          spin_(has_spheres ? list.next<Vec3>("spin") : nullptr) {}
+
+    void fill(const Particles& particles, const Gather& gather, double time) const {
+        gather(particles.position, points_);
+        gather(particles.id, id_);
+        gather(particles.velocity, velocity_);
+        gather(particles.mass, mass_);
+        gather(particles.radius, radius_);
+        gather(particles.birth_time, age_);
+        for (std::size_t k = gather.begin; k < gather.end; ++k) age_[k] = time - age_[k];
+        gather(particles.contacts, contacts_);
+        gather(particles.resting, resting_);
+        gather(particles.frozen, frozen_);
+        gather(particles.unsimulated_time, unsimulated_time_);
+        if (spin_ != nullptr) gather(particles.spin, spin_);
+    }
+
+private:
+    // In the order of the file.
+    Vec3* points_;
+    std::int64_t* id_;
+    Vec3* velocity_;
+    double* mass_;
+    double* radius_;
+    double* age_;
+    std::uint32_t* contacts_;
+    std::uint8_t* resting_;
+    std::uint8_t* frozen_;
+    double* unsimulated_time_;
+    Vec3* spin_;
+};
+
+void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_t column,
+                   const std::vector<std::uint32_t>& order) {
+    const AttributeDescription& description = attributes.columns()[column];
+    const bool is_vector = description.components == 3;
+    Vec3* const vectors = is_vector ? list.next<Vec3>(description.name) : nullptr;
+    double* const numbers = is_vector ? nullptr : list.next<double>(description.name);
+    parallel_for_blocks(order.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 value = attributes.value(column, order[k]);
+            is_vector ? void(vectors[k] = value) : void(numbers[k] = value.x);
+        }
+    });
 }
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
-
-VtkArray attribute_array(const AttributeTable& attributes, std::size_t column,
-                         const std::vector<std::uint32_t>& order) {
-    const AttributeDescription& description = attributes.columns()[column];
-    std::vector<Vec3> vectors;
-    std::vector<double> numbers;
-    for (const std::uint32_t i : order) {
-        const Vec3 value = attributes.value(column, i);
-        description.components == 3 ? vectors.push_back(value) : numbers.push_back(value.x);
-    }
-    if (description.components == 3) return {description.name, std::move(vectors)};
-    return {description.name, std::move(numbers)};
-}
 
 std::vector<const SpringFace*> standing_faces(const SpringNetwork& springs, const std::vector<SpringFace>& faces) {
     std::vector<const SpringFace*> standing;
@@ -70,26 +151,28 @@ VtkPolyData particle_frame(const Particles& particles, double time, bool has_sph
 
 VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
                            bool has_spheres) {
-    const std::vector<std::uint32_t> order = particles.order_by_id();
-    std::vector<double> age = gathered(particles.birth_time, order);
-    for (double& value : age) value = time - value;
     VtkPolyData frame;
-    frame.time = time;
-    frame.points = gathered(particles.position, order);
-    frame.point_arrays = {{"id", as_signed(gathered(particles.id, order))},
-                          {"velocity", gathered(particles.velocity, order)},
-                          {"mass", gathered(particles.mass, order)},
-                          {"radius", gathered(particles.radius, order)},
-                          {"age", std::move(age)},
-                          {"contacts", gathered(particles.contacts, order)},
-                          {"resting", gathered(particles.resting, order)},
-                          {"frozen", gathered(particles.frozen, order)},
-                          {"unsimulated_time", gathered(particles.unsimulated_time, order)}};
-    if (has_spheres) frame.point_arrays.push_back({"spin", gathered(particles.spin, order)});
-    for (std::size_t k = 0; k < attributes.columns().size(); ++k) {
-        frame.point_arrays.push_back(attribute_array(attributes, k, order));
-    }
+    fill_particle_frame(frame, particles, attributes, time, has_spheres);
     return frame;
+}
+
+void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
+                         bool has_spheres) {
+    const std::vector<std::uint32_t> order = particles.order_by_id();
+    frame.time = time;
+    frame.fields.clear();
+    frame.lines.clear();
+    frame.triangles.clear();
+    frame.has_vertices = false;
+    frame.cell_arrays.clear();
+    frame.points.resize(order.size());
+    ArrayList list(frame.point_arrays, order.size());
+    const OwnArrays arrays(frame, list, has_spheres);
+    parallel_for_blocks(order.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        arrays.fill(particles, {order, begin, end}, time);
+    });
+    for (std::size_t k = 0; k < attributes.columns().size(); ++k) add_attribute(list, attributes, k, order);
+    list.end();
 }
 
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,

@@ -17,6 +17,10 @@ namespace ricochet {
 /// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
                                          bool has_spheres = false);
+/// The same in the memory of a frame that is no longer needed, whatever it holds: most of the time that a frame takes
+/// is that of fresh memory.
+void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
+                         bool has_spheres);
 
 /// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
 /// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for

@@ -1,5 +1,6 @@
 #include "ricochet/io/run_writer.h"
 
+#include <chrono>
 #include <utility>
 #include <variant>
 
@@ -10,6 +11,21 @@
 
 namespace ricochet {
 namespace {
+
+/// Adds the time until it goes to a sum of seconds.
+class SecondsTo {
+public:
+    explicit SecondsTo(double& sum) : sum_(sum) {}
+    ~SecondsTo() { sum_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    SecondsTo(const SecondsTo&) = delete;
+    SecondsTo& operator=(const SecondsTo&) = delete;
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    double& sum_;
+    Clock::time_point start_ = Clock::now();
+};
 
 Box3 mesh_region(const Simulation& simulation) {
     Box3 region;
@@ -41,16 +57,19 @@ Box3 particle_region(const SimulationSetup& setup) {
 }
 
 RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
-                     const std::optional<Checkpoint>& resumed)
+                     const std::optional<Checkpoint>& resumed, WriterThread::Mode mode)
     : folder_(std::move(folder)),
       info_(std::move(info)),
       region_(region),
       has_spheres_(simulation.has_spheres()),
-      frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}) {
+      output_seconds_(resumed ? resumed->output_seconds : 0.0),
+      thread_(std::make_shared<WriterThread>(mode)),
+      frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}, thread_) {
+    const SecondsTo clock(output_seconds_);
     if (resumed) last_frame_ = simulation.step_index();
     if (simulation.options().record_contacts) {
         contacts_.emplace(folder_, simulation, ContactLog::kMostRows,
-                          resumed ? resumed->contacts : std::vector<PvdEntry>{});
+                          resumed ? resumed->contacts : std::vector<PvdEntry>{}, thread_);
     }
     region_.include(mesh_region(simulation));
     info_.colliders = describe_colliders(simulation);
@@ -62,14 +81,17 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
 }
 
 void RunWriter::add_step(const Simulation& simulation) {
+    const SecondsTo clock(output_seconds_);
+    frames_.check();
     if (contacts_) contacts_->add_step(simulation);
 }
 
 void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
+    const SecondsTo clock(output_seconds_);
     if (contacts_) contacts_->write(simulation);
-    VtkPolyData frame =
-        particle_frame(simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
+    VtkPolyData frame = frames_.blank_frame();
+    fill_particle_frame(frame, simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
     if (!simulation.springs().empty()) {
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
     }
@@ -78,7 +100,8 @@ void RunWriter::write_frame(const Simulation& simulation) {
 }
 
 void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds) {
-    Checkpoint checkpoint{scene, wall_seconds, frames_.drain(), {}};
+    const SecondsTo clock(output_seconds_);
+    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}};
     if (contacts_) checkpoint.contacts = contacts_->drain();
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
@@ -100,11 +123,15 @@ RunSummary RunWriter::finish_diverged(const Simulation& simulation, const std::s
 }
 
 RunSummary RunWriter::close(const Simulation& simulation) {
-    frames_.finish();
-    if (contacts_) contacts_->finish();
-    write_colliders(simulation);
+    {
+        const SecondsTo clock(output_seconds_);
+        frames_.finish();
+        if (contacts_) contacts_->finish();
+        write_colliders(simulation);
+    }
     RunSummary summary = summarize(simulation);
     summary.frames = frames_.submitted();
+    summary.output_seconds = output_seconds_;
     for (std::size_t i = 0; i < summary.colliders.size(); ++i) summary.colliders[i].file = info_.colliders[i].file;
     return summary;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/run_info.h"
 #include "ricochet/io/summary.h"
+#include "ricochet/io/writer_thread.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {
@@ -21,17 +23,21 @@ namespace ricochet {
 [[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
 
 /// Writes a run: first run.json and the colliders, then frames, at the end the colliders with their totals and the
-/// summary. What is on disk at any moment can be opened, however the run ends.
+/// summary. What is on disk at any moment can be opened, however the run ends. Frames and contact files are written by
+/// one thread of its own; at most two of them are in memory, then the simulation waits. An error of that thread comes
+/// out of the next call, whichever it is.
 class RunWriter {
 public:
     /// folder: an OutputDirectory's, which must outlive the writer. region: what a plane has to be large enough for,
     /// besides the meshes. Fills in info.colliders. Throws RunError when the disk does not take it.
-    /// resumed: of the interrupted run that the simulation goes on with.
+    /// resumed: of the interrupted run that the simulation goes on with. mode: the files are the same in both.
     RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
-              const std::optional<Checkpoint>& resumed = std::nullopt);
+              const std::optional<Checkpoint>& resumed = std::nullopt,
+              WriterThread::Mode mode = WriterThread::Mode::background);
 
-    /// To be called after every step of a simulation that records its contacts, so that none is lost between frames;
-    /// no effect for others. Throws like ContactLog::add_step().
+    /// To be called after every step: takes its contacts where the simulation records them, so that none is lost
+    /// between frames, and lets a run end soon whose frames cannot be written. Throws like ContactLog::add_step() and
+    /// what an earlier frame's writing threw.
     void add_step(const Simulation& simulation);
     /// Hands the present state over as a frame, with the contacts since the one before where the simulation records
     /// them. Throws what an earlier frame's writing threw.
@@ -47,6 +53,8 @@ public:
     /// The same for a run that has diverged inside a step: the frames end before it.
     [[nodiscard]] RunSummary finish_diverged(const Simulation& simulation, const std::string& message);
     void write_summary(const RunSummary& summary) const;
+    /// Time spent in here by those who call, waiting for the disk included; of a resumed run with that before, s.
+    [[nodiscard]] double output_seconds() const { return output_seconds_; }
 
 private:
     [[nodiscard]] RunSummary close(const Simulation& simulation);
@@ -57,6 +65,8 @@ private:
     Box3 region_;
     std::optional<std::uint64_t> last_frame_;
     bool has_spheres_ = false;
+    double output_seconds_ = 0.0;
+    std::shared_ptr<WriterThread> thread_;
     FrameWriter frames_;
     std::optional<ContactLog> contacts_;
 };

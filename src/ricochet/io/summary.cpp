@@ -95,6 +95,7 @@ std::string summary_text(const RunSummary& summary) {
     json["frames"] = summary.frames;
     json["simulated_time"] = summary.simulated_time;
     json["wall_seconds"] = summary.wall_seconds;
+    json["output_seconds"] = summary.output_seconds;
     json["interrupted"] = summary.interrupted;
     json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;

@@ -32,6 +32,7 @@ struct RunSummary {
     double time_step = 0.0;       ///< s
     double simulated_time = 0.0;  ///< s
     double wall_seconds = 0.0;
+    double output_seconds = 0.0;  ///< of them on output: what the simulation spent on it or waiting for it
     std::uint64_t frames = 0;
     bool interrupted = false;
     std::optional<std::string> diverged;  ///< why the run stopped, where its numbers became nonsense

@@ -72,7 +72,7 @@ const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
     if (is_new) {
         try {
             if (const auto problem = file_problem(path)) throw InputError(*problem);
-            ImportedMesh imported = read_mesh(path);
+            ImportedMesh imported = read_mesh(path, MeshContent::triangles);
             entry.groups = groups_of(imported);
             entry.mesh = std::make_shared<const TriangleMesh>(std::move(imported.mesh));
         } catch (const InputError& error) {

@@ -46,8 +46,7 @@ bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& 
         if (!announce("warm-up", step + 1)) return false;
         simulation.step();
     }
-    simulation.save(
-        [&](std::span<const std::byte> bytes) { start_.insert(start_.end(), bytes.begin(), bytes.end()); });
+    simulation.save([&](std::span<const std::byte> bytes) { start_.insert(start_.end(), bytes.begin(), bytes.end()); });
     const SimulationStatistics before = simulation.statistics();
     for (std::uint64_t step = 0; step < case_.steps; ++step) {
         if (!announce("first run", step + 1)) return false;

@@ -144,19 +144,20 @@ using Cases = std::vector<Case>;
 
 void append(Cases& to, const Cases& cases) { to.insert(to.end(), cases.begin(), cases.end()); }
 
-// The step of each size is such that some 1.5 % of the particle-steps hit, found by trying with 100 000 particles: the
+// The step of each size is such that some 1.5 % of the particle-steps hit, found by a run with 60 000 particles: the
 // rate of hits goes with surface over volume, which grows until all of the cavity's roughness is there.
 Cases size_cases() {
     constexpr std::size_t kMany = 1'000'000;
-    return {gas("size", "size-20", 20, kMany, 0.02),
-            gas("size", "size-320", 320, kMany, 0.01),
+    constexpr double kStepOnFinestMeshes = 0.0066;
+    return {gas("size", "size-20", 20, kMany, 0.0137),
+            gas("size", "size-320", 320, kMany, 0.0124),
             gas("size", "size-5k", 5'000, kMany, 0.009),
             gas("size", "size-20k", 20'000, kMany, kGasStep),
-            gas("size", "size-80k", 80'000, kMany, 0.0075),
-            gas("size", "size-320k", 320'000, kMany, 0.007),
+            gas("size", "size-80k", 80'000, kMany, 0.0074),
+            gas("size", "size-320k", 320'000, kMany, 0.0071),
             gas("size", "size-1300k", 1'300'000, kMany, kGasStepOnFineMesh),
-            gas("size", "size-5M", 5'000'000, kMany, kGasStepOnFineMesh),
-            gas("size", "size-10M", 10'000'000, kMany, kGasStepOnFineMesh)};
+            gas("size", "size-5M", 5'000'000, kMany, kStepOnFinestMeshes),
+            gas("size", "size-10M", 10'000'000, kMany, kStepOnFinestMeshes)};
 }
 
 // Few particles take many steps, so that what is timed lasts some tenths of a second.

@@ -73,9 +73,8 @@ bool Measurer::repeat_all() {
         std::size_t i = 0;
         for (CaseRun& run : runs_) {
             progress_.name = run.description().name;
-            const bool is_done = run.time(times_[i++][k], [&](std::string_view doing, std::uint64_t step) {
-                return announce(doing, step);
-            });
+            const bool is_done = run.time(
+                times_[i++][k], [&](std::string_view doing, std::uint64_t step) { return announce(doing, step); });
             if (!is_done) return false;
         }
     }

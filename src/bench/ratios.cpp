@@ -117,8 +117,7 @@ SuiteRatios read_ratios(const std::filesystem::path& file, std::string_view suit
         throw WrongFile(file, fmt::format("it is of suite {}, not of {}", ratios.suite, suite));
     }
     for (const auto& [name, value] : json["cases"].items()) {
-        ratios.cases.push_back(
-            {name, ratio_in(value, kRaw, name, file), ratio_in(value, kNativeBounces, name, file)});
+        ratios.cases.push_back({name, ratio_in(value, kRaw, name, file), ratio_in(value, kNativeBounces, name, file)});
     }
     return ratios;
 }

@@ -233,7 +233,8 @@ void add_options(CLI::App& command, BenchArguments& a) {
     command.add_option("--results", a.results, "Folder of results: DIR/MACHINE/SUITE gets a table and a picture")
         ->type_name("DIR");
     CLI::Option* const compare =
-        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen")->type_name("FILE");
+        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen")
+            ->type_name("FILE");
     command.add_option("--tolerance", a.tolerance, "Part of a ratio by which it may fall")
         ->type_name("X")
         ->capture_default_str()

@@ -62,34 +62,48 @@ std::string lines(std::string_view suite, std::span<const Row> rows, const Axes&
                   const std::function<double(const Row&)>& x, const std::vector<Series<Row>>& series) {
     std::string text = start(suite, series.size(), axes.title);
     text += fmt::format("set xlabel '{}'\nset ylabel '{}'\n{}", axes.x, axes.y, axes.scales);
-    text += block<Row>(rows, [&](const Row& row) { return number_text(x(row)); }, series) + "plot ";
+    text += block<Row>(
+                rows, [&](const Row& row) { return number_text(x(row)); }, series) +
+            "plot ";
     for (std::size_t i = 0; i < series.size(); ++i) {
-        text += fmt::format("{}$numbers using 1:{} with linespoints linestyle {} title '{}'", i == 0 ? "" : ", \\\n     ",
-                            i + 2, i + 1, series[i].title);
+        text += fmt::format("{}$numbers using 1:{} with linespoints linestyle {} title '{}'",
+                            i == 0 ? "" : ", \\\n     ", i + 2, i + 1, series[i].title);
     }
     return text + "\nset output\n";
+}
+
+/// One place on the axis for every row, with its name.
+template <class AnyRow>
+std::string name_axis(std::span<const AnyRow> rows) {
+    std::string tics;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        tics += fmt::format("{}'{}' {}", tics.empty() ? "" : ", ", rows[i].name, i);
+    }
+    const double end = static_cast<double>(rows.size()) - 0.4;
+    return fmt::format("set xtics ({}) rotate by -30 noenhanced\nset xrange [-0.6:{:.4g}]\n", tics, end);
 }
 
 /// Bars side by side, each with its value above it, and optionally a line at 1.
 template <class AnyRow>
 std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::string_view title, std::string_view y,
                  const std::vector<Series<AnyRow>>& series, bool with_one) {
-    constexpr double kGap = 1.0;  // bars between two groups
+    const double count = static_cast<double>(series.size());
+    const double width = 1.0 / (count + 1.0);  // between two groups as much room as a bar takes
     std::string text = start(suite, series.size(), title);
     text += fmt::format(
-        "set ylabel '{}'\nset style fill solid 0.85 noborder\nset xtics rotate by -30 noenhanced\n"
-        "set grid noxtics\nset yrange [0:*]\nset offsets 0.6,0.6,0.1,0\nset boxwidth {:.4g}\n",
-        y, 1.0 / (static_cast<double>(series.size()) + kGap));
+        "set ylabel '{}'\nset style fill solid 0.85 noborder\nset grid noxtics\nset boxwidth {:.4g}\n"
+        "set yrange [0:*]\nset offsets 0,0,graph 0.05,0\n",
+        y, width);
+    text += name_axis(rows);
     const auto name = [](const AnyRow& row) { return fmt::format("\"{}\"", row.name); };
     text += block<AnyRow>(rows, name, series) + "plot ";
-    const double width = 1.0 / (static_cast<double>(series.size()) + kGap);
     for (std::size_t i = 0; i < series.size(); ++i) {
-        const double shift = (static_cast<double>(i) - 0.5 * static_cast<double>(series.size() - 1)) * width;
+        const double shift = (static_cast<double>(i) - 0.5 * (count - 1.0)) * width;
         text += fmt::format(
-            "$numbers using ($0+({0:.4g})):{1}:xtic(1) with boxes linestyle {2} title '{3}', \\\n"
+            "{4}$numbers using ($0+({0:.4g})):{1} with boxes linestyle {2} title '{3}', \\\n"
             "     $numbers using ($0+({0:.4g})):{1}:(sprintf('%.3g',column({1}))) with labels offset 0,0.6 font ',10' "
-            "notitle{4}",
-            shift, i + 2, i + 1, series[i].title, i + 1 < series.size() ? ", \\\n     " : "");
+            "notitle",
+            shift, i + 2, i + 1, series[i].title, i == 0 ? "" : ", \\\n     ");
     }
     if (with_one) text += ", \\\n     1 with lines linecolor '#404040' dashtype 2 notitle";
     return text + "\nset output\n";
@@ -119,10 +133,10 @@ std::string count_plot(std::span<const Row> rows) {
     const Axes axes{"Rates with growing numbers of particles", "particles", "millions a second",
                     "set logscale x\nset format x '10^{%L}'\nset yrange [0:*]\n"};
     constexpr double kMillion = 1e6;
-    return lines("count", rows, axes, [](const Row& row) { return static_cast<double>(row.particles); },
-                 {{"ricochet: steps of particles",
-                   [](const Row& row) { return row.particle_steps_per_second / kMillion; }},
-                  {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
+    return lines(
+        "count", rows, axes, [](const Row& row) { return static_cast<double>(row.particles); },
+        {{"ricochet: steps of particles", [](const Row& row) { return row.particle_steps_per_second / kMillion; }},
+         {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
 }
 
 /// A curve for every case, and its bare rays dashed.
@@ -151,13 +165,12 @@ std::string threads_plot(std::span<const Row> rows) {
 }
 
 std::string ratios_plot(std::string_view suite, std::span<const Row> rows) {
-    return bars<Row>(suite, rows, fmt::format("Suite {}: rates over those of the ray library by itself", suite),
-                     "ratio",
-                     {{"particle-steps / bare rays", [](const Row& row) { return row.ratio_raw; }},
-                      {"particle-steps / sorted packets of rays", [](const Row& row) { return row.ratio_raw_sorted; }},
-                      {"impacts / native bounces",
-                       [](const Row& row) { return or_nothing(row.ratio_native_bounces); }}},
-                     true);
+    return bars<Row>(
+        suite, rows, fmt::format("Suite {}: rates over those of the ray library by itself", suite), "ratio",
+        {{"particle-steps / bare rays", [](const Row& row) { return row.ratio_raw; }},
+         {"particle-steps / sorted packets of rays", [](const Row& row) { return row.ratio_raw_sorted; }},
+         {"impacts / native bounces", [](const Row& row) { return or_nothing(row.ratio_native_bounces); }}},
+        true);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ Cases count_cases() {
 Cases radius_cases() {
     Cases cases;
     const Case gas_points = gas("radius", "gas-points", kTrianglesForSpheres, 200'000, 0.007);
-    const Case pinball_points = pinball("radius", "pinball-points", kTrianglesForSpheres, 20'000);
+    const Case pinball_points = pinball("radius", "pinball-points", kTrianglesForSpheres, 10'000);
     const auto add = [&](const Case& points, std::string_view spheres, std::string_view decades) {
         cases.push_back(with_radii(points, points.name, 0.0, 0.0));
         cases.push_back(with_radii(points, points.name, kRadius, kRadius));

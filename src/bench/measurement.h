@@ -36,7 +36,8 @@ struct Row {
     double ratio_raw_sorted = 0.0;
     double native_bounces_per_second = 0.0;      ///< of the usual bounce loop
     std::optional<double> ratio_native_bounces;  ///< contacts over native bounces; nothing where none bounces
-    /// Particles that the bounce loop has brought outside a closed mesh; nothing where the mesh has no inside.
+    /// Particles that the bounce loop has brought outside a closed mesh; nothing where the mesh has no inside, and for
+    /// responses that let particles into the wall.
     std::optional<std::uint64_t> leaks;
     std::uint64_t state_hash = 0;
     double bytes_per_particle = 0.0;

@@ -1,12 +1,14 @@
 #include "cli/bench_plots.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "bench/suites.h"
@@ -34,7 +36,7 @@ std::string number_text(double number) { return std::isfinite(number) ? fmt::for
 
 std::string start(std::string_view suite, std::size_t styles, std::string_view title) {
     return gnuplot_start(fmt::format("Draws {0}.png: gnuplot {0}.gp", suite)) + gnuplot_line_styles(styles) +
-           fmt::format("set output '{}.png'.ending\nset title '{}'\nset key outside bottom center horizontal\n", suite,
+           fmt::format("set output '{}.png'.ending\nset title '{}'\nset key outside top center horizontal\n", suite,
                        title);
 }
 
@@ -139,14 +141,24 @@ std::string count_plot(std::span<const Row> rows) {
          {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
 }
 
+/// Doublings of the threads as far apart as those of the speed, marked where there are measurements.
+std::string threads_axis(std::span<const Row> rows) {
+    constexpr double kMargin = 1.1;
+    std::set<int> counts;
+    for (const Row& row : rows) counts.insert(row.threads);
+    return fmt::format(
+        "set xlabel 'threads'\nset ylabel 'times as fast as one thread'\nset logscale xy 2\nset xtics ({})\n"
+        "set xrange [{:.4g}:{:.4g}]\n",
+        fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
+}
+
 /// A curve for every case, and its bare rays dashed.
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {
         if (std::find(names.begin(), names.end(), row.name) == names.end()) names.push_back(row.name);
     }
-    std::string text = start("threads", names.size(), "Speedup over one thread");
-    text += "set xlabel 'threads'\nset ylabel 'times as fast as one thread'\nset xrange [0:*]\nset yrange [0:*]\n";
+    std::string text = start("threads", names.size(), "Speedup over one thread") + threads_axis(rows);
     std::string curves;
     for (std::size_t i = 0; i < names.size(); ++i) {
         text += fmt::format("$case{} << EOD\n", i);

@@ -103,7 +103,7 @@ std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::stri
         const double shift = (static_cast<double>(i) - 0.5 * (count - 1.0)) * width;
         text += fmt::format(
             "{4}$numbers using ($0+({0:.4g})):{1} with boxes linestyle {2} title '{3}', \\\n"
-            "     $numbers using ($0+({0:.4g})):{1}:(sprintf('%.3g',column({1}))) with labels offset 0,0.6 font ',10' "
+            "     $numbers using ($0+({0:.4g})):{1}:(sprintf('%.2g',column({1}))) with labels offset 0,0.6 font ',10' "
             "notitle",
             shift, i + 2, i + 1, series[i].title, i == 0 ? "" : ", \\\n     ");
     }

@@ -26,7 +26,7 @@ Case gas(std::string_view suite, std::string_view name, std::size_t triangles, s
             .speed = 1.0,
             .spread = 0.5,
             .warm_up = 4,
-            .steps = 8};
+            .steps = 60};
 }
 
 Case settle(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {

@@ -35,6 +35,7 @@ struct SimulationOptions {
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;
     bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
+    bool foresight = true;  ///< particles that certainly meet nothing are not searched for; the result is the same without
     bool culling = true;   ///< false: every triangle is tested for every path; the result is the same without
     bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
     /// Check every leg, side and distance by code of its own, see verify/verifier.h. The same bits as without it.

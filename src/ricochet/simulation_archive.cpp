@@ -164,6 +164,7 @@ void Simulation::save(const ByteSink& sink) const {
 void Simulation::restore(const ByteSource& source) {
     BinaryReader reader(source);
     impl_->archive(reader);
+    impl_->coasts_to.assign(impl_->particles.size(), 0);
     for (const double radius : impl_->particles.radius) impl_->world.prepare_radius(radius);
     impl_->replay_emitters();
     if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles);

@@ -88,6 +88,9 @@ struct Simulation::Impl {
     void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
+    [[nodiscard]] bool coasts(std::size_t i) const { return statistics.steps < coasts_to[i]; }
+    void coast_on(std::size_t i, double from, double to, MoveScratch& scratch, BlockCounts& counts);
+    [[nodiscard]] std::uint32_t end_of_coasting(std::size_t i, double free_until) const;
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
     void sort_records();
@@ -108,6 +111,8 @@ struct Simulation::Impl {
               BlockCounts& counts);
     void store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
     void retire(double now);
+    [[nodiscard]] bool is_leaving(std::size_t i, double now) const;
+    void retire_leavers(double now);
     template <class Archive>
     void archive(Archive& a);
     [[nodiscard]] std::uint64_t collider_hash() const;
@@ -130,6 +135,8 @@ struct Simulation::Impl {
     std::vector<Emitter> emitters;
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
+    /// Of every particle the number of the step with which it is to be searched for again: until then it meets nothing.
+    std::vector<std::uint32_t> coasts_to;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
     std::vector<SpringFace> spring_faces;

@@ -64,7 +64,8 @@ bool makes_spheres(const SimulationSetup& setup) {
 
 ResponseSettings response_settings(const SimulationOptions& options) {
     return {options.integrator, options.resting_speed, options.bounce_budget, options.seed, options.time_step,
-            options.rollback,   options.project,       options.penalty,       options.flow, options.walls};
+            options.rollback,   options.project,       options.penalty,       options.flow, options.walls,
+            options.foresight};
 }
 
 double lightest_particle(const SimulationSetup& setup) {
@@ -141,6 +142,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       steps(count_steps(options)),
       may_sleep(options.sleeping && forces.is_steady()) {
     world.set_culling(options.culling);
+    if (options.foresight) world.prepare_clearance();
     has_spheres = makes_spheres(setup);
     particles.attributes = AttributeTable(setup.attributes);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
@@ -169,6 +171,7 @@ void Simulation::Impl::add(Particle particle) {
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
+    coasts_to.push_back(0);
     if (response->keeps_sides()) {
         sides.resize(particles.size() * world.colliders().size());
         if (is_finite(particle.position)) response->first_sides(particle.position, sides_of(particles.size() - 1));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -128,6 +129,10 @@ void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double fro
     scratch.record_contacts = keeps_records();
     scratch.record_legs = check != nullptr;
     for (std::size_t i = begin; i < end; ++i) {
+        if (coasts(i)) {
+            coast_on(i, from, to, scratch, counts);
+            continue;
+        }
         if (stands_still(i)) continue;
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
@@ -152,8 +157,36 @@ void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const Mo
     const bool was_fast = is_fast();
     store(i, moved, outcome);
     if (!was_fast && is_fast() && !counts.runaway) counts.runaway = i;
-    particles.booked_until[i] = until;
+    if (particles.held[i] != 0) particles.booked_until[i] = until;
+    coasts_to[i] = outcome.free_for > 0.0 ? end_of_coasting(i, until + outcome.free_for) : 0;
     counts.add(outcome);
+}
+
+// Not the last step when it is shorter than the others, and not that in which the particle dies.
+std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until) const {
+    const double until = std::min(free_until, particles.birth_time[i] + particles.lifetime[i]);
+    const bool last_is_whole = options.duration == static_cast<double>(steps) * options.time_step;
+    const std::uint64_t most =
+        std::min<std::uint64_t>(last_is_whole ? steps : steps - 1, std::numeric_limits<std::uint32_t>::max());
+    auto step = static_cast<std::uint64_t>(std::min(until / options.time_step, static_cast<double>(most)));
+    while (step > 0 && time_at(step) >= until) --step;
+    return static_cast<std::uint32_t>(step);
+}
+
+// A step of a particle that meets nothing: the end of the path that would be searched.
+void Simulation::Impl::coast_on(std::size_t i, double from, double to, MoveScratch& scratch, BlockCounts& counts) {
+    ForceInput state = input(i, from);
+    const PhaseState end = coast(options.integrator, forces.acceleration(state),
+                                 {particles.position[i], particles.velocity[i]}, to - from);
+    if (check) {
+        scratch.legs.assign(1, {state.position, end.position, from});
+        state.position = end.position;
+        state.velocity = end.velocity;
+        state.time = to;
+        check->look_at(i, particles, state, to, scratch.legs, counts.violations);
+    }
+    particles.position[i] = end.position;
+    particles.velocity[i] = end.velocity;
 }
 
 // All particles go back together: see rollback.h.
@@ -251,31 +284,60 @@ void Simulation::Impl::add_weights_of_sleepers(double sign) {
     for (std::size_t i = 0; i < particles.size(); ++i) add_weight(i, now, sign, counts);
 }
 
+bool Simulation::Impl::is_leaving(std::size_t i, double now) const {
+    if (bounds && !bounds->contains(particles.position[i])) return true;
+    if (coasts(i)) return false;
+    return particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= now;
+}
+
 void Simulation::Impl::retire(double now) {
+    struct Tally {
+        std::uint64_t leaving = 0;
+        std::uint64_t resting = 0;
+        std::uint64_t held = 0;
+    };
+    std::vector<Tally> blocks((particles.size() + kParticleBlock - 1) / kParticleBlock);
+    parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Tally& tally = blocks[block];
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool leaves = is_leaving(i, now);
+            tally.leaving += leaves ? 1 : 0;
+            if (leaves || coasts(i)) continue;
+            tally.resting += particles.resting[i];
+            tally.held += particles.held[i];
+        }
+    });
+    Tally all;
+    for (const Tally& tally : blocks) {
+        all.leaving += tally.leaving;
+        all.resting += tally.resting;
+        all.held += tally.held;
+    }
+    if (all.leaving > 0) retire_leavers(now);
+    statistics.springs_broken = coupled.springs().broken();
+    statistics.springs_lost = coupled.springs().lost();
+    statistics.resting = all.resting;
+    statistics.asleep = may_sleep ? all.held : 0;
+}
+
+void Simulation::Impl::retire_leavers(double now) {
     std::vector<std::uint8_t> keep(particles.size(), 1);
-    bool any = false;
     BlockCounts counts;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        const bool expired = particles.birth_time[i] + particles.lifetime[i] <= now;
-        const bool outside = bounds && !bounds->contains(particles.position[i]);
+        if (!is_leaving(i, now)) continue;
+        const double death = particles.birth_time[i] + particles.lifetime[i];
         const bool absorbed = particles.absorbed[i] != 0;
         const bool shattered = particles.absorbed[i] == kShattered;
         statistics.absorbed += absorbed && !shattered ? 1 : 0;
         statistics.shattered += shattered ? 1 : 0;
-        statistics.expired += !absorbed && expired ? 1 : 0;
-        statistics.out_of_bounds += !absorbed && !expired && outside ? 1 : 0;
-        keep[i] = absorbed || expired || outside ? 0 : 1;
-        if (keep[i] == 0) add_weight(i, std::min(now, particles.birth_time[i] + particles.lifetime[i]), 1.0, counts);
-        any = any || keep[i] == 0;
+        statistics.expired += !absorbed && death <= now ? 1 : 0;
+        statistics.out_of_bounds += !absorbed && death > now ? 1 : 0;
+        keep[i] = 0;
+        add_weight(i, std::min(now, death), 1.0, counts);
     }
     statistics.lost_impulses += counts.lost_impulses;
-    if (any) compact(keep);
-    if (any && coupled.is_active()) coupled.bind(particles);
-    statistics.springs_broken = coupled.springs().broken();
-    statistics.springs_lost = coupled.springs().lost();
-    statistics.resting = static_cast<std::uint64_t>(std::count(particles.resting.begin(), particles.resting.end(), 1));
-    const auto held = static_cast<std::uint64_t>(std::count(particles.held.begin(), particles.held.end(), 1));
-    statistics.asleep = may_sleep ? held : 0;
+    compact(keep);
+    if (coupled.is_active()) coupled.bind(particles);
 }
 
 void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
@@ -288,6 +350,11 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
         }
         sides.erase(kept, sides.end());
     }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (keep[i] != 0) coasts_to[kept++] = coasts_to[i];
+    }
+    coasts_to.resize(kept);
     particles.compact(keep);
     if (check) check->compact(keep);
 }

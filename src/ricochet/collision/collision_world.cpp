@@ -38,7 +38,7 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders) : col
     }
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
-    bulge_ = eighth_of_mean_box();
+    bulge_ = part_of_mean_box();
     prepare_radius(0.0);
 }
 
@@ -84,6 +84,10 @@ void CollisionWorld::prepare_radius(double radius) {
     if (at != classes_.end() && at->largest_radius == largest) return;
     const double reach = largest <= 0.5 * bulge_ ? bulge_ : largest + bulge_;
     classes_.insert(at, RadiusClass{largest, TriangleBvh(vertices_, triangles_, reach)});
+}
+
+void CollisionWorld::prepare_clearance() {
+    if (!clearance_ && !triangles_.empty()) clearance_.emplace(vertices_, triangles_);
 }
 
 const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
@@ -170,8 +174,9 @@ void CollisionWorld::flag_degenerate_triangles() {
     if (degenerate_count_ == 0) degenerate_ = {};
 }
 
-// An eighth of the mean triangle's box: boxes grow little, and few paths need more than one chord.
-double CollisionWorld::eighth_of_mean_box() const {
+// A part of the mean triangle's box: boxes grow little, and few pieces of paths next to surfaces need more than one
+// chord.
+double CollisionWorld::part_of_mean_box() const {
     if (triangles_.empty()) return 0.0;
     const double sum = ordered_sum(triangles_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
@@ -182,7 +187,7 @@ double CollisionWorld::eighth_of_mean_box() const {
         }
         return partial;
     });
-    return 0.125 * sum / static_cast<double>(triangles_.size());
+    return 0.03125 * sum / static_cast<double>(triangles_.size());
 }
 
 std::uint32_t CollisionWorld::collider_of(SurfaceId surface) const {

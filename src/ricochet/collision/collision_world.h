@@ -10,6 +10,7 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/analytic_shape.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"
@@ -59,6 +60,11 @@ public:
     [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
     /// Builds the class of a radius when it is not there yet. Not while others are asking.
     void prepare_radius(double radius);
+    /// Builds a table of distances from the triangles, with which searches pass over what is far from them. The same
+    /// results without it. Not while others are asking.
+    void prepare_clearance();
+    /// Null without prepare_clearance(), and where there are no triangles.
+    [[nodiscard]] const ClearanceGrid* clearance_grid() const { return clearance_ ? &*clearance_ : nullptr; }
     /// False: every triangle is a candidate of every path. The same results, slowly: the reference of tests.
     void set_culling(bool culls) { culls_ = culls; }
     [[nodiscard]] bool culls() const { return culls_; }
@@ -150,7 +156,7 @@ private:
     void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
     void add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape);
     void flag_degenerate_triangles();
-    [[nodiscard]] double eighth_of_mean_box() const;
+    [[nodiscard]] double part_of_mean_box() const;
     [[nodiscard]] double largest_radius_of_class(double radius) const;
     [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;
 
@@ -172,6 +178,7 @@ private:
         TriangleBvh bvh;
     };
     std::vector<RadiusClass> classes_;  ///< ascending in radius; the first serves points
+    std::optional<ClearanceGrid> clearance_;
     bool culls_ = true;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/outlook.h"
 #include "ricochet/geometry/path.h"
 #include "ricochet/geometry/sphere_sweep.h"
 
@@ -64,8 +65,13 @@ public:
     ContactSearch(const CollisionWorld& world, ContactScratch& scratch) : world_(world), scratch_(scratch) {}
 
     /// First contact of a point (radius 0) or a sphere whose centre follows `path`, under the order (time, collider,
-    /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius).
-    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius);
+    /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius). With an outlook, whose
+    /// path begins with this one, the same search also finds out free_until(); the contact is the same.
+    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr);
+
+    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin. Where the path
+    /// meets something, or looking ahead is not worth the while: no more than the path's duration.
+    [[nodiscard]] double free_until() const { return free_until_; }
 
     /// The smallest numbered surface that stands in the way of the closed leg [p, q] of the centre: one that the
     /// segment itself meets (decided exactly for planes and triangles), or one that comes nearer to it than the radius
@@ -95,7 +101,15 @@ public:
 
 private:
     void search_planes(const Path& path);
-    void search_meshes(const Path& path, double largest);
+    void search_meshes(const Path& path, double largest, const Outlook* outlook);
+    void search_pieces(const Path& path, const Outlook* outlook);
+    [[nodiscard]] std::optional<double> march(const Path& path, double from, double until, double margin) const;
+    [[nodiscard]] double end_of_blind(const Path& path, double from, double until, double margin) const;
+    void look_past_planes_and_shapes(const Outlook& outlook);
+    void look_ahead(const Path& path, const Outlook& outlook, double from);
+    [[nodiscard]] double longest_look(const Outlook& outlook) const;
+    [[nodiscard]] bool boxes_hold_ahead(const Outlook& outlook, double until) const;
+    void look_at_piece(const Path& path, const Outlook& outlook, double from, double to);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);
@@ -120,6 +134,7 @@ private:
     double bulge_ = 0.0;          ///< what the boxes leave for the path's curvature, m
     bool all_triangles_ = false;  ///< every triangle is a candidate
     double first_time_ = 0.0;
+    double free_until_ = 0.0;  ///< s along the outlook's path
     Vec3 start_;
 };
 

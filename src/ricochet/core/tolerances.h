@@ -86,6 +86,17 @@ inline constexpr double kHeadingTurn = 0.05;
 /// bend's radius) before it falls back.
 inline constexpr double kStretchAngle = 0.01;
 
+/// Distance, relative to the largest coordinate involved, that is left beside a way that is foreseen for many steps.
+/// Reason: it covers kCandidateSlack and the rounding of kMostForeseenSteps steps, each of some 2^-52 for the place and
+/// as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken past a
+/// surface that the search would have found. Larger: particles near surfaces are searched for more often.
+inline constexpr double kForesightSlack = 0x1p-36;
+
+/// Steps that a particle may go on without a new search, straight on and along a parabola. Larger: kForesightSlack must
+/// grow with the first; with the second the slack is taken of a longer way than boxes let one look along.
+inline constexpr int kMostForeseenSteps = 4096;
+inline constexpr int kMostForeseenBentSteps = 256;
+
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
 /// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
 /// path. Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact

@@ -178,6 +178,25 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
     return begin_flight(integrator, forces, state, duration);
 }
 
+PhaseState coast(const Integrator& integrator, const Vec3& acceleration, const PhaseState& state, double duration) {
+    const Vec3 velocity = state.velocity + duration * acceleration;
+    if (integrator.kind == IntegratorKind::forward_euler) {
+        return {line_end(state.position, state.velocity, duration), velocity};
+    }
+    if (kicks_first(integrator.kind)) return {line_end(state.position, velocity, duration), velocity};
+    return {parabola_end(state.position, state.velocity, acceleration, duration), velocity};
+}
+
+// Kicking first is to fly the parabola with half a kick more at its start, kicking last with half a kick less.
+Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
+    const Vec3& a = flight.acceleration;
+    const double h = flight.path.duration;
+    const double kicks = kicks_first(integrator.kind) ? 0.5
+                         : integrator.kind == IntegratorKind::forward_euler ? -0.5 : 0.0;
+    const Vec3 velocity = flight.end_velocity + (kicks * time_step) * a;
+    return parabola_path(flight.path.end - h * velocity + (0.5 * h * h) * a, velocity - h * a, a, duration);
+}
+
 PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s) {
     if (s >= flight.path.duration) return {flight.path.end, flight.end_velocity};
     if (flight.path.degree >= 3 && flight.steps_again) return one_step(integrator.kind, forces, flight.start, s);

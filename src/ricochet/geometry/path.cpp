@@ -23,12 +23,19 @@ double Path::sagitta(double from, double to) const {
     return span * span / 8.0 * std::sqrt(std::max(length_squared(at_from), length_squared(at_to)));
 }
 
+Vec3 line_end(const Vec3& x, const Vec3& v, double duration) { return flush_tiny(x + duration * v); }
+
+Vec3 parabola_end(const Vec3& x, const Vec3& v, const Vec3& a, double duration) {
+    if (a == Vec3{}) return line_end(x, v, duration);
+    return flush_tiny(x + duration * (v + (0.5 * duration) * a));
+}
+
 Path line_path(const Vec3& x, const Vec3& v, double duration) {
     Path path;
     path.c = {x, v, Vec3{}, Vec3{}};
     path.degree = 1;
     path.duration = duration;
-    path.end = flush_tiny(x + duration * v);
+    path.end = line_end(x, v, duration);
     return path;
 }
 
@@ -38,7 +45,7 @@ Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration)
     path.c = {x, v, 0.5 * a, Vec3{}};
     path.degree = 2;
     path.duration = duration;
-    path.end = flush_tiny(x + duration * (v + (0.5 * duration) * a));
+    path.end = parabola_end(x, v, a, duration);
     return path;
 }
 

@@ -24,6 +24,11 @@ struct Path {
     [[nodiscard]] double sagitta(double from, double to) const;
 };
 
+/// Where line_path() ends.
+[[nodiscard]] Vec3 line_end(const Vec3& x, const Vec3& v, double duration);
+/// Where parabola_path() ends.
+[[nodiscard]] Vec3 parabola_end(const Vec3& x, const Vec3& v, const Vec3& a, double duration);
+
 /// Straight flight from x with velocity v.
 [[nodiscard]] Path line_path(const Vec3& x, const Vec3& v, double duration);
 /// Parabola from x with velocity v and constant acceleration a.

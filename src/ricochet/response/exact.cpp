@@ -28,7 +28,11 @@ MoveOutcome Mover::run() {
         if (!contact) {
             flight = first ? first_flight(rules_, particle_, remaining_)
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
-            contact = follow(flight);
+            const auto outlook = outlook_of(flight);
+            contact = follow(flight, outlook ? &*outlook : nullptr);
+            if (outlook && !contact && !outcome_.frozen) {
+                outcome_.free_for = std::max(0.0, search_.free_until() - flight.path.duration);
+            }
         }
         while (contact && has_budget() && !outcome_.absorbed) contact = answer(flight, *contact);
         if (outcome_.absorbed) break;
@@ -40,14 +44,34 @@ MoveOutcome Mover::run() {
     return outcome_;
 }
 
+/// How far ahead the last flight of a step may look: as far as its way is known, which it is where the acceleration is
+/// uniform.
+std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
+    const double time_step = rules_.settings.time_step;
+    const bool is_foreseen = rules_.settings.foresight && rules_.forces.is_uniform() && particle_.planned == nullptr &&
+                             state_.coupling == Vec3{} && flight.path.duration == remaining_;
+    if (!is_foreseen) return std::nullopt;
+    const double acceleration = length(flight.acceleration);
+    const int steps = acceleration == 0.0 ? kMostForeseenSteps : kMostForeseenBentSteps;
+    const double duration = remaining_ + steps * time_step;
+    Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
+                    remaining_ + time_step};
+    const double speed = length(flight.end_velocity) + acceleration * duration;
+    const double largest = max_abs(flight.path.end) + speed * duration + state_.radius;
+    if (!(largest < kLargestCoordinate) || !(speed < kFastestSpeed)) return std::nullopt;
+    const double clocks = 4.0 * ulp(state_.time + duration) * speed;  // steps are as long as the clock's times say
+    outlook.margin = kForesightSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
+    return outlook;
+}
+
 /// Moves the particle along the flight: to its end, or to the contact that is returned.
-std::optional<Contact> Mover::follow(const Flight& flight) {
+std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outlook) {
     const Path& path = flight.path;
     if (!can_be_followed(path)) {
         freeze();
         return std::nullopt;
     }
-    std::optional<Contact> contact = search_.search(path, state_.radius);
+    std::optional<Contact> contact = search_.search(path, state_.radius, outlook);
     if (contact && contact->time == 0.0 && !search_.surfaces_at(path.c[0]).empty()) {
         leave_surface(flight);
         return std::nullopt;

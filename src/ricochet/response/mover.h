@@ -33,7 +33,8 @@ public:
 
 private:
     // Flying (exact.cpp).
-    std::optional<Contact> follow(const Flight& flight);
+    std::optional<Contact> follow(const Flight& flight, const Outlook* outlook = nullptr);
+    [[nodiscard]] std::optional<Outlook> outlook_of(const Flight& flight) const;
     void accept_chain();
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
     void leave_surface(const Flight& flight);

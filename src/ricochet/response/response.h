@@ -72,6 +72,7 @@ struct ResponseSettings {
     PenaltySettings penalty = {};
     FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
     WallRule walls = WallRule::slide;  ///< only with a flow
+    bool foresight = true;             ///< find out MoveOutcome::free_for
 };
 
 /// An impulse that a particle gave to a surface.
@@ -148,6 +149,9 @@ struct MoveOutcome {
     std::uint32_t stayed = 0;       ///< impacts after which no certified place nearer to the surface was found
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
     double depth = 0.0;             ///< m, how deep it was seen behind a surface, before anything put it right
+    /// s after the end of the move for which the particle, stepped on by coast() in steps of the run, certainly meets
+    /// nothing; 0 where that was not found out.
+    double free_for = 0.0;
 };
 
 /// Key of the random numbers that impacts draw; emitters use the numbers below.

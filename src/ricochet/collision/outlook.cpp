@@ -1,0 +1,37 @@
+#include "ricochet/collision/outlook.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+namespace {
+
+/// Relative rounding of the times here, generously: margins of distance are far above it.
+constexpr double kTimeRounding = 0x1p-40;
+
+}  // namespace
+
+Path shortened(const Path& path, double duration) {
+    Path shorter = path;
+    shorter.end = path.position(duration);
+    shorter.duration = std::min(duration, path.duration);
+    return shorter;
+}
+
+// First root of g0 + g1 t + g2 t^2, the height above the margin on the side of the start, in the form without
+// cancellation (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
+double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
+    const double height = dot(plane.normal, path.c[0] - plane.point);
+    const double side = height < 0.0 ? -1.0 : 1.0;
+    const double g0 = side * height - margin;
+    const double g1 = side * dot(plane.normal, path.c[1]);
+    const double g2 = side * dot(plane.normal, path.c[2]);
+    if (!(g0 > 0.0)) return 0.0;
+    const double discriminant = g1 * g1 - 4.0 * g0 * g2;
+    if (!(discriminant >= 0.0) || (g1 >= 0.0 && g2 >= 0.0)) return path.duration;
+    const double root = std::sqrt(discriminant);
+    const double time = g1 < 0.0 ? 2.0 * g0 / (root - g1) : (g1 + root) / (-2.0 * g2);
+    return std::min(path.duration, (1.0 - kTimeRounding) * time);
+}
+
+}  // namespace ricochet

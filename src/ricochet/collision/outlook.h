@@ -1,0 +1,28 @@
+/// \file
+/// Looking ahead: how long may a particle go on as foreseen before any surface comes near its way?
+///
+/// What is found serves speed only. A particle whose way is certainly free needs no search, and its state after the step
+/// is what the search would have left: the end of the same path.
+#pragma once
+
+#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep.h"
+
+namespace ricochet {
+
+/// Where a particle is going beyond the path that is searched, if nothing stands in its way.
+struct Outlook {
+    Path path;            ///< a line or parabola that begins with the searched path
+    double margin = 0.0;  ///< m, > 0: nearer than the radius plus this nothing may come. It covers by how much the true
+                          ///< way, the searched path too, and its chords of a step may lie beside `path`
+    double least = 0.0;   ///< s along the path: looking no further than this is not worth the while
+};
+
+/// The beginning of a path.
+[[nodiscard]] Path shortened(const Path& path, double duration);
+
+/// The time until which every point of the path is certainly further than `margin` from the plane, s, at most its
+/// duration. Errs on the side of less.
+[[nodiscard]] double time_free_of_plane(const Path& path, const Plane& plane, double margin);
+
+}  // namespace ricochet

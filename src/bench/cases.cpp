@@ -165,14 +165,14 @@ Cases count_cases() {
     const auto count = [](std::string_view name, std::size_t particles) {
         return gas("count", name, 1'300'000, particles, kGasStepOnFineMesh);
     };
-    return {with_steps(count("count-1k", 1'000), 4, 500), with_steps(count("count-10k", 10'000), 4, 50),
+    return {with_steps(count("count-1k", 1'000), 4, 1000), with_steps(count("count-10k", 10'000), 4, 100),
             count("count-100k", 100'000), count("count-1M", 1'000'000),
-            with_steps(count("count-10M", 10'000'000), 1, 2)};
+            with_steps(count("count-10M", 10'000'000), 4, 20)};
 }
 
 Cases radius_cases() {
     Cases cases;
-    const Case gas_points = gas("radius", "gas-points", kTrianglesForSpheres, 200'000, 0.007);
+    const Case gas_points = gas("radius", "gas-points", kTrianglesForSpheres, 100'000, 0.007);
     const Case pinball_points = pinball("radius", "pinball-points", kTrianglesForSpheres, 10'000);
     const auto add = [&](const Case& points, std::string_view spheres, std::string_view decades) {
         cases.push_back(with_radii(points, points.name, 0.0, 0.0));

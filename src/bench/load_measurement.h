@@ -21,7 +21,7 @@ struct LoadRow {
     int threads = 0;  ///< of the build; reading takes one
     std::uint64_t file_bytes = 0;
     double read_seconds = 0.0;   ///< from the file to the checked index list
-    double build_seconds = 0.0;  ///< from there to the collision world with its search structure
+    double build_seconds = 0.0;  ///< from there to the collision world as a simulation has it
 };
 
 /// Writes the case's file into a folder of its own that goes away again, and times reading and building, separately.

@@ -36,6 +36,7 @@ struct SimulationOptions {
     double resting_speed = 1e-3;
     bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
     bool foresight = true;  ///< particles that certainly meet nothing are not searched for; the result is the same without
+    bool spatial_order = true;  ///< neighbours in space are searched for one after the other; the result is the same without
     bool culling = true;   ///< false: every triangle is tested for every path; the result is the same without
     bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
     /// Check every leg, side and distance by code of its own, see verify/verifier.h. The same bits as without it.

@@ -156,6 +156,12 @@ void Simulation::Impl::replay_emitters() {
     }
 }
 
+// What is known of free ways serves speed only.
+void Simulation::Impl::forget_searches() {
+    searched_again.resize(particles.size());
+    for (std::size_t i = 0; i < particles.size(); ++i) searched_again[i] = stands_still(i) || is_asleep(i) ? kStill : 0;
+}
+
 void Simulation::save(const ByteSink& sink) const {
     BinaryWriter writer(sink);
     impl_->archive(writer);
@@ -164,7 +170,7 @@ void Simulation::save(const ByteSink& sink) const {
 void Simulation::restore(const ByteSource& source) {
     BinaryReader reader(source);
     impl_->archive(reader);
-    impl_->coasts_to.assign(impl_->particles.size(), 0);
+    impl_->forget_searches();
     for (const double radius : impl_->particles.radius) impl_->world.prepare_radius(radius);
     impl_->replay_emitters();
     if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles);

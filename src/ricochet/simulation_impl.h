@@ -14,6 +14,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/fixed_point_sum.h"
 #include "ricochet/coupled_motion.h"
+#include "ricochet/dynamics/coasting.h"
 #include "ricochet/offspring.h"
 #include "ricochet/run_check.h"
 #include "ricochet/simulation.h"
@@ -31,19 +32,39 @@ struct SurfaceTotals {
     FixedPointSum z;
 };
 
+/// In Simulation::Impl::searched_again: the particle is left alone for good (pinned, frozen, asleep) or about to be removed.
+inline constexpr std::uint32_t kStill = 0xFFFFFFFFU;
+
+/// The particles of a step that must be searched for, in the parts that one thread moves at a time.
+struct DueParticles {
+    std::vector<std::uint32_t> particles;
+    std::vector<std::size_t> ends;  ///< of the parts
+
+    [[nodiscard]] std::size_t parts() const { return ends.size(); }
+    [[nodiscard]] std::span<const std::uint32_t> part(std::size_t k) const {
+        const std::size_t begin = k == 0 ? 0 : ends[k - 1];
+        return std::span(particles).subspan(begin, ends[k] - begin);
+    }
+};
+
+/// Time of a particle that its bounce budget has cut off.
+struct CutOff {
+    std::size_t particle = 0;
+    double time = 0.0;  ///< s
+};
+
 /// What a block of particles adds to the statistics; blocks are added in order.
 struct BlockCounts {
     std::uint64_t contacts = 0;
-    std::uint64_t budget_exhausted = 0;
     std::uint64_t stayed = 0;
     std::uint64_t frozen = 0;
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
     std::uint64_t trials = 0;
     std::uint64_t penetrations = 0;
-    double unsimulated = 0.0;
     double penetration_sum = 0.0;
     double penetration_deepest = 0.0;
+    std::vector<CutOff> cut_off;
     std::vector<ContactRecord> records;
     std::vector<Violation> violations;
     std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
@@ -52,8 +73,6 @@ struct BlockCounts {
         contacts += outcome.bounces;
         stayed += outcome.stayed;
         frozen += outcome.frozen ? 1 : 0;
-        budget_exhausted += outcome.unsimulated_time > 0.0 ? 1 : 0;
-        unsimulated += outcome.unsimulated_time;
         bounces_max = std::max(bounces_max, outcome.bounces);
         trials += outcome.trials;
         penetrations += outcome.depth > 0.0 ? 1 : 0;
@@ -62,12 +81,10 @@ struct BlockCounts {
     }
     void add_to(SimulationStatistics& statistics) const {
         statistics.contacts += contacts;
-        statistics.budget_exhausted += budget_exhausted;
         statistics.stayed += stayed;
         statistics.frozen += frozen;
         statistics.lost_impulses += lost_impulses;
         statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
-        statistics.unsimulated_time += unsimulated;
         statistics.trials += trials;
         statistics.penetrations += penetrations;
         statistics.penetration_sum += penetration_sum;
@@ -87,9 +104,25 @@ struct Simulation::Impl {
     [[nodiscard]] bool keeps_records() const { return options.record_contacts || offspring; }
     void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
-    void move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts);
-    [[nodiscard]] bool coasts(std::size_t i) const { return statistics.steps < coasts_to[i]; }
-    void coast_on(std::size_t i, double from, double to, MoveScratch& scratch, BlockCounts& counts);
+    [[nodiscard]] DueParticles coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
+    [[nodiscard]] std::size_t coast_block(std::size_t begin, std::size_t end, double from, double to,
+                                          BlockCounts& counts);
+    void order_by_place(DueParticles& due) const;
+    void move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts);
+    void add_cut_off(const std::vector<BlockCounts>& blocks);
+    [[nodiscard]] bool is_due(std::size_t i) const {
+        return searched_again[i] != kStill && statistics.steps + 1 >= searched_again[i];
+    }
+    [[nodiscard]] bool coasts(std::size_t i) const {
+        return searched_again[i] != kStill && statistics.steps + 1 < searched_again[i];
+    }
+    // It flies, and what the arrays keep of contact is empty.
+    [[nodiscard]] bool is_plain(std::size_t i) const { return searched_again[i] != kStill && searched_again[i] != 0; }
+    [[nodiscard]] static bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome);
+    [[nodiscard]] Coasting coasting_of(std::size_t i, double from, double to) const;
+    void coast_on(std::size_t i, const Coasting& coasting, double from, double to, BlockCounts& counts);
+    [[nodiscard]] std::uint32_t next_search(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                            double until) const;
     [[nodiscard]] std::uint32_t end_of_coasting(std::size_t i, double free_until) const;
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
@@ -97,6 +130,8 @@ struct Simulation::Impl {
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }
     [[nodiscard]] MovingParticle moving(std::size_t i, double start);
+    void load_contact(std::size_t i, MovingParticle& particle) const;
+    void store_contact(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome);
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
     void move_system(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void compact(const std::vector<std::uint8_t>& keep);
@@ -117,6 +152,7 @@ struct Simulation::Impl {
     void archive(Archive& a);
     [[nodiscard]] std::uint64_t collider_hash() const;
     void replay_emitters();
+    void forget_searches();
     [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps ? options.duration : static_cast<double>(step) * options.time_step;
@@ -135,8 +171,9 @@ struct Simulation::Impl {
     std::vector<Emitter> emitters;
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
-    /// Of every particle the number of the step with which it is to be searched for again: until then it meets nothing.
-    std::vector<std::uint32_t> coasts_to;
+    /// Of every particle one more than the number of the step with which it is to be searched for again: until then it
+    /// meets nothing. 0: nothing is known of it. See kStill.
+    std::vector<std::uint32_t> searched_again;
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
     std::vector<SpringFace> spring_faces;

@@ -142,7 +142,6 @@ Simulation::Impl::Impl(SimulationSetup setup)
       steps(count_steps(options)),
       may_sleep(options.sleeping && forces.is_steady()) {
     world.set_culling(options.culling);
-    if (options.foresight) world.prepare_clearance();
     has_spheres = makes_spheres(setup);
     particles.attributes = AttributeTable(setup.attributes);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
@@ -171,7 +170,7 @@ void Simulation::Impl::add(Particle particle) {
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
-    coasts_to.push_back(0);
+    searched_again.push_back(particle.pinned ? kStill : 0);
     if (response->keeps_sides()) {
         sides.resize(particles.size() * world.colliders().size());
         if (is_finite(particle.position)) response->first_sides(particle.position, sides_of(particles.size() - 1));

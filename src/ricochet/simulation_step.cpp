@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -70,6 +69,7 @@ void Simulation::Impl::move_from(std::size_t first, double from, double to) {
     stop_runaways(blocks, to);
     if (is_planned) coupled.settle(particles);
     for (const BlockCounts& block : blocks) block.add_to(statistics);
+    add_cut_off(blocks);
     statistics.particle_steps += count;
     statistics.unsolved_steps = coupled.unsolved_steps();
     if (keeps_records()) collect_records(blocks);
@@ -81,16 +81,20 @@ void Simulation::Impl::move_part(std::size_t first, double from, double to, std:
         move_system(first, from, to, blocks);
         return;
     }
-    parallel_for_blocks(particles.size() - first, kParticleBlock,
-                        [&](std::size_t block, std::size_t begin, std::size_t end) {
-                            move_block(first + begin, first + end, from, to, blocks[block]);
-                        });
+    DueParticles due = coast_all(first, from, to, blocks);
+    order_by_place(due);
+    parallel_for_blocks(due.parts(), 1, [&](std::size_t part, std::size_t, std::size_t) {
+        move_due(due.part(part), from, to, blocks[part]);
+    });
 }
 
 void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, double to) const {
-    const auto found = std::find_if(blocks.begin(), blocks.end(), [](const auto& block) { return block.runaway; });
-    if (found == blocks.end()) return;
-    const std::size_t i = *found->runaway;
+    std::optional<std::size_t> first;
+    for (const BlockCounts& block : blocks) {
+        if (block.runaway && (!first || *block.runaway < *first)) first = block.runaway;
+    }
+    if (!first) return;
+    const std::size_t i = *first;
     throw DivergedError(fmt::format(
         "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
         "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
@@ -98,13 +102,25 @@ void Simulation::Impl::stop_runaways(const std::vector<BlockCounts>& blocks, dou
 }
 
 void Simulation::Impl::collect_violations(const std::vector<BlockCounts>& blocks) {
+    std::vector<Violation> found;
     for (const BlockCounts& block : blocks) {
-        statistics.violations += block.violations.size();
-        last_violations.insert(last_violations.end(), block.violations.begin(), block.violations.end());
-        const std::size_t kept = std::min(block.violations.size(), kMostViolations - violations.size());
-        violations.insert(violations.end(), block.violations.begin(),
-                          block.violations.begin() + static_cast<std::ptrdiff_t>(kept));
+        found.insert(found.end(), block.violations.begin(), block.violations.end());
     }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Violation& a, const Violation& b) { return a.particle < b.particle; });
+    statistics.violations += found.size();
+    last_violations.insert(last_violations.end(), found.begin(), found.end());
+    const std::size_t kept = std::min(found.size(), kMostViolations - violations.size());
+    violations.insert(violations.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept));
+}
+
+// Added in the order of particles, whatever the order in which they were moved.
+void Simulation::Impl::add_cut_off(const std::vector<BlockCounts>& blocks) {
+    std::vector<CutOff> all;
+    for (const BlockCounts& block : blocks) all.insert(all.end(), block.cut_off.begin(), block.cut_off.end());
+    std::stable_sort(all.begin(), all.end(), [](const CutOff& a, const CutOff& b) { return a.particle < b.particle; });
+    for (const CutOff& entry : all) statistics.unsimulated_time += entry.time;
+    statistics.budget_exhausted += all.size();
 }
 
 void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
@@ -120,73 +136,6 @@ void Simulation::Impl::sort_records() {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
-}
-
-void Simulation::Impl::move_block(std::size_t begin, std::size_t end, double from, double to, BlockCounts& counts) {
-    thread_local MoveScratch scratch;
-    scratch.hits.clear();
-    scratch.records.clear();
-    scratch.record_contacts = keeps_records();
-    scratch.record_legs = check != nullptr;
-    for (std::size_t i = begin; i < end; ++i) {
-        if (coasts(i)) {
-            coast_on(i, from, to, scratch, counts);
-            continue;
-        }
-        if (stands_still(i)) continue;
-        const double start = std::max(from, particles.birth_time[i]);
-        const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
-        if (stop <= start || is_asleep(i)) continue;
-        MovingParticle particle = moving(i, start);
-        scratch.legs.clear();
-        // A planned flight's duration need not be the difference of the clock's times to the last bit.
-        const bool as_planned = particle.planned != nullptr && start == from && stop == to;
-        const double duration = as_planned ? particle.planned->path.duration : stop - start;
-        const MoveOutcome outcome = response->move(particle, duration, scratch);
-        if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
-        book(i, particle, outcome, stop, counts);
-    }
-    if (!totals.empty()) add_hits(scratch.hits, counts);
-    counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
-}
-
-// Takes over what came out of a particle's move, and notices one that forces have brought beyond all bounds.
-void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                            BlockCounts& counts) {
-    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
-    const bool was_fast = is_fast();
-    store(i, moved, outcome);
-    if (!was_fast && is_fast() && !counts.runaway) counts.runaway = i;
-    if (particles.held[i] != 0) particles.booked_until[i] = until;
-    coasts_to[i] = outcome.free_for > 0.0 ? end_of_coasting(i, until + outcome.free_for) : 0;
-    counts.add(outcome);
-}
-
-// Not the last step when it is shorter than the others, and not that in which the particle dies.
-std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until) const {
-    const double until = std::min(free_until, particles.birth_time[i] + particles.lifetime[i]);
-    const bool last_is_whole = options.duration == static_cast<double>(steps) * options.time_step;
-    const std::uint64_t most =
-        std::min<std::uint64_t>(last_is_whole ? steps : steps - 1, std::numeric_limits<std::uint32_t>::max());
-    auto step = static_cast<std::uint64_t>(std::min(until / options.time_step, static_cast<double>(most)));
-    while (step > 0 && time_at(step) >= until) --step;
-    return static_cast<std::uint32_t>(step);
-}
-
-// A step of a particle that meets nothing: the end of the path that would be searched.
-void Simulation::Impl::coast_on(std::size_t i, double from, double to, MoveScratch& scratch, BlockCounts& counts) {
-    ForceInput state = input(i, from);
-    const PhaseState end = coast(options.integrator, forces.acceleration(state),
-                                 {particles.position[i], particles.velocity[i]}, to - from);
-    if (check) {
-        scratch.legs.assign(1, {state.position, end.position, from});
-        state.position = end.position;
-        state.velocity = end.velocity;
-        state.time = to;
-        check->look_at(i, particles, state, to, scratch.legs, counts.violations);
-    }
-    particles.position[i] = end.position;
-    particles.velocity[i] = end.velocity;
 }
 
 // All particles go back together: see rollback.h.
@@ -221,40 +170,10 @@ void Simulation::Impl::move_system(std::size_t first, double from, double to, st
     }
 }
 
-MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
-    MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
-    Support& support = particle.support;
-    for (const SurfaceId surface : particles.support[i]) {
-        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
-    }
-    support.cascade_left = particles.cascade_left[i];
-    particle.sides = sides_of(i);
-    if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);
-    particle.planned = coupled.flight_of(i);
-    particle.state.coupling = coupled.coupling_of(i);
-    return particle;
-}
-
 std::span<SideMemory> Simulation::Impl::sides_of(std::size_t i) {
     if (sides.empty()) return {};
     const std::size_t colliders = world.colliders().size();
     return {sides.data() + i * colliders, colliders};
-}
-
-void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
-    particles.position[i] = moving.state.position;
-    particles.velocity[i] = moving.state.velocity;
-    particles.spin[i] = moving.spin;
-    particles.draws[i] = moving.draws;
-    particles.unsimulated_time[i] += outcome.unsimulated_time;
-    particles.contacts[i] += outcome.bounces;
-    particles.resting[i] = outcome.resting ? 1 : 0;
-    particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
-    particles.frozen[i] = outcome.frozen ? 1 : 0;
-    particles.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
-    particles.support[i].fill(kNoSupport);
-    std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
-    particles.cascade_left[i] = moving.support.cascade_left;
 }
 
 void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts) {
@@ -286,8 +205,8 @@ void Simulation::Impl::add_weights_of_sleepers(double sign) {
 
 bool Simulation::Impl::is_leaving(std::size_t i, double now) const {
     if (bounds && !bounds->contains(particles.position[i])) return true;
-    if (coasts(i)) return false;
-    return particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= now;
+    return !coasts(i) &&
+           (particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= now);
 }
 
 void Simulation::Impl::retire(double now) {
@@ -352,9 +271,9 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (keep[i] != 0) coasts_to[kept++] = coasts_to[i];
+        if (keep[i] != 0) searched_again[kept++] = searched_again[i];
     }
-    coasts_to.resize(kept);
+    searched_again.resize(kept);
     particles.compact(keep);
     if (check) check->compact(keep);
 }

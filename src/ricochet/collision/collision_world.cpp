@@ -83,11 +83,10 @@ void CollisionWorld::prepare_radius(double radius) {
                                      [](const RadiusClass& c, double r) { return c.largest_radius < r; });
     if (at != classes_.end() && at->largest_radius == largest) return;
     const double reach = largest <= 0.5 * bulge_ ? bulge_ : largest + bulge_;
-    classes_.insert(at, RadiusClass{largest, TriangleBvh(vertices_, triangles_, reach)});
-}
-
-void CollisionWorld::prepare_clearance() {
-    if (!clearance_ && !triangles_.empty()) clearance_.emplace(vertices_, triangles_);
+    if (!clusters_) {
+        clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices_, triangles_));
+    }
+    classes_.insert(at, RadiusClass{largest, TriangleBvh(clusters_, reach)});
 }
 
 const TriangleBvh& CollisionWorld::bvh_for(double radius) const {

@@ -10,7 +10,6 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/analytic_shape.h"
-#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"
@@ -60,11 +59,6 @@ public:
     [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
     /// Builds the class of a radius when it is not there yet. Not while others are asking.
     void prepare_radius(double radius);
-    /// Builds a table of distances from the triangles, with which searches pass over what is far from them. The same
-    /// results without it. Not while others are asking.
-    void prepare_clearance();
-    /// Null without prepare_clearance(), and where there are no triangles.
-    [[nodiscard]] const ClearanceGrid* clearance_grid() const { return clearance_ ? &*clearance_ : nullptr; }
     /// False: every triangle is a candidate of every path. The same results, slowly: the reference of tests.
     void set_culling(bool culls) { culls_ = culls; }
     [[nodiscard]] bool culls() const { return culls_; }
@@ -173,12 +167,12 @@ private:
     std::vector<ShapeSurface> shapes_;
     std::vector<std::uint32_t> triangle_materials_;  ///< empty when no mesh names materials by triangle
     double bulge_ = 0.0;  ///< m by which paths may bulge off the chords that the broad phase is asked about
+    TriangleBvh::Clusters clusters_;  ///< of all triangles, shared by the classes
     struct RadiusClass {
         double largest_radius;
         TriangleBvh bvh;
     };
     std::vector<RadiusClass> classes_;  ///< ascending in radius; the first serves points
-    std::optional<ClearanceGrid> clearance_;
     bool culls_ = true;
 };
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/line_probe.h"
 #include "ricochet/geometry/predicates.h"
 
 namespace ricochet {
@@ -13,15 +12,6 @@ namespace {
 /// Halvings of a path in search of pieces flat enough for the boxes. Only pieces near the triangles are halved; a path
 /// that bends so much that this is not enough is tested against every triangle.
 constexpr int kPieceDepth = 40;
-
-/// Marching ends, and may begin, where there is room for that many cells of the clearance grid (twice to begin).
-constexpr double kLeastRoom = 0.25;
-/// Cells along the path that are looked at at once.
-constexpr int kMostStrides = 8;
-/// Blind pieces that are looked at ahead: the surface that is left, and the next one.
-constexpr int kMostLooksAhead = 2;
-/// The times of a march are rounded; what that adds to the way is taken off many times over.
-constexpr double kMarchRounding = 1.0 - 0x1p-30;
 
 double largest_coordinate(const Path& path) {
     const double h = path.duration;
@@ -72,74 +62,24 @@ std::optional<Contact> ContactSearch::search(const Path& path, double radius, co
     all_triangles_ = false;
     free_until_ = 0.0;
     if (outlook != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*outlook);
-    if (!world_.triangles().empty()) search_meshes(path, largest, free_until_ > 0.0 ? outlook : nullptr);
+    if (!world_.triangles().empty()) {
+        const auto duration = free_until_ > 0.0 ? visible_duration(*outlook) : std::nullopt;
+        free_until_ = duration ? free_until_ : 0.0;
+        duration ? search_ahead(path, *outlook, *duration) : search_meshes(path, largest);
+    }
     if (scratch_.found.empty()) return std::nullopt;
     free_until_ = 0.0;
     return first_of_found(path);
 }
 
 /// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
-void ContactSearch::search_meshes(const Path& path, double largest, const Outlook* outlook) {
+void ContactSearch::search_meshes(const Path& path, double largest) {
     const bool boxes_hold = world_.culls() && kPathRounding * largest <= bvh_->slack();
     if (boxes_hold) {
-        search_pieces(path, outlook);
-        return;
+        search_triangles(path, 0.0, path.duration, kPieceDepth);
+    } else if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) {
+        search_all_triangles(path);
     }
-    free_until_ = 0.0;
-    if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) search_all_triangles(path);
-}
-
-// By turns: march through what is certainly free, then look at the triangles along the blind piece that follows. The
-// last piece of the path is looked at together with what comes after it. Chords of a curved path need the bulge to be
-// free beside it as well.
-void ContactSearch::search_pieces(const Path& path, const Outlook* outlook) {
-    const double margin = radius_ + 2.0 * slack_ + (path.degree > 1 ? bulge_ : 0.0);
-    double done = 0.0;
-    while (const auto blind = march(path, done, path.duration, margin)) {
-        const double end = end_of_blind(path, *blind, path.duration, margin);
-        if (end >= path.duration && outlook != nullptr) {
-            look_ahead(path, *outlook, *blind);
-            return;
-        }
-        search_triangles(path, *blind, end, kPieceDepth);
-        if (first_time_ <= end || all_triangles_ || end >= path.duration) break;
-        done = end;
-    }
-    if (outlook != nullptr && scratch_.found.empty() && !all_triangles_) look_ahead(path, *outlook, path.duration);
-    if (all_triangles_) free_until_ = 0.0;
-}
-
-/// The first time from `from` on at which the surroundings of the path are not known to be free of triangles within the
-/// margin; nothing when they are until the end. At least the place at `from` is looked at.
-std::optional<double> ContactSearch::march(const Path& path, double from, double until, double margin) const {
-    const ClearanceGrid* const grid = world_.clearance_grid();
-    if (grid == nullptr) return from;
-    const double bend = std::sqrt(std::max(length_squared(2.0 * path.c[2] + (6.0 * from) * path.c[3]),
-                                           length_squared(2.0 * path.c[2] + (6.0 * until) * path.c[3])));
-    const double least = kLeastRoom * grid->cell_size();
-    for (double time = from;;) {
-        const double room = grid->clearance(path.position(time)) - margin;
-        if (!(room > least)) return time;
-        // In dt it goes no further than (speed + bend dt / 2) dt.
-        const double speed = length(path.velocity(time));
-        const double reach = speed + std::sqrt(speed * speed + 2.0 * bend * room);
-        time += kMarchRounding * (2.0 * room / reach);
-        if (!(time < until)) return std::nullopt;
-    }
-}
-
-/// Where looking at triangles may give way to marching again: a guess that nothing but speed depends on.
-double ContactSearch::end_of_blind(const Path& path, double from, double until, double margin) const {
-    const ClearanceGrid* const grid = world_.clearance_grid();
-    if (grid == nullptr) return until;
-    const double stride = grid->cell_size() / length(path.velocity(from));
-    double end = from;
-    for (int k = 0; k < kMostStrides; ++k) {
-        end += stride;
-        if (!(end < until)) return until;
-        if (grid->clearance(path.position(end)) - margin > 2.0 * kLeastRoom * grid->cell_size()) break;
-    }
-    return end;
 }
 
 // For shapes there is no time, only a yes or no: durations are tried, each half of the one before.
@@ -157,62 +97,40 @@ void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
     if (free_until_ < outlook.least) free_until_ = 0.0;
 }
 
-// Beyond the path's end, or from `from` before it where the rest of the path is blind.
-void ContactSearch::look_ahead(const Path& path, const Outlook& outlook, double from) {
-    const double margin = radius_ + outlook.margin;
-    for (int looks = 0;; ++looks) {
-        if (from >= path.duration) {
-            const auto blind = march(outlook.path, from, free_until_, margin);
-            if (!blind) return;
-            from = *blind;
-            if (looks == kMostLooksAhead) break;
-        }
-        const double end = std::min(end_of_blind(outlook.path, std::max(from, path.duration), free_until_, margin),
-                                    from + longest_look(outlook));
-        if (end <= path.duration || !boxes_hold_ahead(outlook, end)) {
-            if (from < path.duration) search_triangles(path, from, path.duration, kPieceDepth);
-            break;
-        }
-        look_at_piece(path, outlook, from, end);
-        if (!scratch_.found.empty() || free_until_ <= end) return;
-        from = end;
+// One question to the boxes must do: over what is looked at, the path, the foreseen one and all their chords of a step
+// stay within what the boxes leave beside the segment that is asked about. A straight way that leaves all triangles
+// behind is free for good.
+std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
+    if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
+    if (outlook.path.degree > 1) {
+        const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
+        free_until_ = std::min(free_until_, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
+        if (!(free_until_ >= outlook.least)) return std::nullopt;
     }
-    free_until_ = std::min(free_until_, from);
-}
-
-/// s: what one question to the boxes may be about, so that the path, the foreseen one and all their chords of a step
-/// stay within what the boxes leave beside its segment.
-double ContactSearch::longest_look(const Outlook& outlook) const {
-    if (!(outlook.margin < bulge_)) return 0.0;
-    if (outlook.path.degree < 2) return std::numeric_limits<double>::infinity();
-    const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
-    return std::sqrt(2.0 * (bulge_ - outlook.margin) / bend);
-}
-
-bool ContactSearch::boxes_hold_ahead(const Outlook& outlook, double until) const {
-    return kPathRounding * largest_coordinate(shortened(outlook.path, until)) <= bvh_->slack();
+    const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
+    const Vec3 by{margin, margin, margin};
+    const Box3& box = world_.triangle_bounds();
+    const double duration =
+        std::min(free_until_, time_of_leaving(outlook.path, {box.lower - by, box.upper + by}));
+    const bool boxes_hold = kPathRounding * largest_coordinate(shortened(outlook.path, duration)) <= bvh_->slack();
+    return boxes_hold ? std::optional(duration) : std::nullopt;
 }
 
 // A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
 // before that end does not matter to what comes after.
-void ContactSearch::look_at_piece(const Path& path, const Outlook& outlook, double from, double to) {
-    const Vec3 p = outlook.path.position(from);
-    const Vec3 q = outlook.path.position(to);
+void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
+    if (duration == 0.0) return;  // it never comes near the triangles
+    const Path way = shortened(outlook.path, duration);
     const Box3& box = world_.triangle_bounds();
-    const double largest = std::max({max_abs(p), max_abs(q), max_abs(box.lower), max_abs(box.upper)});
-    const double margin = radius_ + outlook.margin + outlook.path.sagitta(from, to) + kForesightSlack * largest;
-    const LineProbe probe(p, q, margin, largest);
-    const double span = to - from;
-    bvh_->visit(p, q, [&](std::uint32_t triangle) {
+    const double largest = std::max({largest_coordinate(way), max_abs(box.lower), max_abs(box.upper)});
+    const double margin = radius_ + outlook.margin + way.sagitta(0.0, duration) + kForesightSlack * largest;
+    bvh_->visit_tube(way.c[0], way.end, margin, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
-            const auto [a, b, c] = world_.corners_of_triangle(triangle);
-            const LineProbe::Stretch near = probe.near(a, b, c);
-            const double enter = from + near.enter * span;
-            if (enter <= path.duration) (void)look_at_triangle(path, triangle);
-            if (from + near.leave * span >= path.duration) free_until_ = std::min(free_until_, enter);
+            if (enter * duration <= path.duration) (void)look_at_triangle(path, triangle);
+            if (leave * duration >= path.duration) free_until_ = std::min(free_until_, enter * duration);
         }
         const double until = std::min(first_time_, std::max(free_until_, path.duration));
-        return until < to ? (until - from) / span : 1.0;
+        return until < duration ? until / duration : 1.0;
     });
 }
 
@@ -295,10 +213,12 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
         return;
     }
     const double span = to - from;
-    bvh_->visit(path.position(from), path.position(to), [&](std::uint32_t triangle) {
-        const double first = look_at_triangle(path, triangle);
-        return first < to ? std::max(0.0, (first - from) / span) : 1.0;
-    });
+    const double margin = radius_ + 2.0 * slack_ + (path.degree > 1 ? bulge_ : 0.0);
+    bvh_->visit_tube(path.position(from), path.position(to), margin,
+                     [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
+                         const double first = look_at_triangle(path, triangle);
+                         return first < to ? std::max(0.0, (first - from) / span) : 1.0;
+                     });
 }
 
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {

@@ -101,15 +101,10 @@ public:
 
 private:
     void search_planes(const Path& path);
-    void search_meshes(const Path& path, double largest, const Outlook* outlook);
-    void search_pieces(const Path& path, const Outlook* outlook);
-    [[nodiscard]] std::optional<double> march(const Path& path, double from, double until, double margin) const;
-    [[nodiscard]] double end_of_blind(const Path& path, double from, double until, double margin) const;
+    void search_meshes(const Path& path, double largest);
     void look_past_planes_and_shapes(const Outlook& outlook);
-    void look_ahead(const Path& path, const Outlook& outlook, double from);
-    [[nodiscard]] double longest_look(const Outlook& outlook) const;
-    [[nodiscard]] bool boxes_hold_ahead(const Outlook& outlook, double until) const;
-    void look_at_piece(const Path& path, const Outlook& outlook, double from, double to);
+    [[nodiscard]] std::optional<double> visible_duration(const Outlook& outlook);
+    void search_ahead(const Path& path, const Outlook& outlook, double duration);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);

@@ -34,4 +34,22 @@ double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     return std::min(path.duration, (1.0 - kTimeRounding) * time);
 }
 
+double time_of_leaving(const Path& path, const Box3& box) {
+    if (path.degree > 1) return path.duration;
+    double enter = 0.0;
+    double leave = path.duration;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double speed = path.c[1][axis];
+        const double below = box.lower[axis] - path.c[0][axis];
+        const double above = box.upper[axis] - path.c[0][axis];
+        if (speed == 0.0) {
+            if (below > 0.0 || above < 0.0) return 0.0;
+            continue;
+        }
+        enter = std::max(enter, std::min(below / speed, above / speed));
+        leave = std::min(leave, std::max(below / speed, above / speed));
+    }
+    return enter > leave ? 0.0 : std::min(path.duration, (1.0 + kTimeRounding) * leave);
+}
+
 }  // namespace ricochet

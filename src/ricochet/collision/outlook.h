@@ -5,6 +5,7 @@
 /// is what the search would have left: the end of the same path.
 #pragma once
 
+#include "ricochet/core/box3.h"
 #include "ricochet/geometry/path.h"
 #include "ricochet/geometry/sweep.h"
 
@@ -24,5 +25,9 @@ struct Outlook {
 /// The time until which every point of the path is certainly further than `margin` from the plane, s, at most its
 /// duration. Errs on the side of less.
 [[nodiscard]] double time_free_of_plane(const Path& path, const Plane& plane, double margin);
+
+/// A time after which the path certainly stays out of the box, s, at most its duration; 0 when it never comes near it.
+/// For straight paths; others: their duration.
+[[nodiscard]] double time_of_leaving(const Path& path, const Box3& box);
 
 }  // namespace ricochet

@@ -3,11 +3,11 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/version.h>
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
 
 #include "ricochet/core/hand_over.h"
 
@@ -50,6 +50,12 @@ double ordered_sum(std::size_t count, std::size_t block_size,
         partial[block] = block_sum(begin, end);
     });
     return std::accumulate(partial.begin(), partial.end(), 0.0);
+}
+
+void parallel_sort(std::vector<std::uint64_t>& values) {
+    LoopOrder order;
+    const LoopOrder::Body in_order(order);
+    tbb::parallel_sort(values.begin(), values.end());
 }
 
 const char* thread_library_version() { return TBB_runtime_version(); }

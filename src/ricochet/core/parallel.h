@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace ricochet {
 
@@ -33,6 +35,9 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 /// Sum over [0, count) of block sums, added in block order: the same bits for any thread count.
 [[nodiscard]] double ordered_sum(std::size_t count, std::size_t block_size,
                                  const std::function<double(std::size_t begin, std::size_t end)>& block_sum);
+
+/// Sorts in ascending order with all threads.
+void parallel_sort(std::vector<std::uint64_t>& values);
 
 /// The thread library's version, for `--version` and reports.
 [[nodiscard]] const char* thread_library_version();

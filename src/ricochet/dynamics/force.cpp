@@ -18,6 +18,7 @@ public:
         return -input.mass * dot(acceleration_, input.position);
     }
     [[nodiscard]] bool is_uniform() const override { return true; }
+    [[nodiscard]] std::optional<Vec3> common_acceleration() const override { return acceleration_; }
 
 private:
     Vec3 acceleration_;
@@ -92,7 +93,12 @@ std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> 
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
     : forces_(std::move(forces)),
       uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
-      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {}
+      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {
+    for (const auto& force : forces_) {
+        const std::optional<Vec3> acceleration = force->common_acceleration();
+        common_ = common_ && acceleration ? std::optional(*common_ + *acceleration) : std::nullopt;
+    }
+}
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
     Vec3 sum = input.coupling;

@@ -36,6 +36,8 @@ public:
     [[nodiscard]] virtual std::optional<double> potential_energy(const ForceInput& input) const = 0;
     /// True when the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] virtual bool is_uniform() const { return false; }
+    /// The acceleration where it is the same for all particles, everywhere and always, m/s^2.
+    [[nodiscard]] virtual std::optional<Vec3> common_acceleration() const { return std::nullopt; }
     /// True when the acceleration does not depend on time: a particle at rest then stays at rest (it may sleep).
     [[nodiscard]] virtual bool is_steady() const { return is_uniform(); }
 };
@@ -70,6 +72,9 @@ public:
     [[nodiscard]] bool empty() const { return forces_.empty(); }
     /// True when the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] bool is_uniform() const { return uniform_; }
+    /// The acceleration where it is the same for all particles, everywhere and always, m/s^2: that of acceleration(),
+    /// with the same bits, for particles that nothing couples.
+    [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }
     /// True when no force depends on time.
     [[nodiscard]] bool is_steady() const { return steady_; }
 
@@ -77,6 +82,7 @@ private:
     std::vector<std::unique_ptr<Force>> forces_;
     bool uniform_ = true;
     bool steady_ = true;
+    std::optional<Vec3> common_ = Vec3{};
 };
 
 }  // namespace ricochet

@@ -178,15 +178,6 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
     return begin_flight(integrator, forces, state, duration);
 }
 
-PhaseState coast(const Integrator& integrator, const Vec3& acceleration, const PhaseState& state, double duration) {
-    const Vec3 velocity = state.velocity + duration * acceleration;
-    if (integrator.kind == IntegratorKind::forward_euler) {
-        return {line_end(state.position, state.velocity, duration), velocity};
-    }
-    if (kicks_first(integrator.kind)) return {line_end(state.position, velocity, duration), velocity};
-    return {parabola_end(state.position, state.velocity, acceleration, duration), velocity};
-}
-
 // Kicking first is to fly the parabola with half a kick more at its start, kicking last with half a kick less.
 Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
     const Vec3& a = flight.acceleration;

@@ -105,12 +105,7 @@ struct Flight {
 /// from the flight's start: the Hermite path's own derivative would lose an order.
 [[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
-/// The ends of the same step by step, with the same bits, for an acceleration that depends on neither position, velocity
-/// nor time: what begin_flight() would lead to, without its path.
-[[nodiscard]] PhaseState coast(const Integrator& integrator, const Vec3& acceleration, const PhaseState& state,
-                               double duration);
-
-/// For such an acceleration: the parabola on which the ends of all further steps of `time_step` seconds lie, up to
+/// For an acceleration that depends on neither position, velocity nor time: the parabola on which the ends of all further steps of `time_step` seconds lie, up to
 /// rounding, if nothing stands in the way. It begins with the flight, which and whose successors lie within
 /// |acceleration| time_step^2 / 8 of it. duration >= that of the flight, s.
 [[nodiscard]] Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step,

@@ -184,11 +184,6 @@ Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
 
 }  // namespace
 
-Vec3 flush_tiny(const Vec3& p) {
-    const auto flushed = [](double x) { return std::fabs(x) < kSmallestExactCoordinate ? 0.0 : x; };
-    return {flushed(p.x), flushed(p.y), flushed(p.z)};
-}
-
 int detail::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);

@@ -21,7 +21,10 @@ inline constexpr double kLargestExactCoordinate = 0x1p300;
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 
 /// Replaces components smaller than kSmallestExactCoordinate by zero; other values are returned unchanged.
-[[nodiscard]] Vec3 flush_tiny(const Vec3& p);
+[[nodiscard]] inline Vec3 flush_tiny(const Vec3& p) {
+    const auto flushed = [](double x) { return std::fabs(x) < kSmallestExactCoordinate ? 0.0 : x; };
+    return {flushed(p.x), flushed(p.y), flushed(p.z)};
+}
 
 /// Sign of (b - a) x (c - a) . (d - a): +1 when d lies on the side that the triangle's normal (counter-clockwise rule)
 /// points to, -1 on the other side, 0 in the plane (or when a, b, c are collinear).

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <bit>
 #include <optional>
 #include <type_traits>
 
@@ -82,16 +83,40 @@ std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const 
 /// One query on its way through the callbacks.
 struct Query {
     void* context;
-    TriangleBvh::Visit visit;
-    double clip_begin;        ///< fraction of the segment at which the ray starts
-    double ray_per_fraction;  ///< ray length of the whole segment
-    double fraction_limit;
+    const std::vector<TriangleCluster>* clusters;
+    TriangleBvh::Visit visit = nullptr;           ///< this one or the next
+    TriangleBvh::VisitTube visit_tube = nullptr;  ///< triangles that the tube may touch
+    SegmentTube tube = {};
+    double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
+    double ray_per_fraction = 0.0;  ///< ray length of the whole segment
+    double fraction_limit = 1.0;
+
+    /// Visits the triangles of a cluster; returns the narrowed fraction.
+    double look_at(const TriangleCluster& cluster);
 };
+
+double Query::look_at(const TriangleCluster& cluster) {
+    double limit = fraction_limit;
+    if (visit != nullptr) {
+        for (const std::uint32_t triangle : cluster.triangle) {
+            if (triangle != kNoTriangle) limit = std::min(limit, visit(context, triangle));
+        }
+        return limit;
+    }
+    TubeStretches stretches;
+    unsigned bits = cluster.near(tube, stretches);
+    for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        limit = std::min(limit, visit_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
+    }
+    return limit;
+}
 
 /// A query for what is near a point, on its way through the callback.
 struct NearQuery {
     void* context;
     TriangleBvh::VisitNear visit;
+    const std::vector<TriangleCluster>* clusters;
     double within;  ///< m, narrowed so far
     double scale;   ///< of the float frame
 
@@ -107,9 +132,12 @@ float NearQuery::radius() const {
     return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
 }
 
-bool visit_near_triangle(RTCPointQueryFunctionArguments* args) {
+bool visit_near_cluster(RTCPointQueryFunctionArguments* args) {
     auto& query = *static_cast<NearQuery*>(args->userPtr);
-    const double limit = std::max(query.visit(query.context, args->primID), 0.0);
+    double limit = query.within;
+    for (const std::uint32_t triangle : (*query.clusters)[args->primID].triangle) {
+        if (triangle != kNoTriangle) limit = std::min(limit, std::max(query.visit(query.context, triangle), 0.0));
+    }
     if (!(limit < query.within)) return false;
     query.within = limit;
     args->query->radius = std::min(args->query->radius, query.radius());
@@ -145,8 +173,7 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
 }  // namespace
 
 struct TriangleBvh::Impl {
-    std::span<const Vec3> vertices;
-    std::span<const Triangle> triangles;
+    Clusters clusters;
     double reach = 0.0;
     double slack = 0.0;
     FloatFrame frame;
@@ -164,17 +191,16 @@ struct TriangleBvh::Impl {
 
     void build();
     void set_frame();
-    void write_bounds(std::uint32_t triangle, RTCBounds& bounds) const;
+    void write_bounds(std::uint32_t number, RTCBounds& bounds) const;
     void visit_all(Query& query) const;
+    void visit_segment(const Vec3& from, const Vec3& to, Query& query) const;
     void ask_near(NearQuery& query, const Vec3& point) const;
     void cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const;
 };
 
 void TriangleBvh::Impl::set_frame() {
     Box3 box;
-    for (const Triangle& t : triangles) {
-        for (const std::uint32_t v : t) box.include(vertices[v]);
-    }
+    for (const TriangleCluster& cluster : *clusters) box.include(cluster.box());
     frame = frame_of(box);
     // Half extent H and a clipped leg of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
@@ -184,9 +210,9 @@ void TriangleBvh::Impl::set_frame() {
     clip_box = grown(box, 2.0 * padding / frame.scale);
 }
 
-void TriangleBvh::Impl::write_bounds(std::uint32_t triangle, RTCBounds& bounds) const {
-    Box3 box;
-    for (const std::uint32_t v : triangles[triangle]) box.include(frame.apply(vertices[v]));
+void TriangleBvh::Impl::write_bounds(std::uint32_t number, RTCBounds& bounds) const {
+    const Box3 world = (*clusters)[number].box();
+    const Box3 box{frame.apply(world.lower), frame.apply(world.upper)};
     bounds.lower_x = round_down(box.lower.x - padding);
     bounds.lower_y = round_down(box.lower.y - padding);
     bounds.lower_z = round_down(box.lower.z - padding);
@@ -202,7 +228,7 @@ void TriangleBvh::Impl::build() {
     scene = embree::Scene(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(triangles.size()));
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters->size()));
     rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
     rtcSetGeometryBoundsFunction(
         geometry,
@@ -215,7 +241,7 @@ void TriangleBvh::Impl::build() {
     rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
         if (args->valid[0] == 0) return;
         auto& query = *static_cast<Query*>(embree::user_of(args));
-        const double limit = query.visit(query.context, args->primID);
+        const double limit = query.look_at((*query.clusters)[args->primID]);
         if (limit >= query.fraction_limit) return;
         query.fraction_limit = limit;
         // Rounded up generously: a shorter ray must still reach everything up to the limit.
@@ -235,11 +261,12 @@ void TriangleBvh::Impl::build() {
 }
 
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach)
-    : impl_(std::make_unique<Impl>()) {
-    impl_->vertices = vertices;
-    impl_->triangles = triangles;
+    : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), reach) {}
+
+TriangleBvh::TriangleBvh(Clusters clusters, double reach) : impl_(std::make_unique<Impl>()) {
+    impl_->clusters = std::move(clusters);
     impl_->reach = reach;
-    if (!triangles.empty()) impl_->build();
+    if (!impl_->clusters->empty()) impl_->build();
 }
 TriangleBvh::~TriangleBvh() = default;
 TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
@@ -250,9 +277,7 @@ double TriangleBvh::slack() const { return impl_->slack; }
 std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.bytes.load()); }
 
 void TriangleBvh::Impl::visit_all(Query& query) const {
-    for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle) {
-        (void)query.visit(query.context, triangle);
-    }
+    for (const TriangleCluster& cluster : *clusters) (void)query.look_at(cluster);
 }
 
 void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const {
@@ -273,15 +298,24 @@ void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direct
 }
 
 void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
-    if (impl_->triangles.empty()) return;
-    const FloatFrame& frame = impl_->frame;
-    Query query{context, visitor, 0.0, 0.0, 1.0};
+    Query query{context, impl_->clusters.get(), visitor};
+    impl_->visit_segment(from, to, query);
+}
+
+void TriangleBvh::visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visitor) const {
+    Query query{context, impl_->clusters.get(), nullptr, visitor};
+    query.tube = {from, to - from, margin, length(to - from)};
+    impl_->visit_segment(from, to, query);
+}
+
+void TriangleBvh::Impl::visit_segment(const Vec3& from, const Vec3& to, Query& query) const {
+    if (clusters->empty()) return;
     const double far = std::max(max_abs(from - frame.center), max_abs(to - frame.center));
     if (far * frame.scale > kFarAway) {
-        if (clip_to_box(from, to, grown(impl_->clip_box, far * 0x1p-45))) impl_->visit_all(query);
+        if (clip_to_box(from, to, grown(clip_box, far * 0x1p-45))) visit_all(query);
         return;
     }
-    const auto range = clip_to_box(from, to, impl_->clip_box);
+    const auto range = clip_to_box(from, to, clip_box);
     if (!range) return;
     const Vec3 delta = to - from;
     const Vec3 along = frame.scale * delta;
@@ -291,7 +325,7 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
     const bool is_point = query.ray_per_fraction <= kShortestRay;
     const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
     const double ray_length = (range->end - range->begin) * query.ray_per_fraction;
-    impl_->cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
+    cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
 }
 
 void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
@@ -300,21 +334,23 @@ void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
     around.y = static_cast<float>(point.y);
     around.z = static_cast<float>(point.z);
     around.radius = query.radius();
-    embree::point_query1(scene.get(), around, visit_near_triangle, &query);
+    embree::point_query1(scene.get(), around, visit_near_cluster, &query);
 }
 
 void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitNear visitor) const {
     // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
     // covered by the factor.
-    if (impl_->triangles.empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
+    if (impl_->clusters->empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
     const FloatFrame& frame = impl_->frame;
     if (max_abs(p - frame.center) * frame.scale > kFarAway) {
-        for (std::uint32_t triangle = 0; triangle < impl_->triangles.size(); ++triangle) {
-            (void)visitor(context, triangle);
+        for (const TriangleCluster& cluster : *impl_->clusters) {
+            for (const std::uint32_t triangle : cluster.triangle) {
+                if (triangle != kNoTriangle) (void)visitor(context, triangle);
+            }
         }
         return;
     }
-    NearQuery query{context, visitor, within, frame.scale};
+    NearQuery query{context, visitor, impl_->clusters.get(), within, frame.scale};
     impl_->ask_near(query, frame.apply(p));
 }
 

@@ -13,7 +13,10 @@
 #include <string>
 #include <type_traits>
 
+#include <vector>
+
 #include "ricochet/core/box3.h"
+#include "ricochet/geometry/triangle_clusters.h"
 #include "ricochet/geometry/triangle_mesh.h"
 
 namespace ricochet {
@@ -25,10 +28,14 @@ public:
     /// longer of interest (1: all are). A pure narrowing: the smallest value returned so far holds.
     using Visit = double (*)(void* context, std::uint32_t triangle);
 
-    /// Builds the hierarchy with all threads. `vertices` and `triangles` must outlive it, be finite and, after
-    /// centring, below kLargestCoordinate. reach (m, >= 0): paths may bulge that far off the segments
-    /// that are asked about. Throws RunError when memory is short.
+    using Clusters = std::shared_ptr<const std::vector<TriangleCluster>>;
+
+    /// Builds the hierarchy with all threads. Coordinates must be finite and, after centring, below kLargestCoordinate.
+    /// reach (m, >= 0): paths may bulge that far off the segments that are asked about. Throws RunError when memory is
+    /// short.
     TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach);
+    /// The same over clusters that several hierarchies share.
+    TriangleBvh(Clusters clusters, double reach);
     ~TriangleBvh();
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
@@ -44,6 +51,24 @@ public:
         using Function = std::remove_reference_t<Callable>;
         visit(from, to, const_cast<void*>(static_cast<const void*>(&callable)),
               [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
+    }
+
+    /// Called for a triangle that the tube may touch, with the stretch of the segment (fractions of it) outside of which
+    /// it certainly does not. Returns as Visit does.
+    using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
+
+    /// Visits every triangle whose distance from the segment [from, to] is at most `margin` (m, at most reach() +
+    /// slack()), and few others: TriangleCluster::near() decides, four triangles at a time.
+    void visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visit) const;
+
+    /// The same with any callable `double(std::uint32_t triangle, double enter, double leave)`.
+    template <class Callable>
+    void visit_tube(const Vec3& from, const Vec3& to, double margin, Callable&& callable) const {
+        using Function = std::remove_reference_t<Callable>;
+        visit_tube(from, to, margin, const_cast<void*>(static_cast<const void*>(&callable)),
+                   [](void* context, std::uint32_t triangle, double enter, double leave) {
+                       return (*static_cast<Function*>(context))(triangle, enter, leave);
+                   });
     }
 
     /// Called for a proposed triangle. Returns the distance, m, beyond which triangles are no longer of interest. A

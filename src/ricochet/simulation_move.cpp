@@ -1,0 +1,198 @@
+// Who has to be searched for in a step, in which order, and how each is moved.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/morton.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/simulation_impl.h"
+
+namespace ricochet {
+namespace {
+
+/// Order pays for neither few particles nor few triangles, whose hierarchy stays in the nearest memory anyway.
+constexpr std::size_t kFewDue = 4096;
+constexpr std::size_t kFewTriangles = 4096;
+
+}  // namespace
+
+// Particles that meet nothing go on here. The others are due, listed by the blocks that they are in.
+DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
+    const std::size_t count = particles.size() - first;
+    DueParticles due;
+    due.ends.resize(blocks.size());
+    parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        due.ends[block] = coast_block(first + begin, first + end, from, to, blocks[block]);
+    });
+    for (std::size_t k = 1; k < due.ends.size(); ++k) due.ends[k] += due.ends[k - 1];
+    due.particles.resize(due.ends.empty() ? 0 : due.ends.back());
+    parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        std::size_t at = block == 0 ? 0 : due.ends[block - 1];
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+            if (is_due(i)) due.particles[at++] = static_cast<std::uint32_t>(i);
+        }
+    });
+    return due;
+}
+
+/// Returns how many are due. The loop that most particles of most steps go through: nothing but what it needs.
+std::size_t Simulation::Impl::coast_block(std::size_t begin, std::size_t end, double from, double to,
+                                          BlockCounts& counts) {
+    const std::optional<Vec3>& common = forces.common_acceleration();
+    const Coasting shared(options.integrator, common.value_or(Vec3{}), to - from);
+    const std::uint64_t next = statistics.steps + 1;
+    std::size_t due = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t again = searched_again[i];
+        if (again == kStill) continue;
+        if (next >= again) {
+            ++due;
+        } else if (common && !check) {
+            const PhaseState state = shared.step(particles.position[i], particles.velocity[i]);
+            particles.position[i] = state.position;
+            particles.velocity[i] = state.velocity;
+        } else {
+            coast_on(i, common ? shared : coasting_of(i, from, to), from, to, counts);
+        }
+    }
+    return due;
+}
+
+Coasting Simulation::Impl::coasting_of(std::size_t i, double from, double to) const {
+    return {options.integrator, forces.acceleration(input(i, from)), to - from};
+}
+
+// A step of a particle that meets nothing: the end of the path that would be searched.
+void Simulation::Impl::coast_on(std::size_t i, const Coasting& coasting, double from, double to, BlockCounts& counts) {
+    const PhaseState end = coasting.step(particles.position[i], particles.velocity[i]);
+    if (check) {
+        const Leg leg{particles.position[i], end.position, from};
+        ForceInput moved = input(i, to);
+        moved.position = end.position;
+        moved.velocity = end.velocity;
+        check->look_at(i, particles, moved, to, {&leg, 1}, counts.violations);
+    }
+    particles.position[i] = end.position;
+    particles.velocity[i] = end.velocity;
+}
+
+// Neighbours in space look at the same triangles. Along the Z-curve through a thousand cells an axis.
+void Simulation::Impl::order_by_place(DueParticles& due) const {
+    const bool pays = due.particles.size() >= kFewDue && world.triangles().size() >= kFewTriangles;
+    if (!options.spatial_order || !pays || options.response != ResponseKind::exact) return;
+    const Box3& box = world.triangle_bounds();
+    std::vector<std::uint64_t> keys(due.particles.size());
+    parallel_for_blocks(keys.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = due.particles[k];
+            keys[k] = std::uint64_t{morton_code(particles.position[i], box)} << 32U | i;
+        }
+    });
+    parallel_sort(keys);
+    for (std::size_t k = 0; k < keys.size(); ++k) due.particles[k] = static_cast<std::uint32_t>(keys[k]);
+    due.ends.clear();
+    for (std::size_t end = kParticleBlock; end < keys.size() + kParticleBlock; end += kParticleBlock) {
+        due.ends.push_back(std::min(end, keys.size()));
+    }
+}
+
+void Simulation::Impl::move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts) {
+    thread_local MoveScratch scratch;
+    scratch.hits.clear();
+    scratch.records.clear();
+    scratch.record_contacts = keeps_records();
+    scratch.record_legs = check != nullptr;
+    for (const std::uint32_t i : due) {
+        const double start = std::max(from, particles.birth_time[i]);
+        const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
+        if (stop <= start) continue;
+        MovingParticle particle = moving(i, start);
+        scratch.legs.clear();
+        // A planned flight's duration need not be the difference of the clock's times to the last bit.
+        const bool as_planned = particle.planned != nullptr && start == from && stop == to;
+        const double duration = as_planned ? particle.planned->path.duration : stop - start;
+        const MoveOutcome outcome = response->move(particle, duration, scratch);
+        if (check) check->look_at(i, particles, particle.state, stop, scratch.legs, counts.violations);
+        book(i, particle, outcome, stop, counts);
+    }
+    if (!totals.empty()) add_hits(scratch.hits, counts);
+    counts.records.insert(counts.records.end(), scratch.records.begin(), scratch.records.end());
+}
+
+// Takes over what came out of a particle's move, and notices one that forces have brought beyond all bounds.
+void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                            BlockCounts& counts) {
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
+    const bool was_fast = is_fast();
+    store(i, moved, outcome);
+    if (!was_fast && is_fast() && (!counts.runaway || i < *counts.runaway)) counts.runaway = i;
+    if (outcome.held) particles.booked_until[i] = until;
+    if (outcome.unsimulated_time > 0.0) counts.cut_off.push_back({i, outcome.unsimulated_time});
+    searched_again[i] = next_search(i, moved, outcome, until);
+    counts.add(outcome);
+}
+
+bool Simulation::Impl::flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
+    return moved.support.count == 0 && moved.support.cascade_left == 0.0 && !outcome.resting && !outcome.frozen &&
+           !outcome.absorbed;
+}
+
+std::uint32_t Simulation::Impl::next_search(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                            double until) const {
+    if (stands_still(i) || is_asleep(i)) return kStill;
+    if (!flies_on(moved, outcome) || coupled.is_active()) return 0;
+    return 1 + (outcome.free_for > 0.0 ? end_of_coasting(i, until + outcome.free_for) : 0);
+}
+
+// Not the last step when it is shorter than the others, and not that in which the particle dies.
+std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until) const {
+    const double until = std::min(free_until, particles.birth_time[i] + particles.lifetime[i]);
+    const bool last_is_whole = options.duration == static_cast<double>(steps) * options.time_step;
+    const std::uint64_t most = std::min<std::uint64_t>(last_is_whole ? steps : steps - 1, kStill - 2);
+    auto step = static_cast<std::uint64_t>(std::min(until / options.time_step, static_cast<double>(most)));
+    while (step > 0 && time_at(step) >= until) --step;
+    return static_cast<std::uint32_t>(step);
+}
+
+// Arrays that say nothing new are neither read nor written: for particles in arbitrary order each costs a cache miss.
+MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
+    MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
+    if (!is_plain(i)) load_contact(i, particle);
+    particle.sides = sides_of(i);
+    if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);
+    particle.planned = coupled.flight_of(i);
+    particle.state.coupling = coupled.coupling_of(i);
+    return particle;
+}
+
+void Simulation::Impl::load_contact(std::size_t i, MovingParticle& particle) const {
+    Support& support = particle.support;
+    for (const SurfaceId surface : particles.support[i]) {
+        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
+    }
+    support.cascade_left = particles.cascade_left[i];
+}
+
+void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
+    particles.position[i] = moving.state.position;
+    particles.velocity[i] = moving.state.velocity;
+    if (particles.spin[i] != moving.spin) particles.spin[i] = moving.spin;
+    if (particles.draws[i] != moving.draws) particles.draws[i] = moving.draws;
+    if (outcome.bounces > 0) particles.contacts[i] += outcome.bounces;
+    if (outcome.unsimulated_time > 0.0) particles.unsimulated_time[i] += outcome.unsimulated_time;
+    if (!is_plain(i) || !flies_on(moving, outcome)) store_contact(i, moving, outcome);
+}
+
+void Simulation::Impl::store_contact(std::size_t i, const MovingParticle& moving, const MoveOutcome& outcome) {
+    particles.resting[i] = outcome.resting ? 1 : 0;
+    particles.held[i] = outcome.held && !coupled.holds(i) ? 1 : 0;
+    particles.frozen[i] = outcome.frozen ? 1 : 0;
+    particles.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
+    particles.support[i].fill(kNoSupport);
+    std::copy_n(moving.support.surfaces.begin(), moving.support.count, particles.support[i].begin());
+    particles.cascade_left[i] = moving.support.cascade_left;
+}
+
+}  // namespace ricochet

@@ -9,6 +9,8 @@
 #include "generators/terrain.h"
 #include "generators/vessels.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/portable_math.h"
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/force.h"
 
@@ -45,6 +47,19 @@ TriangleMesh make_ground(Ground ground, double edge) {
     throw InputError("a benchmark case names a ground that does not exist");
 }
 
+// Particles per unit of parallel work.
+constexpr std::size_t kBlock = 4096;
+
+// The radii's random numbers have a stream of their own: points and spheres start at the same places where these suit.
+constexpr std::uint32_t kPlaceStream = 0;
+constexpr std::uint32_t kRadiusStream = 1;
+
+double radius_of(const Case& c, std::uint64_t index) {
+    if (c.least_radius == c.largest_radius) return c.least_radius;
+    RandomSequence random(kSeed, kRadiusStream, index);
+    return c.least_radius * portable_pow(c.largest_radius / c.least_radius, random.uniform());
+}
+
 Vec3 place_in(const Case& c, RandomSequence& random) {
     const Vec3 size = c.box.size();
     Vec3 place = c.box.lower;
@@ -71,14 +86,19 @@ std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh) {
     std::optional<Insides> insides;
     if (c.start == Start::inside) insides.emplace(mesh, heart_of(c.ground).value());
     std::vector<Particle> particles(c.particles);
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        RandomSequence random(kSeed, 0, i);
-        Vec3 place = place_in(c, random);
-        while (insides && !insides->contains(place)) place = place_in(c, random);
-        particles[i].position = place;
-        const double speed = random.uniform_around(c.speed, c.spread);
-        particles[i].velocity = c.drift + speed * random.unit_vector();
-    }
+    parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Particle& particle = particles[i];
+            particle.radius = radius_of(c, i);
+            RandomSequence random(kSeed, kPlaceStream, i);
+            particle.position = place_in(c, random);
+            while (insides && !insides->contains_ball(particle.position, particle.radius)) {
+                particle.position = place_in(c, random);
+            }
+            const double speed = random.uniform_around(c.speed, c.spread);
+            particle.velocity = c.drift + speed * random.unit_vector();
+        }
+    });
     return particles;
 }
 
@@ -87,6 +107,7 @@ SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMe
     setup.options.time_step = c.time_step;
     setup.options.duration = static_cast<double>(c.warm_up + c.steps) * c.time_step;
     setup.options.seed = kSeed;
+    setup.options.response = c.response;
     if (c.gravity != 0.0) setup.forces.push_back(make_gravity({0.0, 0.0, -c.gravity}));
     setup.materials.push_back({.name = "ground", .restitution = c.restitution, .friction = c.friction});
     setup.colliders.push_back({"ground", MeshShape{mesh, {}, ""}, 0});

@@ -20,10 +20,11 @@ namespace ricochet::bench {
 /// The case's mesh, with about as many triangles as it wants.
 [[nodiscard]] std::shared_ptr<const TriangleMesh> make_mesh(const Case& c);
 
-/// The case's particles on its mesh; the same every time.
+/// The case's particles on its mesh, those inside clear of it by their radius; the same every time, whatever the
+/// machine and its threads.
 [[nodiscard]] std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh);
 
-/// Everything for a simulation but the particles: exact response, ballistic steps, as many as the case has.
+/// Everything for a simulation but the particles: the case's response, ballistic steps, as many as the case has.
 [[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
 
 }  // namespace ricochet::bench

@@ -11,6 +11,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/response/response.h"
 
 namespace ricochet::bench {
 
@@ -28,6 +29,13 @@ enum class Start {
     box,            ///< anywhere in the box
     inside,         ///< anywhere in the box that is inside the closed ground
     above_terrain,  ///< anywhere over the box's base; z of the box counts from the ground
+};
+
+/// What a case's cost is divided by: a case of its suite on the same mesh, measured in turns with it.
+enum class Against {
+    nothing,
+    points,  ///< the same particles without size
+    exact,   ///< the same particles with the exact response
 };
 
 /// One case. Particles start at random places with random directions, so their order in memory is arbitrary.
@@ -48,15 +56,20 @@ struct Case {
     double spread = 0.0;        ///< m/s, the speed varies by as much up and down
     std::uint64_t warm_up = 0;  ///< steps before what is measured
     std::uint64_t steps = 1;    ///< measured steps
+    ResponseKind response = ResponseKind::exact;
+    double least_radius = 0.0;  ///< m; the logarithms of the radii are spread evenly from the least to the largest
+    double largest_radius = 0.0;
+    Against against = Against::nothing;
+    std::string_view base = {};  ///< name of the case that the cost is divided by (its own for that one), if any
 };
 
 /// All cases, suite by suite.
 [[nodiscard]] const std::vector<Case>& all_cases();
 
-/// The names of the suites in the order of all_cases().
-[[nodiscard]] std::vector<std::string> suite_names();
-
-/// The cases of a suite. Throws InputError that lists the suites when there is none of this name.
+/// The cases of a suite; none when there is no such suite.
 [[nodiscard]] std::vector<Case> cases_of(std::string_view suite);
+
+/// The same in groups that are measured in turns: cases of the same base, which comes first, or one case alone.
+[[nodiscard]] std::vector<std::vector<Case>> groups_of(std::string_view suite);
 
 }  // namespace ricochet::bench

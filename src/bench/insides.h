@@ -16,6 +16,8 @@ public:
 
     /// Exact: true when the straight line from the heart to p meets no triangle.
     [[nodiscard]] bool contains(const Vec3& p) const;
+    /// The same for a ball's middle, which must be at least the radius (m, >= 0) away from every triangle, to rounding.
+    [[nodiscard]] bool contains_ball(const Vec3& middle, double radius) const;
 
 private:
     const TriangleMesh& mesh_;

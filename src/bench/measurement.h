@@ -1,12 +1,14 @@
 /// \file
-/// Measures a case: the simulation and, on the same stretches, what the ray library does by itself.
+/// Measures cases: the simulation and, on the same stretches, what the ray library does by itself.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/cases.h"
@@ -34,14 +36,19 @@ struct Row {
     double ratio_raw_sorted = 0.0;
     double native_bounces_per_second = 0.0;      ///< of the usual bounce loop
     std::optional<double> ratio_native_bounces;  ///< contacts over native bounces; nothing where none bounces
-    /// Particles that the bounce loop has brought outside a closed mesh; nothing where the mesh has no inside.
+    /// Particles that the bounce loop has brought outside a closed mesh; nothing where the mesh has no inside, and for
+    /// responses that let particles into the wall.
     std::optional<std::uint64_t> leaks;
     std::uint64_t state_hash = 0;
     double bytes_per_particle = 0.0;
     double bytes_per_triangle = 0.0;
+    std::optional<double> ratio_points;  ///< time of a particle-step over that of points; nothing without such a case
+    std::optional<double> ratio_exact;   ///< the same over the exact response
+    std::optional<double> speedup;       ///< time with one thread over time; nothing where that was not measured
+    std::optional<double> speedup_raw;   ///< the same of the raw rays
 };
 
-/// How a case is measured.
+/// How cases are measured.
 struct MeasurementPlan {
     std::vector<int> threads = {0};  ///< numbers of worker threads, one row each; 0: all
     std::uint32_t repeats = 5;       ///< >= 1
@@ -49,21 +56,25 @@ struct MeasurementPlan {
 
 /// Where a measurement is.
 struct Progress {
+    std::string_view name;     ///< of the case; empty while the mesh is made
     int threads = 0;           ///< 0: still preparing
     std::uint32_t repeat = 0;  ///< from 1
     std::string_view doing;    ///< what runs next
+    std::uint64_t step = 0;    ///< from 1; 0 where it has no steps
 };
 
 /// Called between any two pieces of work; false ends the measurement.
 using Hook = std::function<bool(const Progress&)>;
 
-/// Measures the case. Every repeat starts from the state after the warm-up and times the simulation and the references
-/// one after the other, so that noise hits all alike. The references run on the straight stretches from up to
-/// kMostSnapshots states of the measured steps, particles in the order of their ids. Nothing when the hook has ended
-/// it. Throws RunError when a repeat ends in another state than the others.
+/// Measures a group of cases on one mesh (see groups_of()), one row a case and number of threads, case by case. Every
+/// repeat goes through the numbers of threads and the cases in turns; each time the simulation starts from the state
+/// after the warm-up and the references run after it, so that noise hits all alike. Nothing when the hook has ended it.
+/// Throws RunError when a repeat ends in another state than the others.
+[[nodiscard]] std::optional<std::vector<Row>> measure_group(std::span<const Case> group, const MeasurementPlan& plan,
+                                                            const Hook& hook = {});
+
+/// The same for a case alone.
 [[nodiscard]] std::optional<std::vector<Row>> measure_case(const Case& c, const MeasurementPlan& plan,
                                                            const Hook& hook = {});
-
-inline constexpr std::uint64_t kMostSnapshots = 4;
 
 }  // namespace ricochet::bench

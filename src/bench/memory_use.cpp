@@ -25,6 +25,8 @@ std::uint64_t allocated_bytes() {
     return info.uordblks + info.hblkhd;
 }
 
+void return_freed_memory() { (void)::malloc_trim(0); }
+
 MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                          const std::vector<Particle>& particles) {
     const auto held = [&](bool with_totals, const std::vector<Particle>& who) {

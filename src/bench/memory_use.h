@@ -15,9 +15,13 @@ namespace ricochet::bench {
 /// Bytes that the process has allocated and not freed; 0 where the allocator does not tell.
 [[nodiscard]] std::uint64_t allocated_bytes();
 
+/// Hands back to the system what has been freed, so that one case's memory is not there twice in the next.
+void return_freed_memory();
+
 /// What a case's simulation holds after a step.
 struct MemoryUse {
-    double bytes_per_particle = 0.0;  ///< with what the step itself keeps for the next one
+    /// With what the step itself keeps for the next one; for spheres with the search structures of their radii.
+    double bytes_per_particle = 0.0;
     double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
 };
 

@@ -3,76 +3,226 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/cases.h"
+#include "bench/environment.h"
+#include "bench/load_cases.h"
+#include "bench/load_measurement.h"
 #include "bench/measurement.h"
-#include "bench/measurement_report.h"
+#include "bench/memory_use.h"
+#include "bench/ratios.h"
+#include "bench/records.h"
+#include "bench/suites.h"
+#include "bench/tables.h"
+#include "cli/bench_plots.h"
+#include "cli/bench_results.h"
 #include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/progress_line.h"
 #include "cli/text_table.h"
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
 
 namespace ricochet {
 namespace {
 
 using cli::InterruptGuard;
 
+constexpr int kSlower = 1;       // exit code when a ratio has fallen
 constexpr int kSignalled = 128;  // exit code of a program that a signal ended, plus the signal
 
 // The arguments as they stand on the command line.
 struct BenchArguments {
     std::string suite = "quick";
     std::string json;
+    std::string results;
+    std::string compare;
+    std::string tolerance = "0.35";
+    std::string write_ratios;
     std::string threads;
     std::string repeats = "5";
 };
 
-std::string progress_text(const bench::Case& c, const bench::Progress& progress, std::uint32_t repeats) {
-    std::string text = fmt::format("{}/{}  ", c.suite, c.name);
-    if (progress.repeat > 0) {
-        text += fmt::format("threads {}  repeat {} of {}  ", progress.threads, progress.repeat, repeats);
+// What has been measured; of the two lists one is used.
+struct Measured {
+    std::vector<bench::Row> rows;
+    std::vector<bench::LoadRow> files;
+
+    [[nodiscard]] bool empty() const { return rows.empty() && files.empty(); }
+    [[nodiscard]] std::vector<bench::Record> records() const {
+        std::vector<bench::Record> records;
+        for (const bench::Row& row : rows) records.push_back(bench::record_of(row));
+        for (const bench::LoadRow& row : files) records.push_back(bench::record_of(row));
+        return records;
     }
-    return text + std::string(progress.doing);
+    [[nodiscard]] std::vector<std::vector<std::string>> table() const {
+        return files.empty() ? bench::to_table(rows) : bench::to_table(files);
+    }
+};
+
+// Where the program is, on a line of the terminal.
+class BenchProgress {
+public:
+    BenchProgress(std::string suite, std::size_t cases, std::uint32_t repeats)
+        : suite_(std::move(suite)), cases_(cases), repeats_(repeats) {}
+
+    // A case begins, or a group of cases that takes turns.
+    void begin(std::size_t first, std::size_t count) {
+        which_ = count == 1 ? fmt::format("case {} of {}", first + 1, cases_)
+                            : fmt::format("cases {} to {} of {}", first + 1, first + count, cases_);
+    }
+
+    // Every change of work is shown, steps not more often than can be read. False when a signal has come in.
+    bool operator()(const bench::Progress& progress) {
+        const bool is_due = line_.due();
+        if (is_due || progress.doing != doing_) line_.show(text_of(progress));
+        doing_ = progress.doing;
+        return InterruptGuard::signal() == 0;
+    }
+
+private:
+    [[nodiscard]] std::string text_of(const bench::Progress& progress) const {
+        std::string text = fmt::format("{}  {}/{}  ", which_, suite_, progress.name);
+        if (progress.repeat > 0) {
+            text += fmt::format("repeat {} of {}  threads {}  ", progress.repeat, repeats_, progress.threads);
+        }
+        text += progress.doing;
+        return progress.step == 0 ? text : text + fmt::format("  step {}", progress.step);
+    }
+
+    cli::ProgressLine line_{false};
+    std::string suite_;
+    std::size_t cases_;
+    std::uint32_t repeats_;
+    std::string which_;
+    std::string doing_;
+};
+
+// Adds rows until all are there or a signal comes in.
+void measure_files(const bench::MeasurementPlan& plan, Measured& measured) {
+    const std::vector<bench::LoadCase>& cases = bench::load_cases();
+    BenchProgress progress(std::string(bench::kLoadSuite), cases.size(), plan.repeats);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        progress.begin(i, 1);
+        const auto rows = bench::measure_load(cases[i], plan, std::ref(progress));
+        if (!rows) return;
+        measured.files.insert(measured.files.end(), rows->begin(), rows->end());
+        bench::return_freed_memory();
+    }
 }
 
-// Nothing when a signal has ended it.
-std::optional<std::vector<bench::Row>> measure(const std::vector<bench::Case>& cases,
-                                               const bench::MeasurementPlan& plan) {
-    cli::ProgressLine line(false);
-    std::vector<bench::Row> rows;
-    for (const bench::Case& c : cases) {
-        line.show(fmt::format("{}/{}  mesh and particles", c.suite, c.name));
-        const auto measured = bench::measure_case(c, plan, [&](const bench::Progress& progress) {
-            if (line.due()) line.show(progress_text(c, progress, plan.repeats));
-            return InterruptGuard::signal() == 0;
-        });
-        if (!measured) return std::nullopt;
-        rows.insert(rows.end(), measured->begin(), measured->end());
+void measure_cases(const std::string& suite, const bench::MeasurementPlan& plan, Measured& measured) {
+    BenchProgress progress(suite, bench::cases_of(suite).size(), plan.repeats);
+    std::size_t first = 0;
+    for (const std::vector<bench::Case>& group : bench::groups_of(suite)) {
+        progress.begin(first, group.size());
+        const auto rows = bench::measure_group(group, plan, std::ref(progress));
+        if (!rows) return;
+        measured.rows.insert(measured.rows.end(), rows->begin(), rows->end());
+        bench::return_freed_memory();
+        first += group.size();
     }
-    return rows;
 }
+
+Measured measure(const std::string& suite, const bench::MeasurementPlan& plan) {
+    Measured measured;
+    if (suite == bench::kLoadSuite) {
+        measure_files(plan, measured);
+    } else {
+        measure_cases(suite, plan, measured);
+    }
+    return measured;
+}
+
+bench::MeasurementPlan plan_of(const BenchArguments& arguments) {
+    bench::MeasurementPlan plan;
+    plan.threads = arguments.threads.empty() ? bench::default_threads(arguments.suite, thread_count())
+                                             : cli::parse_thread_counts(arguments.threads);
+    plan.repeats = cli::parse_repeats(arguments.repeats);
+    return plan;
+}
+
+// Everything that results are compared with or go to, opened before hours of work, so that what is missing is told at
+// once.
+class Outlets {
+public:
+    explicit Outlets(const BenchArguments& arguments)
+        : arguments_(arguments), environment_(bench::this_environment(RICOCHET_VERSION)) {
+        if ((!arguments.compare.empty() || !arguments.write_ratios.empty()) && arguments.suite == bench::kLoadSuite) {
+            throw InputError("--suite load: it has no ratios to be compared or written; choose another suite");
+        }
+        tolerance_ = cli::parse_tolerance(arguments.tolerance);
+        if (!arguments.compare.empty()) before_ = bench::read_ratios(arguments.compare, arguments.suite);
+        if (!arguments.json.empty()) json_.emplace(arguments.json);
+        if (!arguments.write_ratios.empty()) ratios_.emplace(arguments.write_ratios);
+        if (!arguments.results.empty()) results_.emplace(arguments.results, environment_);
+    }
+
+    void write(const Measured& measured) {
+        if (json_) {
+            json_->write(bench::to_json(measured.records()));
+            json_->commit();
+        }
+        if (ratios_) {
+            ratios_->write(bench::to_json(ratios_of(measured)));
+            ratios_->commit();
+        }
+        if (results_) write_results(measured);
+    }
+
+    // Returns the exit code.
+    [[nodiscard]] int compare(const Measured& measured) const {
+        if (!before_) return 0;
+        const auto changes = bench::compare_ratios(*before_, ratios_of(measured), tolerance_);
+        fmt::print("  against {} ({}, ricochet {}); a ratio may fall by {:.3g} %\n", arguments_.compare,
+                   before_->machine, before_->version, 100.0 * tolerance_);
+        cli::print_table(bench::to_table(changes));
+        const bool is_slower = std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.fell; });
+        return is_slower ? kSlower : 0;
+    }
+
+private:
+    [[nodiscard]] bench::SuiteRatios ratios_of(const Measured& measured) const {
+        return bench::ratios_of(measured.rows, arguments_.suite, environment_.machine, RICOCHET_VERSION);
+    }
+
+    void write_results(const Measured& measured) {
+        const std::string script = measured.files.empty() ? cli::plot_script(arguments_.suite, measured.rows)
+                                                          : cli::plot_script(measured.files);
+        const std::string failure = results_->write(arguments_.suite, measured.records(), script);
+        if (!failure.empty()) {
+            fmt::print("  note: no picture: {}; the script {}.gp is there\n", failure, arguments_.suite);
+        }
+        fmt::print("  results in {}\n", results_->folder().string());
+    }
+
+    const BenchArguments& arguments_;
+    bench::Environment environment_;
+    double tolerance_ = 0.0;
+    std::optional<bench::SuiteRatios> before_;
+    std::optional<AtomicFile> json_;
+    std::optional<AtomicFile> ratios_;
+    std::optional<cli::BenchResults> results_;
+};
 
 int run_bench(const BenchArguments& arguments) {
-    const std::vector<bench::Case> cases = bench::cases_of(arguments.suite);
-    const bench::MeasurementPlan plan{cli::parse_thread_counts(arguments.threads),
-                                      cli::parse_repeats(arguments.repeats)};
+    bench::require_suite(arguments.suite);
+    const bench::MeasurementPlan plan = plan_of(arguments);
     const InterruptGuard guard;
-    // Opened before hours of work, so that a folder that does not exist is told at once.
-    std::optional<AtomicFile> file;
-    if (!arguments.json.empty()) file.emplace(arguments.json);
-    const auto rows = measure(cases, plan);
-    if (!rows) return kSignalled + InterruptGuard::signal();
-    if (file) {
-        file->write(bench::to_json(*rows));
-        file->commit();
-    }
-    cli::print_table(bench::to_table(*rows));
-    return 0;
+    Outlets outlets(arguments);
+    const Measured measured = measure(arguments.suite, plan);
+    if (!measured.empty()) cli::print_table(measured.table());
+    if (InterruptGuard::signal() != 0) return kSignalled + InterruptGuard::signal();
+    outlets.write(measured);
+    return outlets.compare(measured);
 }
 
 void add_options(CLI::App& command, BenchArguments& a) {
@@ -80,9 +230,20 @@ void add_options(CLI::App& command, BenchArguments& a) {
         ->type_name("NAME")
         ->capture_default_str();
     command.add_option("--json", a.json, "File for the numbers")->type_name("FILE");
+    command.add_option("--results", a.results, "Folder of results: DIR/MACHINE/SUITE gets a table and a picture")
+        ->type_name("DIR");
+    CLI::Option* const compare =
+        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen")
+            ->type_name("FILE");
+    command.add_option("--tolerance", a.tolerance, "Part of a ratio by which it may fall")
+        ->type_name("X")
+        ->capture_default_str()
+        ->needs(compare);
+    command.add_option("--write-ratios", a.write_ratios, "File for the ratios, for --compare")->type_name("FILE");
     command
         .add_option("--threads", a.threads,
-                    "Numbers of worker threads with commas, each measured (default: all processors)")
+                    "Numbers of worker threads with commas, each measured (default: all processors; for the suite "
+                    "threads 1, 2, 4 and so on)")
         ->type_name("LIST");
     command.add_option("--repeats", a.repeats, "Timed runs, of which the median counts")
         ->type_name("N")

@@ -79,6 +79,12 @@ std::vector<int> parse_thread_counts(const std::string& text) {
     }
 }
 
+double parse_tolerance(const std::string& text) {
+    const auto tolerance = parse_all<double>(text);
+    if (tolerance && *tolerance >= 0.0 && *tolerance < 1.0) return *tolerance;
+    throw InputError(fmt::format("--tolerance {}: expected a number from 0 to below 1, a part of the ratio", text));
+}
+
 std::uint32_t parse_repeats(const std::string& text) {
     constexpr std::uint32_t kMost = 1000;
     const auto repeats = parse_all<std::uint32_t>(text);

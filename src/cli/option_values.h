@@ -23,6 +23,9 @@ struct PictureSize {
 /// Numbers of worker threads with commas between them, 1..1024 each; {0} (all) for an empty text. Throws InputError.
 [[nodiscard]] std::vector<int> parse_thread_counts(const std::string& text);
 
+/// A part of something that may be lost, 0 <= x < 1. Throws InputError.
+[[nodiscard]] double parse_tolerance(const std::string& text);
+
 /// How often something is timed, 1..1000. Throws InputError.
 [[nodiscard]] std::uint32_t parse_repeats(const std::string& text);
 

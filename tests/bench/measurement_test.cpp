@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "bench/measurement_report.h"
 #include "bench/small_cases.h"
 
 namespace ricochet::bench {
@@ -55,46 +54,76 @@ TEST(Measurement, EndsWhenTheHookSaysSo) {
     EXPECT_EQ(calls, 4);
 }
 
-TEST(MeasurementReport, HasTheKeysThatItPromises) {
-    Row row;
-    row.suite = "gas";
-    row.state_hash = 0xAB;
-    const auto json = nlohmann::json::parse(to_json(std::vector<Row>{row, row}));
-    ASSERT_EQ(json.size(), 2U);
-    std::set<std::string> keys;
-    for (const auto& entry : json[0].items()) keys.insert(entry.key());
-    EXPECT_EQ(keys, (std::set<std::string>{"suite",
-                                           "case",
-                                           "response",
-                                           "particles",
-                                           "triangles",
-                                           "threads",
-                                           "steps",
-                                           "seconds",
-                                           "particle_steps_per_second",
-                                           "contacts_per_second",
-                                           "raw_rays_per_second",
-                                           "ratio_raw",
-                                           "raw_sorted_rays_per_second",
-                                           "ratio_raw_sorted",
-                                           "native_bounces_per_second",
-                                           "ratio_native_bounces",
-                                           "leaks",
-                                           "state_hash",
-                                           "bytes_per_particle",
-                                           "bytes_per_triangle"}));
-    EXPECT_EQ(json[0]["suite"], "gas");
-    EXPECT_EQ(json[0]["state_hash"], "00000000000000ab");
-    EXPECT_TRUE(json[0]["leaks"].is_null());
-    EXPECT_TRUE(json[0]["ratio_native_bounces"].is_null());
+TEST(Measurement, TellsWhereItIs) {
+    std::set<std::string> works;
+    std::uint64_t last_step = 0;
+    const Case c = small_case("gas", 100, 500);
+    const auto rows = measure_case(c, {{1}, 2}, [&](const Progress& progress) {
+        works.insert(std::string(progress.doing));
+        EXPECT_EQ(progress.name, progress.doing == "mesh" ? "" : c.name);
+        EXPECT_EQ(progress.threads, progress.repeat == 0 ? 0 : 1);
+        EXPECT_LE(progress.repeat, 2U);
+        if (progress.doing == "simulation") last_step = progress.step;
+        return true;
+    });
+    ASSERT_TRUE(rows.has_value());
+    EXPECT_EQ(works, (std::set<std::string>{"mesh", "particles", "memory", "warm-up", "first run", "references",
+                                            "collision structures", "simulation", "raw rays",
+                                            "raw rays in spatial order", "native bounces"}));
+    EXPECT_EQ(last_step, c.steps);
 }
 
-TEST(MeasurementReport, HasACellForEveryColumn) {
-    Row row;
-    row.particle_steps = 1;
-    const auto table = to_table(std::vector<Row>{row});
-    ASSERT_EQ(table.size(), 2U);
-    EXPECT_EQ(table[0].size(), table[1].size());
+std::vector<Case> small_group(std::string_view suite) {
+    std::vector<Case> group = groups_of(suite).front();
+    for (Case& c : group) c = small_copy(c, 300, 1000);
+    return group;
+}
+
+TEST(Measurement, OfAGroupSaysWhatEachCostsAgainstTheFirst) {
+    for (const char* suite : {"radius", "response"}) {
+        SCOPED_TRACE(suite);
+        const std::vector<Case> group = small_group(suite);
+        const auto rows = measure_group(group, {{1, 2}, 1});
+        ASSERT_TRUE(rows.has_value());
+        ASSERT_EQ(rows->size(), 2 * group.size());
+        for (std::size_t i = 0; i < rows->size(); ++i) {
+            const Row& row = (*rows)[i];
+            EXPECT_EQ(row.name, group[i / 2].name);
+            EXPECT_EQ(row.response, name_of(group[i / 2].response));
+            EXPECT_EQ(row.threads, static_cast<int>(1 + i % 2));
+            const bool is_of_radii = group.front().against == Against::points;
+            EXPECT_EQ(row.ratio_points.has_value(), is_of_radii);
+            EXPECT_EQ(row.ratio_exact.has_value(), !is_of_radii);
+            EXPECT_EQ(row.leaks.has_value(), row.response == "exact");
+            const double cost = is_of_radii ? row.ratio_points.value_or(0.0) : row.ratio_exact.value_or(0.0);
+            EXPECT_TRUE(i >= 2 || cost == 1.0) << cost;
+            const Row& base = (*rows)[i % 2];  // with one repeat the cost is the quotient of the rates
+            EXPECT_NEAR(cost * row.particle_steps_per_second / base.particle_steps_per_second, 1.0, 1e-9);
+        }
+    }
+}
+
+TEST(Measurement, OfACaseAloneCostsAgainstNothing) {
+    const auto rows = measure_case(small_case("gas", 100, 500), {{2}, 1});
+    ASSERT_TRUE(rows.has_value());
+    EXPECT_FALSE(rows->front().ratio_points.has_value());
+    EXPECT_FALSE(rows->front().ratio_exact.has_value());
+}
+
+TEST(Measurement, KnowsSpeedupsOnlyBesideOneThread) {
+    const Case c = small_case("gas", 300, 500);
+    const auto both = measure_case(c, {{2, 1}, 1});
+    ASSERT_TRUE(both.has_value());
+    const Row& two = both->front();
+    const Row& one = both->back();
+    EXPECT_EQ(one.speedup, 1.0);
+    EXPECT_EQ(one.speedup_raw, 1.0);
+    EXPECT_NEAR(two.speedup.value_or(0.0), one.seconds / two.seconds, 1e-9);
+    EXPECT_NEAR(two.speedup_raw.value_or(0.0), two.raw_rays_per_second / one.raw_rays_per_second, 1e-9);
+    const auto alone = measure_case(c, {{2}, 1});
+    ASSERT_TRUE(alone.has_value());
+    EXPECT_FALSE(alone->front().speedup.has_value());
+    EXPECT_FALSE(alone->front().speedup_raw.has_value());
 }
 
 }  // namespace

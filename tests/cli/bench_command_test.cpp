@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ using test::run_ricochet;
 
 TEST(BenchCommand, RefusesWrongArgumentsInOneLineBeforeAnythingRuns) {
     const test::TemporaryFolder folder;
+    const std::string file = folder.write("file", "no ratios").string();
+    const std::string ratios =
+        folder.write("ratios.json", R"({"suite": "quick", "machine": "m", "ricochet": "1", "cases": {}})").string();
     const std::vector<std::vector<std::string>> wrong = {
         {"--suite", "juggle"},
         {"--suite", ""},
@@ -27,6 +31,19 @@ TEST(BenchCommand, RefusesWrongArgumentsInOneLineBeforeAnythingRuns) {
         {"--repeats", "100000"},
         {"--repeats", "-1"},
         {"--json", folder.path("").string()},
+        {"--results", file},
+        {"--results", file + "/below"},
+        {"--compare", file},
+        {"--compare", folder.path("missing.json").string()},
+        {"--compare", folder.path("").string()},
+        {"--suite", "gas", "--compare", ratios},
+        {"--suite", "load", "--compare", ratios},
+        {"--suite", "load", "--write-ratios", folder.path("new.json").string()},
+        {"--tolerance", "0.1"},
+        {"--compare", ratios, "--tolerance", "1"},
+        {"--compare", ratios, "--tolerance", "-0.1"},
+        {"--compare", ratios, "--tolerance", "much"},
+        {"--write-ratios", folder.path("").string()},
         {"quick"},
     };
     for (std::vector<std::string> arguments : wrong) {
@@ -38,6 +55,7 @@ TEST(BenchCommand, RefusesWrongArgumentsInOneLineBeforeAnythingRuns) {
         EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
         EXPECT_EQ(result.errors.rfind("ricochet: ", 0), 0U) << result.errors;
     }
+    EXPECT_FALSE(std::filesystem::exists(folder.path("new.json")));
 }
 
 TEST(BenchCommand, TellsAtOnceWhenItsFileCannotBeWritten) {
@@ -50,7 +68,8 @@ TEST(BenchCommand, TellsAtOnceWhenItsFileCannotBeWritten) {
 TEST(BenchCommand, ListsItsSuitesInTheHelp) {
     const ProgramResult result = run_ricochet({"bench", "--help"});
     EXPECT_EQ(result.exit_code, 0);
-    for (const char* suite : {"gas", "settle", "hail", "rain", "pinball", "wedge", "quick"}) {
+    for (const char* suite : {"gas", "settle", "hail", "rain", "pinball", "wedge", "size", "count", "threads", "radius",
+                              "response", "load", "quick"}) {
         EXPECT_NE(result.output.find(suite), std::string::npos) << suite;
     }
 }

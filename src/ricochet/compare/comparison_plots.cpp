@@ -7,6 +7,7 @@
 
 #include "ricochet/compare/comparison_files.h"
 #include "ricochet/compare/detail/columns.h"
+#include "ricochet/io/gnuplot_style.h"
 #include "ricochet/io/run_files.h"
 
 namespace ricochet {
@@ -31,10 +32,6 @@ constexpr std::array kStepPlots{
     StepPlot{"tunnelled.png", "Particles that went through a surface", "particles tunnelled", "tunnelled", false},
 };
 
-// M. Okabe, K. Ito, "Color universal design", 2008: colours that the colour-blind tell apart.
-constexpr std::array kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"};
-constexpr std::array kPointTypes{7, 5, 9, 13, 3};
-constexpr std::array kPointSizes{2.2, 1.7, 1.7, 1.7, 1.4};  // those drawn first larger, so that equal points show all
 constexpr std::size_t kMostTics = 8;
 
 struct Values {
@@ -54,27 +51,8 @@ void add_values(const ComparisonRow& row, const Comparison& comparison, const ch
 }
 
 std::string script_start(const Comparison& comparison) {
-    std::string text =
-        "# Draws the pictures of a comparison: gnuplot compare.gp, in the folder of compare.dat.\n"
-        "if (!exists('ending')) ending = ''\n"
-        "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) {\n"
-        "    set terminal pngcairo size 1100,700 font 'DejaVu Sans,14' background 'white'\n"
-        "} else {\n"
-        "    set terminal png size 1100,700\n"
-        "}\n"
-        "set encoding utf8\n"
-        "set datafile missing 'nan'\n"
-        "set grid linetype 1 linecolor '#c8c8c8' linewidth 1\n"
-        "set border linecolor '#404040'\n"
-        "set key outside right top Left reverse noenhanced\n"
-        "set tics nomirror\n"
-        "set format y '%g'\n";
-    for (std::size_t i = 0; i < comparison.plan.responses.size(); ++i) {
-        const std::size_t k = i % kColors.size();
-        text += fmt::format("set style line {} linecolor '{}' linewidth 2 pointtype {} pointsize {}\n", i + 1,
-                            kColors[k], kPointTypes[k], kPointSizes[k]);
-    }
-    return text;
+    return gnuplot_start("Draws the pictures of a comparison: gnuplot compare.gp, in the folder of compare.dat.") +
+           gnuplot_line_styles(comparison.plan.responses.size());
 }
 
 /// The axis of time steps, marked at the very steps where they are few.

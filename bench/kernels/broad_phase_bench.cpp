@@ -1,0 +1,81 @@
+/// \file
+/// Time of asking the broad phase which triangles a segment may touch, in a rocky cavity of 20 thousand and of 1.3
+/// million triangles: segments shorter than an edge, and segments across the cavity that end at their first triangle.
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <vector>
+
+#include "generators/build_near.h"
+#include "generators/rock.h"
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/triangle_bvh.h"
+
+namespace ricochet {
+namespace {
+
+/// A mesh and its hierarchy, made once.
+struct Ground {
+    explicit Ground(std::size_t triangles)
+        : mesh(meshes::build_near(triangles, 0.25, [](double edge) { return meshes::make_cavity({}, edge); })),
+          bvh(mesh.vertices, mesh.triangles, 0.0) {}
+
+    TriangleMesh mesh;
+    TriangleBvh bvh;
+};
+
+const Ground& ground(std::size_t triangles) {
+    static std::map<std::size_t, Ground> grounds;
+    return grounds.try_emplace(triangles, triangles).first->second;
+}
+
+struct Segment {
+    Vec3 from;
+    Vec3 to;
+};
+
+/// From anywhere within the innermost metre.
+std::vector<Segment> segments(double length) {
+    RandomSequence random(1, 0, 0);
+    std::vector<Segment> result;
+    while (result.size() < 4096) {
+        const Vec3 from = random.in_unit_ball();
+        result.push_back({from, from + length * random.unit_vector()});
+    }
+    return result;
+}
+
+void visit(benchmark::State& state, double length, double narrowed) {
+    const Ground& g = ground(static_cast<std::size_t>(state.range(0)));
+    const std::vector<Segment> list = segments(length);
+    std::size_t i = 0;
+    std::size_t proposed = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        const Segment& s = list[i++ % list.size()];
+        g.bvh.visit(s.from, s.to, [&](std::uint32_t) {
+            ++proposed;
+            return narrowed;
+        });
+    }
+    state.counters["proposed"] = benchmark::Counter(static_cast<double>(proposed), benchmark::Counter::kAvgIterations);
+}
+
+void visit_short(benchmark::State& state) { visit(state, 0.005, 1.0); }
+void visit_across(benchmark::State& state) { visit(state, 4.0, 1.0); }
+void visit_across_until_the_first(benchmark::State& state) { visit(state, 4.0, 0.0); }
+BENCHMARK(visit_short)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+BENCHMARK(visit_across)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+BENCHMARK(visit_across_until_the_first)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+
+void build(benchmark::State& state) {
+    const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
+    for ([[maybe_unused]] auto _ : state) {
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
+        benchmark::DoNotOptimize(bvh.memory_bytes());
+    }
+}
+BENCHMARK(build)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,80 @@
+/// \file
+/// One case, brought to where its measured steps begin, to be timed as often as wanted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bench/cases.h"
+#include "bench/memory_use.h"
+#include "bench/reference.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet::bench {
+
+/// Times of the measured steps and of the references, s, one entry a repeat.
+struct CaseTimes {
+    std::vector<double> simulation;
+    std::vector<double> raw;
+    std::vector<double> sorted;
+    std::vector<double> bounces;
+};
+
+/// Told before every piece of work; step counts from 1, 0 where the work has no steps. False ends the measurement.
+using Announce = std::function<bool(std::string_view doing, std::uint64_t step)>;
+
+/// The references get the states of evenly spaced steps: as many as give about so many flights, at least one. Fewer
+/// would make the references of small cases too short to be timed, more would not fit into memory for large ones.
+inline constexpr std::uint64_t kReferenceFlights = 4'000'000;
+
+/// What the measured steps do: the same every time.
+struct Course {
+    std::uint64_t particle_steps = 0;
+    std::uint64_t contacts = 0;
+    std::uint64_t state_hash = 0;
+};
+
+/// A case and everything that timing it needs.
+class CaseRun {
+public:
+    /// Makes the particles.
+    CaseRun(const Case& c, std::shared_ptr<const TriangleMesh> mesh);
+
+    /// Measures memory, goes through all steps once and prepares the references. False when told to end.
+    [[nodiscard]] bool prepare(const Announce& announce);
+
+    /// Times the measured steps and then each reference, with the threads that there are. False when told to end; the
+    /// times are of no use then. Throws RunError when the steps end in another state than in prepare().
+    [[nodiscard]] bool time(CaseTimes& times, const Announce& announce);
+
+    [[nodiscard]] const Case& description() const { return case_; }
+    [[nodiscard]] std::size_t particles() const { return particles_.size(); }
+    [[nodiscard]] std::size_t triangles() const { return mesh_->triangles.size(); }
+    [[nodiscard]] const MemoryUse& memory() const { return memory_; }
+    [[nodiscard]] const Course& course() const { return course_; }
+    /// After prepare().
+    [[nodiscard]] const Reference& reference() const { return *reference_; }
+
+private:
+    [[nodiscard]] Simulation make_simulation() const;
+    [[nodiscard]] bool scout(const Announce& announce, std::vector<std::vector<Flight>>& states);
+    [[nodiscard]] bool time_simulation(CaseTimes& times, const Announce& announce);
+
+    Case case_;
+    std::shared_ptr<const TriangleMesh> mesh_;
+    std::vector<Particle> particles_;
+    std::vector<std::byte> start_;  ///< saved state after the warm-up
+    MemoryUse memory_;
+    Course course_;
+    std::optional<Reference> reference_;
+};
+
+}  // namespace ricochet::bench

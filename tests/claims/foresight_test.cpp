@@ -132,8 +132,8 @@ TEST(Foresight, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
 /// Enough particles and triangles for an order of their own.
 SimulationSetup crowd() {
     SimulationSetup setup;
-    setup.options.time_step = 0.02;
-    setup.options.duration = 0.8;
+    setup.options.time_step = 0.1;
+    setup.options.duration = 2.0;
     setup.options.record_contacts = true;
     setup.options.verify = true;
     setup.options.bounce_budget = 1;

@@ -7,6 +7,12 @@
 #include "ricochet/response/mover.h"
 
 namespace ricochet {
+namespace {
+
+/// Parts of the run's time step that a step may last by the rounding of the clock.
+constexpr double kWholeStep = 1.0 + 1e-9;
+
+}  // namespace
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
     return Mover(rules_, particle, duration, scratch).run();
@@ -25,6 +31,7 @@ MoveOutcome Mover::run() {
     std::optional<Contact> contact = go_on_in_contact();
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {
+        outcome_.free_for = 0.0;
         if (!contact) {
             flight = first ? first_flight(rules_, particle_, remaining_)
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
@@ -45,11 +52,12 @@ MoveOutcome Mover::run() {
 }
 
 /// How far ahead the last flight of a step may look: as far as its way is known, which it is where the acceleration is
-/// uniform.
+/// uniform and the steps are those of the run.
 std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
     const double time_step = rules_.settings.time_step;
     const bool is_foreseen = rules_.settings.foresight && rules_.forces.is_uniform() && particle_.planned == nullptr &&
-                             state_.coupling == Vec3{} && flight.path.duration == remaining_;
+                             state_.coupling == Vec3{} && flight.path.duration == remaining_ &&
+                             remaining_ <= kWholeStep * time_step;
     if (!is_foreseen) return std::nullopt;
     const double acceleration = length(flight.acceleration);
     const int steps = acceleration == 0.0 ? kMostForeseenSteps : kMostForeseenBentSteps;

@@ -166,7 +166,7 @@ private:
     Box3 triangle_bounds_;
     std::vector<ShapeSurface> shapes_;
     std::vector<std::uint32_t> triangle_materials_;  ///< empty when no mesh names materials by triangle
-    double bulge_ = 0.0;  ///< m by which paths may bulge off the chords that the broad phase is asked about
+    double bulge_ = 0.0;              ///< m by which paths may bulge off the chords that the broad phase is asked about
     TriangleBvh::Clusters clusters_;  ///< of all triangles, shared by the classes
     struct RadiusClass {
         double largest_radius;

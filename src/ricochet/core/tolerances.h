@@ -88,8 +88,8 @@ inline constexpr double kStretchAngle = 0.01;
 
 /// Distance, relative to the largest coordinate involved, that is left beside a way that is foreseen for many steps.
 /// Reason: it covers kCandidateSlack and the rounding of kMostForeseenSteps steps, each of some 2^-52 for the place and
-/// as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken past a
-/// surface that the search would have found. Larger: particles near surfaces are searched for more often.
+/// as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken past
+/// a surface that the search would have found. Larger: particles near surfaces are searched for more often.
 inline constexpr double kForesightSlack = 0x1p-36;
 
 /// Steps that a particle may go on without a new search, straight on and along a parabola. Larger: kForesightSlack must

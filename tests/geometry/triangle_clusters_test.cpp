@@ -84,6 +84,17 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
     EXPECT_GT(near_triangles, test::scaled(20000));
 }
 
+TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
+    const std::vector<Vec3> vertices{{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
+    const std::vector<TriangleCluster> clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
+    for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
+        for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
+            TubeStretches stretches;
+            EXPECT_EQ(clusters[0].near(SegmentTube({}, size * direction, 1e-12), stretches), 1U) << size;
+        }
+    }
+}
+
 TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
     const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);

@@ -26,6 +26,10 @@ constexpr float kLongestEdge = 1.75F;
 /// Of a fraction that is a quotient of such numbers.
 constexpr float kFractionRounding = 0x1p-20F;
 
+/// 1/m: the square of a shorter segment's length would leave the range of doubles. It counts as a point, all of which
+/// is looked at.
+constexpr double kMostPerLength = 1e140;
+
 /// How much longer than its largest triangle's box a cluster's may be: next to each other along the curve need not be
 /// next to each other in space.
 constexpr double kLongestBox = 2.0;
@@ -81,8 +85,8 @@ LocalSegment localized(const TriangleCluster& cluster, const SegmentTube& tube) 
     const double margin = tube.margin * (1.0 + 0x1p-20);  // what else rounding does here is far below the bounds' own
     LocalSegment local{0.0, 1.0, {}, {}, static_cast<float>(margin * cluster.per_size), 0.0F};
     const Vec3 offset = cluster.center - tube.from;
-    if (std::isfinite(tube.per_length)) {
-        const double middle = dot(offset, tube.along) * (tube.per_length * tube.per_length);
+    if (tube.per_length < kMostPerLength) {
+        const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
         const double half = (1.0 / cluster.per_size + margin) * tube.per_length;
         local.begin = std::max(0.0, middle - half);
         local.end = std::min(1.0, middle + half);

@@ -11,7 +11,8 @@ packages_build=(
     libeigen3-dev                              # sparse matrices, for the implicit integrator
 )
 packages_test=(libgtest-dev libbenchmark-dev pkgconf)
-packages_lint=(clang-format clang-tidy)
+packages_format=(clang-format)
+packages_tidy=(clang-tidy)
 packages_clang=(clang)
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
 packages_optional=(ffmpeg gnuplot-nox python3-vtk9)

@@ -80,11 +80,15 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         std::memcpy(bytes.data(), start_.data() + place, bytes.size());
         place += bytes.size();
     });
-    double seconds = 0.0;
-    for (std::uint64_t step = 0; step < case_.steps; ++step) {
-        if (!announce("simulation", step + 1)) return false;
-        seconds += time_of([&] { simulation.step(); });
-    }
+    if (!announce("simulation", 1)) return false;
+    bool goes_on = true;
+    const double seconds = time_of([&] {
+        simulation.advance(case_.steps, [&] {
+            goes_on = announce("simulation", simulation.step_index() - case_.warm_up);
+            return goes_on;
+        });
+    });
+    if (!goes_on) return false;
     if (simulation.state_hash() != course_.state_hash) {
         throw RunError(
             fmt::format("{} of suite {}: a repeat with {} threads has ended in another state than the first run",

@@ -108,14 +108,17 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
     RunProgress progress(plan.quiet);
     writer.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
+    const auto after_step = [&] {
+        writer.add_step(simulation);
+        progress.show(simulation, writer.output_seconds() / plan.seconds());
+        return InterruptGuard::signal() == 0;
+    };
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
         try {
-            simulation.step();
+            simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step);
         } catch (const DivergedError& error) {
             return error.what();
         }
-        writer.add_step(simulation);
-        progress.show(simulation, writer.output_seconds() / plan.seconds());
         const std::uint64_t step = simulation.step_index();
         if (step % plan.output.every != 0) continue;
         writer.write_frame(simulation);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -128,6 +129,11 @@ public:
     /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
     /// follow them with this step. The simulation cannot go on then, and its particles are somewhere inside the step.
     void step();
+    /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
+    /// after each step, says no; faster, because what flies freely goes its way at once. While go_on is asked, places
+    /// and velocities of particles may still be those of an earlier step, and what is made of them (energies, hash,
+    /// frames, save()); everything else is up to date. Throws like step() and what go_on throws.
+    void advance(std::uint64_t count, const std::function<bool()>& go_on = {});
     [[nodiscard]] bool finished() const;
     [[nodiscard]] double time() const;               ///< s
     [[nodiscard]] std::uint64_t step_index() const;  ///< steps done

@@ -16,6 +16,7 @@
 #include "ricochet/coupled_motion.h"
 #include "ricochet/dynamics/coasting.h"
 #include "ricochet/offspring.h"
+#include "ricochet/owed_steps.h"
 #include "ricochet/run_check.h"
 #include "ricochet/simulation.h"
 
@@ -97,6 +98,11 @@ struct Simulation::Impl {
     explicit Impl(SimulationSetup setup);
 
     [[nodiscard]] bool has_energy(std::size_t i) const;
+    void step();
+    void begin_owing();
+    void end_owing();
+    void catch_up(std::size_t i);
+    void catch_up_all();
     void emit(double from, double to);
     void add(Particle particle);
     void move_all(double from, double to);
@@ -109,6 +115,7 @@ struct Simulation::Impl {
     [[nodiscard]] std::size_t coast_block(std::size_t begin, std::size_t end, double from, double to,
                                           BlockCounts& counts);
     void order_by_place(DueParticles& due) const;
+    void fetch(std::size_t i) const;
     void move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts);
     void add_cut_off(const std::vector<BlockCounts>& blocks);
     [[nodiscard]] bool is_due(std::size_t i) const {
@@ -175,6 +182,7 @@ struct Simulation::Impl {
     /// Of every particle one more than the number of the step with which it is to be searched for again: until then it
     /// meets nothing. 0: nothing is known of it. See kStill.
     std::vector<std::uint32_t> searched_again;
+    std::optional<OwedSteps> owed;  ///< while coasting particles need not be where the simulation is
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;
     std::vector<SpringFace> spring_faces;

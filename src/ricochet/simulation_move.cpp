@@ -1,5 +1,6 @@
 // Who has to be searched for in a step, in which order, and how each is moved.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,11 +17,42 @@ namespace {
 constexpr std::size_t kFewDue = 512;
 constexpr std::size_t kFewTriangles = 1024;
 
+/// Particles from the fetch of one from memory to its move.
+constexpr std::size_t kFetchedAhead = 6;
+
 }  // namespace
+
+// Between the steps of advance() nothing looks at a particle that coasts. But bounds and checks do in every step.
+void Simulation::Impl::begin_owing() {
+    const bool is_watched = check || offspring || bounds || coupled.is_active();
+    if (!is_watched && options.foresight && forces.common_acceleration()) owed.emplace(particles.size());
+}
+
+void Simulation::Impl::end_owing() {
+    if (owed) catch_up_all();
+    owed.reset();
+}
+
+void Simulation::Impl::catch_up(std::size_t i) {
+    const PhaseState state = owed->after(i, {particles.position[i], particles.velocity[i]});
+    particles.position[i] = state.position;
+    particles.velocity[i] = state.velocity;
+}
+
+void Simulation::Impl::catch_up_all() {
+    if (owed->is_empty()) return;
+    parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (searched_again[i] != kStill) catch_up(i);
+        }
+    });
+    owed->clear();
+}
 
 // Particles that meet nothing go on here. The others are due, listed by the blocks that they are in.
 DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
     const std::size_t count = particles.size() - first;
+    if (owed && owed->is_full()) catch_up_all();
     DueParticles due;
     due.ends.resize(blocks.size());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -31,9 +63,14 @@ DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double 
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         std::size_t at = block == 0 ? 0 : due.ends[block - 1];
         for (std::size_t i = first + begin; i < first + end; ++i) {
-            if (is_due(i)) due.particles[at++] = static_cast<std::uint32_t>(i);
+            if (!is_due(i)) continue;
+            due.particles[at++] = static_cast<std::uint32_t>(i);
+            if (!owed) continue;
+            catch_up(i);
+            owed->make_next(i);
         }
     });
+    if (owed) owed->add({options.integrator, *forces.common_acceleration(), to - from});
     return due;
 }
 
@@ -49,6 +86,8 @@ std::size_t Simulation::Impl::coast_block(std::size_t begin, std::size_t end, do
         if (again == kStill) continue;
         if (next >= again) {
             ++due;
+        } else if (owed) {
+            continue;
         } else if (common && !check) {
             const PhaseState state = shared.step(particles.position[i], particles.velocity[i]);
             particles.position[i] = state.position;
@@ -78,24 +117,44 @@ void Simulation::Impl::coast_on(std::size_t i, const Coasting& coasting, double 
     particles.velocity[i] = end.velocity;
 }
 
-// Neighbours in space look at the same triangles. Along the Z-curve through a thousand cells an axis.
+// Neighbours in space look at the same triangles.
 void Simulation::Impl::order_by_place(DueParticles& due) const {
     const bool pays = due.particles.size() >= kFewDue && world.triangles().size() >= kFewTriangles;
     if (!options.spatial_order || !pays || options.response != ResponseKind::exact) return;
     const Box3& box = world.triangle_bounds();
+    const auto bits = static_cast<unsigned>(std::bit_width(particles.size()));
     std::vector<std::uint64_t> keys(due.particles.size());
     parallel_for_blocks(keys.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = due.particles[k];
-            keys[k] = std::uint64_t{morton_code(particles.position[i], box)} << 32U | i;
+            keys[k] = morton_key(particles.position[i], box, i, bits);
         }
     });
     parallel_sort(keys);
-    for (std::size_t k = 0; k < keys.size(); ++k) due.particles[k] = static_cast<std::uint32_t>(keys[k]);
+    for (std::size_t k = 0; k < keys.size(); ++k) due.particles[k] = index_of_key(keys[k], bits);
     due.ends.clear();
     for (std::size_t end = kParticleBlock; end < keys.size() + kParticleBlock; end += kParticleBlock) {
         due.ends.push_back(std::min(end, keys.size()));
     }
+}
+
+// What moving() and store() want of a particle, whose neighbours in space lie anywhere in memory.
+void Simulation::Impl::fetch(std::size_t i) const {
+    __builtin_prefetch(&particles.position[i], 1);
+    __builtin_prefetch(&particles.velocity[i], 1);
+    __builtin_prefetch(&searched_again[i], 1);
+    __builtin_prefetch(&particles.mass[i]);
+    __builtin_prefetch(&particles.radius[i]);
+    __builtin_prefetch(&particles.id[i]);
+    __builtin_prefetch(&particles.spin[i]);
+    __builtin_prefetch(&particles.draws[i]);
+    __builtin_prefetch(&particles.birth_time[i]);
+    __builtin_prefetch(&particles.lifetime[i]);
+    __builtin_prefetch(&particles.frozen[i]);
+    __builtin_prefetch(&particles.pinned[i]);
+    __builtin_prefetch(&particles.absorbed[i]);
+    __builtin_prefetch(&particles.held[i]);
+    __builtin_prefetch(&particles.contacts[i], 1);
 }
 
 void Simulation::Impl::move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts) {
@@ -104,7 +163,9 @@ void Simulation::Impl::move_due(std::span<const std::uint32_t> due, double from,
     scratch.records.clear();
     scratch.record_contacts = keeps_records();
     scratch.record_legs = check != nullptr;
-    for (const std::uint32_t i : due) {
+    for (std::size_t k = 0; k < due.size(); ++k) {
+        const std::uint32_t i = due[k];
+        if (k + kFetchedAhead < due.size()) fetch(due[k + kFetchedAhead]);
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
         if (stop <= start) continue;

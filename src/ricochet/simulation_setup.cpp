@@ -121,6 +121,11 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
                     setup.options.time_step, bound, name_of(kind))};
 }
 
+double room_beside_chords(const SimulationOptions& options, const ForceField& forces) {
+    const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
+    return options.foresight && forces.is_uniform() && !is_straight ? kForesightRoom : kChordRoom;
+}
+
 std::vector<std::string> warnings_of(const SimulationSetup& setup) {
     std::vector<std::string> warnings = penalty_warnings(setup);
     for (std::string& warning : spring_warnings(setup)) warnings.push_back(std::move(warning));
@@ -134,7 +139,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       warnings(warnings_of(setup)),
       forces(std::move(setup.forces)),
       materials(checked_materials(std::move(setup.materials), setup.colliders)),
-      world(std::move(setup.colliders)),
+      world(std::move(setup.colliders), room_beside_chords(options, forces)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, response_settings(options)})),
@@ -171,6 +176,7 @@ void Simulation::Impl::add(Particle particle) {
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
     searched_again.push_back(particle.pinned ? kStill : 0);
+    if (owed) owed->append();
     if (response->keeps_sides()) {
         sides.resize(particles.size() * world.colliders().size());
         if (is_finite(particle.position)) response->first_sides(particle.position, sides_of(particles.size() - 1));

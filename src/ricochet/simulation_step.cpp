@@ -14,14 +14,32 @@
 namespace ricochet {
 
 void Simulation::step() {
-    if (finished()) return;
-    const double from = impl_->time_at(impl_->statistics.steps);
-    const double to = impl_->time_at(impl_->statistics.steps + 1);
-    impl_->emit(from, to);
-    if (impl_->check) impl_->check->watch_newborn(impl_->particles);
-    impl_->move_all(from, to);
-    impl_->retire(to);
-    ++impl_->statistics.steps;
+    if (!finished()) impl_->step();
+}
+
+void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on) {
+    if (count > 1) impl_->begin_owing();
+    try {
+        bool goes_on = true;
+        for (std::uint64_t k = 0; k < count && goes_on && !finished(); ++k) {
+            impl_->step();
+            goes_on = !go_on || go_on();
+        }
+    } catch (...) {
+        impl_->end_owing();
+        throw;
+    }
+    impl_->end_owing();
+}
+
+void Simulation::Impl::step() {
+    const double from = time_at(statistics.steps);
+    const double to = time_at(statistics.steps + 1);
+    emit(from, to);
+    if (check) check->watch_newborn(particles);
+    move_all(from, to);
+    retire(to);
+    ++statistics.steps;
 }
 
 // Particles that are born of particles inside the step are moved from their births to its end, with their own children
@@ -273,6 +291,7 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
         if (keep[i] != 0) searched_again[kept++] = searched_again[i];
     }
     searched_again.resize(kept);
+    if (owed) owed->compact(keep);
     particles.compact(keep);
     if (check) check->compact(keep);
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -127,6 +128,69 @@ TEST(Foresight, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
         impacts += simulation.statistics().contacts;
     }
     EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(150)) * 20);
+}
+
+void add_fountain(SimulationSetup& setup) {
+    EmitterDescription fountain;
+    fountain.name = "fountain";
+    fountain.shape = SphereShape{{}, 0.3};
+    fountain.rate = {100.0 / setup.options.duration, 0.0};
+    fountain.speed = {2.0, 0.5};
+    fountain.lifetime = {0.4 * setup.options.duration, 0.1 * setup.options.duration};
+    setup.emitters.push_back(std::move(fountain));
+}
+
+// Stretches of one step, of a few and of more than are owed at most, some cut short.
+TEST(Advance, LeadsToTheBitsOfSingleSteps) {
+    int stretches = 0;
+    for (int i = 0; i < test::scaled(150); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const auto seed = static_cast<std::uint64_t>(i);
+        RandomSequence random(seed, 32, 0);
+        SimulationSetup setup = SparseCase(seed).setup();
+        SimulationSetup same = SparseCase(seed).setup();
+        if (i % 2 == 0) {
+            add_fountain(setup);
+            add_fountain(same);
+        }
+        Simulation reference(std::move(same));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) {
+            const double u = random.uniform();
+            const auto count = static_cast<std::uint64_t>(1.0 + 120.0 * u * u);
+            const std::uint64_t last = simulation.step_index() + (random.uniform() < 0.3 ? 1 + count / 2 : count);
+            simulation.advance(count, [&] {
+                reference.step();
+                EXPECT_EQ(simulation.step_index(), reference.step_index());
+                EXPECT_EQ(simulation.particles().size(), reference.particles().size());
+                expect_same_records(simulation, reference);
+                return simulation.step_index() < last && !::testing::Test::HasFatalFailure();
+            });
+            ASSERT_TRUE(simulation.finished() || simulation.step_index() <= last);
+            ASSERT_EQ(simulation.state_hash(), reference.state_hash()) << "step " << simulation.step_index();
+            ++stretches;
+        }
+        expect_same_statistics(simulation, reference);
+    }
+    EXPECT_GT(stretches, 2 * test::scaled(150));
+}
+
+TEST(Advance, IsAtTheLastStepWhenItsCallerThrows) {
+    Simulation simulation(SparseCase(4).setup());
+    Simulation reference(SparseCase(4).setup());
+    EXPECT_THROW(simulation.advance(100,
+                                    [&] {
+                                        if (simulation.step_index() == 30) throw std::runtime_error("enough");
+                                        return true;
+                                    }),
+                 std::runtime_error);
+    EXPECT_EQ(simulation.step_index(), 30U);
+    while (reference.step_index() < 30) reference.step();
+    EXPECT_EQ(simulation.state_hash(), reference.state_hash());
+    simulation.advance(1000);
+    while (!reference.finished()) reference.step();
+    EXPECT_TRUE(simulation.finished());
+    EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
 /// Enough particles and triangles for an order of their own.

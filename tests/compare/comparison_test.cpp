@@ -123,8 +123,8 @@ TEST(Comparison, ASoftPlateIsPassedInSeveralLegs) {
     for (const bool ball : {false, true}) {
         SimulationSetup setup = falling_points();
         setup.options.penalty.stiffness = 1.0;
-        const ColliderShape shape = ball ? ColliderShape(BallShape{0.05, {.position = {0.25, 0, 0}}})
-                                         : ColliderShape(CuboidShape{{10, 10, 0.1}, {}});
+        ColliderShape shape = CuboidShape{{10, 10, 0.1}, {}};
+        if (ball) shape = BallShape{0.05, {.position = {0.25, 0, 0}}};
         setup.particles.resize(1);
         setup.colliders[0] = {"body", shape, 0};
         const auto comparison = compare_responses(std::move(setup), plan_of("penalty", "0.01"));

@@ -55,7 +55,12 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
         const double after = scale * std::pow(10.0, 5.0 * random.uniform() - 2.0);
         const Vec3 from = target - before * direction;
         const Vec3 to = target + (random.uniform() < 0.2 ? 0.0 : after) * direction;
-        const SegmentTube tube(from, to, margin);
+        // Half of the ways are parabolas that still go through the target.
+        const double aimed = before / length(to - from);
+        const double sag = i % 2 == 0 ? 0.0 : scale * std::pow(10.0, 3.0 * random.uniform() - 3.0);
+        const Vec3 curve = sag * random.unit_vector();
+        const Vec3 shift = aimed * (1.0 - aimed) * curve;
+        const Tube tube(from + shift, to + shift, margin, curve);
         for (const TriangleCluster& cluster : clusters) {
             TubeStretches stretches;
             const unsigned bits = cluster.near(tube, stretches);
@@ -66,9 +71,9 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
                     // Densest about the target.
                     const double part = static_cast<double>(k - 32) / 32.0;
                     const double way = part < 0.0 ? part * part * part * before : part * part * part * after;
-                    const Vec3 p = target + way * direction;
-                    const double fraction = dot(p - from, to - from) / length_squared(to - from);
+                    const double fraction = (before + way) / length(to - from);
                     if (!(fraction >= 0.0 && fraction <= 1.0)) continue;
+                    const Vec3 p = tube.from + tube.offset(fraction);
                     const double distance =
                         std::sqrt(closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])
                                       .distance_squared);
@@ -90,7 +95,7 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
         for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
             TubeStretches stretches;
-            EXPECT_EQ(clusters[0].near(SegmentTube({}, size * direction, 1e-12), stretches), 1U) << size;
+            EXPECT_EQ(clusters[0].near(Tube({}, size * direction, 1e-12), stretches), 1U) << size;
         }
     }
 }
@@ -104,7 +109,7 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
     for (int i = 0; i < test::scaled(400); ++i) {
         const Vec3 from = 2.0 * random.unit_vector();
         const Vec3 to = random.in_unit_ball();
-        const SegmentTube tube(from, to, 1e-9);
+        const Tube tube(from, to, 1e-9);
         for (const TriangleCluster& cluster : clusters) {
             TubeStretches stretches;
             const unsigned bits = cluster.near(tube, stretches);

@@ -59,13 +59,14 @@ Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& tria
 
 }  // namespace
 
-CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders) : colliders_(std::move(colliders)) {
+CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double room)
+    : colliders_(std::move(colliders)) {
     for (ColliderDescription& collider : colliders_) add(collider);
     flag_degenerate_triangles();
     triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
-    bulge_ = part_of_mean_box();
+    bulge_ = room * mean_box();
     prepare_radius(0.0);
 }
 
@@ -198,9 +199,7 @@ void CollisionWorld::flag_degenerate_triangles() {
     if (degenerate_count_ == 0) degenerate_ = {};
 }
 
-// A part of the mean triangle's box: boxes grow little, and few pieces of paths next to surfaces need more than one
-// chord.
-double CollisionWorld::part_of_mean_box() const {
+double CollisionWorld::mean_box() const {
     if (triangles_.empty()) return 0.0;
     const double sum = ordered_sum(triangles_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
@@ -211,7 +210,7 @@ double CollisionWorld::part_of_mean_box() const {
         }
         return partial;
     });
-    return 0.03125 * sum / static_cast<double>(triangles_.size());
+    return sum / static_cast<double>(triangles_.size());
 }
 
 std::uint32_t CollisionWorld::collider_of(SurfaceId surface) const {

@@ -9,6 +9,7 @@
 
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/box3.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/analytic_shape.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/sweep.h"
@@ -31,7 +32,9 @@ class CollisionWorld {
 public:
     /// Bakes every placement into world coordinates and builds the broad phase. Throws InputError that names the
     /// collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
-    explicit CollisionWorld(std::vector<ColliderDescription> colliders);
+    /// room: by how much paths may leave the chords that the broad phase is asked about, in parts of the mean
+    /// triangle's box. Results do not depend on it.
+    explicit CollisionWorld(std::vector<ColliderDescription> colliders, double room = kChordRoom);
     CollisionWorld(const CollisionWorld&) = delete;  // the broad phase refers to the arrays
     CollisionWorld& operator=(const CollisionWorld&) = delete;
 
@@ -150,7 +153,7 @@ private:
     void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
     void add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape);
     void flag_degenerate_triangles();
-    [[nodiscard]] double part_of_mean_box() const;
+    [[nodiscard]] double mean_box() const;
     [[nodiscard]] double largest_radius_of_class(double radius) const;
     [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;
 

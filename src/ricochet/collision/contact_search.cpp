@@ -122,8 +122,9 @@ void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, doubl
     const Path way = shortened(outlook.path, duration);
     const Box3& box = world_.triangle_bounds();
     const double largest = std::max({largest_coordinate(way), max_abs(box.lower), max_abs(box.upper)});
-    const double margin = radius_ + outlook.margin + way.sagitta(0.0, duration) + kForesightSlack * largest;
-    bvh_->visit_tube(way.c[0], way.end, margin, [&](std::uint32_t triangle, double enter, double leave) {
+    const double margin = radius_ + outlook.margin + kForesightSlack * largest;
+    const Tube tube(way.c[0], way.end, margin, duration * duration * way.c[2]);
+    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
             if (enter * duration <= path.duration) (void)look_at_triangle(path, triangle);
             if (leave * duration >= path.duration) free_until_ = std::min(free_until_, enter * duration);
@@ -212,12 +213,16 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
         return;
     }
     const double span = to - from;
-    const double margin = radius_ + 2.0 * slack_ + (path.degree > 1 ? bulge_ : 0.0);
-    bvh_->visit_tube(path.position(from), path.position(to), margin,
-                     [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
-                         const double first = look_at_triangle(path, triangle);
-                         return first < to ? std::max(0.0, (first - from) / span) : 1.0;
-                     });
+    // Chords of the path that covers_chord() lets pass are covered too.
+    const bool is_parabola = path.degree == 2;
+    const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
+    const double beside_path = std::min(path.sagitta(0.0, path.duration), 0.5 * bulge_);
+    const double margin = radius_ + 2.0 * slack_ + beside_piece + beside_path;
+    const Tube tube(path.position(from), path.position(to), margin, is_parabola ? span * span * path.c[2] : Vec3{});
+    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
+        const double first = look_at_triangle(path, triangle);
+        return first < to ? std::max(0.0, (first - from) / span) : 1.0;
+    });
 }
 
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {

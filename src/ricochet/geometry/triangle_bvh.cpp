@@ -86,7 +86,7 @@ struct Query {
     const std::vector<TriangleCluster>* clusters;
     TriangleBvh::Visit visit = nullptr;           ///< this one or the next
     TriangleBvh::VisitTube visit_tube = nullptr;  ///< triangles that the tube may touch
-    SegmentTube tube = {};
+    Tube tube = {};
     double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
     double ray_per_fraction = 0.0;  ///< ray length of the whole segment
     double fraction_limit = 1.0;
@@ -303,10 +303,9 @@ void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit v
     impl_->visit_segment(from, to, query);
 }
 
-void TriangleBvh::visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visitor) const {
-    Query query{context, impl_->clusters.get(), nullptr, visitor};
-    query.tube = {from, to, margin};
-    impl_->visit_segment(from, to, query);
+void TriangleBvh::visit_tube(const Tube& tube, void* context, VisitTube visitor) const {
+    Query query{context, impl_->clusters.get(), nullptr, visitor, tube};
+    impl_->visit_segment(tube.from, tube.from + tube.along, query);
 }
 
 void TriangleBvh::Impl::visit_segment(const Vec3& from, const Vec3& to, Query& query) const {

@@ -53,19 +53,19 @@ public:
               [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
-    /// Called for a triangle that the tube may touch, with the stretch of the segment (fractions of it) outside of
-    /// which it certainly does not. Returns as Visit does.
+    /// Called for a triangle that the tube may touch, with the stretch of its way (fractions of it) outside of which it
+    /// certainly does not. Returns as Visit does.
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
-    /// Visits every triangle whose distance from the segment [from, to] is at most `margin` (m, at most reach() +
-    /// slack()), and few others: TriangleCluster::near() decides, four triangles at a time.
-    void visit_tube(const Vec3& from, const Vec3& to, double margin, void* context, VisitTube visit) const;
+    /// Visits every triangle that the tube touches, and few others: TriangleCluster::near() decides, four triangles at
+    /// a time. The tube's margin and sagitta together must be at most reach() + slack().
+    void visit_tube(const Tube& tube, void* context, VisitTube visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle, double enter, double leave)`.
     template <class Callable>
-    void visit_tube(const Vec3& from, const Vec3& to, double margin, Callable&& callable) const {
+    void visit_tube(const Tube& tube, Callable&& callable) const {
         using Function = std::remove_reference_t<Callable>;
-        visit_tube(from, to, margin, const_cast<void*>(static_cast<const void*>(&callable)),
+        visit_tube(tube, const_cast<void*>(static_cast<const void*>(&callable)),
                    [](void* context, std::uint32_t triangle, double enter, double leave) {
                        return (*static_cast<Function*>(context))(triangle, enter, leave);
                    });

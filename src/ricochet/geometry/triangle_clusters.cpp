@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "ricochet/core/morton.h"
 #include "ricochet/core/parallel.h"
@@ -30,9 +31,9 @@ constexpr float kFractionRounding = 0x1p-20F;
 /// is looked at.
 constexpr double kMostPerLength = 1e140;
 
-/// How much longer than its largest triangle's box a cluster's may be: next to each other along the curve need not be
-/// next to each other in space.
-constexpr double kLongestBox = 2.0;
+/// What a cluster costs in memory and time beside what its box's surface costs, in surfaces of the mean triangle's box.
+/// Next to each other along the curve need not be next to each other in space, so full clusters are not the best ones.
+constexpr double kCostOfCluster = 2.0;
 
 // Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
 using Quad = float __attribute__((vector_size(16)));
@@ -69,9 +70,9 @@ Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
 /// |x| + |y| + |z|, at least the length and at most sqrt(3) of it.
 Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
-/// The part of a segment that passes by a cluster, in the cluster's units.
+/// The chord of the part of a way that passes by a cluster, in the cluster's units.
 struct LocalSegment {
-    double begin;  ///< fractions of the whole segment
+    double begin;  ///< fractions of the whole way
     double end;
     std::array<float, 3> from;
     std::array<float, 3> along;
@@ -79,20 +80,28 @@ struct LocalSegment {
     float reach;  ///< at least the size of all numbers here and of differences to the corners
 };
 
+/// What else rounding does to the margin here is far below the bounds' own.
+constexpr double kMarginRounding = 1.0 + 0x1p-20;
+
 /// Only what is within a size and the margin of the centre can be within the margin of a triangle. The part is empty
-/// (begin > end) when nothing is.
-LocalSegment localized(const TriangleCluster& cluster, const SegmentTube& tube) {
-    const double margin = tube.margin * (1.0 + 0x1p-20);  // what else rounding does here is far below the bounds' own
-    LocalSegment local{0.0, 1.0, {}, {}, static_cast<float>(margin * cluster.per_size), 0.0F};
+/// (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square of its
+/// share.
+LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
+    LocalSegment local{0.0, 1.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
     if (tube.per_length < kMostPerLength) {
         const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
+        const double margin = (tube.margin + tube.sagitta) * kMarginRounding;
         const double half = (1.0 / cluster.per_size + margin) * tube.per_length;
         local.begin = std::max(0.0, middle - half);
         local.end = std::min(1.0, middle + half);
     }
-    const Vec3 from = cluster.per_size * (local.begin * tube.along - offset);
-    const Vec3 along = (cluster.per_size * (local.end - local.begin)) * tube.along;
+    const double share = local.end - local.begin;
+    const Vec3 begin = tube.offset(local.begin);
+    const Vec3 from = cluster.per_size * (begin - offset);
+    const Vec3 along = cluster.per_size * (tube.offset(local.end) - begin);
+    const double margin = (tube.margin + share * share * tube.sagitta) * kMarginRounding;
+    local.margin = static_cast<float>(margin * cluster.per_size);
     local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
     local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
     local.reach = static_cast<float>(1.0 + max_abs(from) + max_abs(along));
@@ -109,8 +118,8 @@ Quad beyond(const QuadVec& outward, const QuadVec& from_corner, const LocalSegme
     return min(at_enter, at_leave);
 }
 
-// The tube can touch a triangle only while its segment is within the margin of the triangle's plane. It does not when
-// over all of that stretch the segment stays beyond one edge: heights over the edge are linear, so both ends of the
+// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. It does not when
+// over all of that stretch the chord stays beyond one edge: heights over the edge are linear, so both ends of the
 // stretch tell, and the three of them always add up to -|normal|^2. Everything is compared without dividing by the
 // normal's length, so slivers only make the bound larger.
 unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, TubeStretches& stretches) {
@@ -163,17 +172,17 @@ std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std:
     for (const Triangle& t : triangles) {
         for (const std::uint32_t v : t) box.include(vertices[v]);
     }
+    const auto bits = static_cast<unsigned>(std::bit_width(triangles.size()));
     std::vector<std::uint64_t> keys(triangles.size());
     parallel_for_blocks(keys.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Vec3 center = box_of(vertices, triangles[t]).center();
-            keys[t] = std::uint64_t{morton_code(center, box)} << 32U | t;
+            keys[t] = morton_key(center, box, static_cast<std::uint32_t>(t), bits);
         }
     });
     parallel_sort(keys);
     std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(),
-                   [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+    std::transform(keys.begin(), keys.end(), order.begin(), [&](std::uint64_t key) { return index_of_key(key, bits); });
     return order;
 }
 
@@ -199,33 +208,63 @@ TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Trian
     return cluster;
 }
 
-/// Where clusters end along the order.
-std::vector<std::uint32_t> cluster_ends(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                        std::span<const std::uint32_t> order) {
-    std::vector<std::uint32_t> ends;
-    Box3 together;
-    double longest = 0.0;
-    std::uint32_t begin = 0;
-    for (std::uint32_t k = 0; k < order.size(); ++k) {
-        const Box3 box = box_of(vertices, triangles[order[k]]);
-        Box3 joined = together;
-        joined.include(box);
-        longest = std::max(longest, box.diagonal());
-        if (k > begin && (k - begin == 4 || joined.diagonal() > kLongestBox * longest)) {
-            ends.push_back(k);
-            begin = k;
-            joined = box;
-            longest = box.diagonal();
+/// Half the surface of a box, m^2: the share of random lines that meet it goes by the surface.
+double half_area(const Box3& box) {
+    const Vec3 size = box.size();
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/// Where clusters end along a stretch of the order, given the triangles' boxes, such that the sum of their costs is
+/// least: dynamic programming over what the last cluster of a beginning holds.
+std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
+    double area = 0.0;
+    for (const Box3& box : boxes) area += half_area(box);
+    const double each = kCostOfCluster * area / static_cast<double>(boxes.size());
+    std::vector<double> least(boxes.size() + 1, 0.0);
+    std::vector<std::uint32_t> members(boxes.size() + 1, 1);
+    for (std::uint32_t end = 1; end <= boxes.size(); ++end) {
+        least[end] = std::numeric_limits<double>::infinity();
+        Box3 box;
+        for (std::uint32_t count = 1; count <= std::min(4U, end); ++count) {
+            box.include(boxes[end - count]);
+            const double cost = least[end - count] + half_area(box) + each;
+            if (cost > least[end]) continue;
+            least[end] = cost;
+            members[end] = count;
         }
-        together = joined;
     }
-    if (!order.empty()) ends.push_back(static_cast<std::uint32_t>(order.size()));
+    std::vector<std::uint32_t> ends;
+    for (auto end = static_cast<std::uint32_t>(boxes.size()); end > 0; end -= members[end]) ends.push_back(end);
+    std::reverse(ends.begin(), ends.end());
     return ends;
+}
+
+/// A block of the order and where its clusters end in it.
+struct Stretch {
+    std::span<const std::uint32_t> triangles;
+    std::vector<std::uint32_t> ends;
+    std::size_t first = 0;  ///< number of its first cluster
+};
+
+std::vector<Stretch> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                            std::span<const std::uint32_t> order) {
+    std::vector<Stretch> stretches((order.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(order.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        const auto members = order.subspan(begin, end - begin);
+        std::vector<Box3> boxes;
+        boxes.reserve(members.size());
+        for (const std::uint32_t triangle : members) boxes.push_back(box_of(vertices, triangles[triangle]));
+        stretches[block] = {members, cluster_ends(boxes)};
+    });
+    for (std::size_t k = 1; k < stretches.size(); ++k) {
+        stretches[k].first = stretches[k - 1].first + stretches[k - 1].ends.size();
+    }
+    return stretches;
 }
 
 }  // namespace
 
-unsigned TriangleCluster::near(const SegmentTube& tube, TubeStretches& stretches) const {
+unsigned TriangleCluster::near(const Tube& tube, TubeStretches& stretches) const {
     const LocalSegment segment = localized(*this, tube);
     return segment.begin > segment.end ? 0 : near_lanes(*this, segment, stretches);
 }
@@ -243,12 +282,15 @@ Box3 TriangleCluster::box() const {
 
 std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     const std::vector<std::uint32_t> order = in_spatial_order(vertices, triangles);
-    const std::vector<std::uint32_t> ends = cluster_ends(vertices, triangles, order);
-    std::vector<TriangleCluster> clusters(ends.size());
-    parallel_for_blocks(ends.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-            const std::size_t first = c == 0 ? 0 : ends[c - 1];
-            clusters[c] = cluster_of(vertices, triangles, std::span(order).subspan(first, ends[c] - first));
+    const std::vector<Stretch> stretches = divide(vertices, triangles, order);
+    if (stretches.empty()) return {};
+    std::vector<TriangleCluster> clusters(stretches.back().first + stretches.back().ends.size());
+    parallel_for_blocks(stretches.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+        const auto& [members, ends, first] = stretches[k];
+        std::size_t begin = 0;
+        for (std::size_t c = 0; c < ends.size(); ++c) {
+            clusters[first + c] = cluster_of(vertices, triangles, members.subspan(begin, ends[c] - begin));
+            begin = ends[c];
         }
     });
     return clusters;

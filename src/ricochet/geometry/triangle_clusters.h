@@ -15,21 +15,33 @@ namespace ricochet {
 /// In a place of a cluster: no triangle.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A segment and everything within a margin of it.
-class SegmentTube {
+/// A line or parabola from `start` to `end` and everything within a margin of it: at the fraction f of the way it is at
+/// start + f (end - start) - f (1 - f) curve.
+class Tube {
 public:
-    SegmentTube() = default;
-    /// margin >= 0, m.
-    SegmentTube(const Vec3& start, const Vec3& end, double distance)
-        : from(start), along(end - start), margin(distance), per_length(1.0 / length(along)) {}
+    Tube() = default;
+    /// distance >= 0, m.
+    Tube(const Vec3& start, const Vec3& end, double distance, const Vec3& curvature = {})
+        : from(start),
+          along(end - start),
+          curve(curvature),
+          margin(distance),
+          sagitta(0.25 * length(curve)),
+          per_length(1.0 / length(along)) {}
+
+    [[nodiscard]] Vec3 offset(double fraction) const {
+        return fraction * along - (fraction * (1.0 - fraction)) * curve;
+    }
 
     Vec3 from;
     Vec3 along;  ///< to the other end
+    Vec3 curve;
     double margin = 0.0;
-    double per_length = 0.0;  ///< 1/m; not finite for a point
+    double sagitta = 0.0;     ///< m, by which the way leaves its chord
+    double per_length = 0.0;  ///< 1/m, of the chord; not finite for a point
 };
 
-/// Stretches of a tube's segment, in fractions of it, one a lane.
+/// Stretches of a tube's way, in fractions of it, one a lane.
 struct TubeStretches {
     std::array<double, 4> enter;
     std::array<double, 4> leave;
@@ -47,9 +59,9 @@ struct alignas(64) TriangleCluster {
     Vec3 center;                            ///< m
     double per_size = 1.0;                  ///< 1/size, a power of two: corners are within [-1/2, 1/2]
 
-    /// Bits of the lanes whose triangle may come within the margin of the segment, and for these a stretch outside of
-    /// which it certainly does not. Errs on the side of more. Triangles may be degenerate.
-    [[nodiscard]] unsigned near(const SegmentTube& tube, TubeStretches& stretches) const;
+    /// Bits of the lanes whose triangle may come within the margin of the tube's way, and for these a stretch outside
+    /// of which it certainly does not. Errs on the side of more. Triangles may be degenerate.
+    [[nodiscard]] unsigned near(const Tube& tube, TubeStretches& stretches) const;
     /// A box about the triangles, m.
     [[nodiscard]] Box3 box() const;
 };

@@ -55,13 +55,17 @@ SimulationSetup busy_setup(ResponseKind response = ResponseKind::exact) {
 
 std::vector<std::byte> saved(const Simulation& simulation) {
     std::vector<std::byte> bytes;
-    simulation.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    simulation.save([&](std::span<const std::byte> part) {
+        EXPECT_FALSE(part.empty());
+        bytes.insert(bytes.end(), part.begin(), part.end());
+    });
     return bytes;
 }
 
 void restore(Simulation& simulation, const std::vector<std::byte>& bytes) {
     std::size_t at = 0;
     simulation.restore([&](std::span<std::byte> part) {
+        EXPECT_FALSE(part.empty());
         if (bytes.size() - at < part.size()) throw InputError("the file ends too early");
         std::memcpy(part.data(), bytes.data() + at, part.size());
         at += part.size();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates.h"
+#include "support/counts.h"
 #include "support/sphere_oracle.h"
 
 namespace ricochet {
@@ -22,7 +24,7 @@ using testing::Triangle;
 #define RICOCHET_CASE_FACTOR 1
 #endif
 constexpr std::uint64_t kSeed = 20240612;
-constexpr std::uint64_t kCases = 250ULL * RICOCHET_CASE_FACTOR;
+constexpr std::uint64_t kCases = std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{std::max(50, test::scaled(250))};
 
 struct SphereCase {
     Triangle triangle;

@@ -39,11 +39,11 @@ public:
     requires kIsFlat<T>
     void operator()(const std::vector<T>& values) {
         (*this)(static_cast<std::uint64_t>(values.size()));
-        sink_(std::as_bytes(std::span(values)));
+        if (!values.empty()) sink_(std::as_bytes(std::span(values)));
     }
     void operator()(const std::string& text) {
         (*this)(static_cast<std::uint64_t>(text.size()));
-        sink_(std::as_bytes(std::span(text)));
+        if (!text.empty()) sink_(std::as_bytes(std::span(text)));
     }
 
 private:
@@ -66,11 +66,11 @@ public:
     requires kIsFlat<T>
     void operator()(std::vector<T>& values) {
         values.resize(length());
-        source_(std::as_writable_bytes(std::span(values)));
+        if (!values.empty()) source_(std::as_writable_bytes(std::span(values)));
     }
     void operator()(std::string& text) {
         text.resize(length());
-        source_(std::as_writable_bytes(std::span(text)));
+        if (!text.empty()) source_(std::as_writable_bytes(std::span(text)));
     }
 
 private:

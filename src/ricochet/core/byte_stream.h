@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// Takes the bytes, in order; throws when it cannot.
+/// Takes the bytes, at least one, in order; throws when it cannot.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
-/// Gives exactly as many bytes as the span holds, in order; throws when there are not so many.
+/// Gives exactly as many bytes as the span holds, at least one, in order; throws when there are not so many.
 using ByteSource = std::function<void(std::span<std::byte>)>;
 
 }  // namespace ricochet

@@ -39,6 +39,27 @@ TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
     }
 }
 
+TEST(TimeOutside, IsFreeOfTheBoxAndLongWhereTheBoxIsFarAway) {
+    RandomSequence random(2, 0, 0);
+    int outside = 0;
+    for (int i = 0; i < test::scaled(5000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        Box3 box;
+        box.include(random.in_unit_ball());
+        box.include(random.in_unit_ball());
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const double time = time_outside(path, box);
+        ASSERT_LE(time, path.duration);
+        EXPECT_EQ(time > 0.0, !box.contains(path.c[0]));
+        for (int k = 0; k < 50 && time > 0.0; ++k) ASSERT_FALSE(box.contains(path.position(0.02 * k * time)));
+        outside += time > 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(outside, test::scaled(5000) / 2);
+    const Path thrown = parabola_path({0, 0, 1}, {3, 0, 5}, {0, 0, -10}, 3.0);
+    EXPECT_NEAR(time_outside(thrown, {{-100, -100, -1}, {100, 100, 0.5}}), 0.5 + std::sqrt(0.35), 1e-9);
+}
+
 TEST(Shortened, IsTheSamePathWithAnEarlierEnd) {
     const Path path = parabola_path({1, 2, 3}, {4, 5, 6}, {0, 0, -9.81}, 2.0);
     const Path part = shortened(path, 0.5);

@@ -99,18 +99,23 @@ void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
 
 // One question to the boxes must do: over what is looked at, the path, the foreseen one and all their chords of a step
 // stay within what the boxes leave beside the segment that is asked about. A straight way that leaves all triangles
-// behind is free for good.
+// behind is free for good; a bent one is free, and nothing need be asked, while it is beyond one side of them all.
 std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
     if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
+    const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
+    const Vec3 by{margin, margin, margin};
+    const Box3 box{world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
     if (outlook.path.degree > 1) {
+        const double outside = time_outside(outlook.path, box);
+        if (outside >= outlook.least) {
+            free_until_ = std::min(free_until_, outside);
+            return 0.0;
+        }
         const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
         free_until_ = std::min(free_until_, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
         if (!(free_until_ >= outlook.least)) return std::nullopt;
     }
-    const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
-    const Vec3 by{margin, margin, margin};
-    const Box3& box = world_.triangle_bounds();
-    const double duration = std::min(free_until_, time_of_leaving(outlook.path, {box.lower - by, box.upper + by}));
+    const double duration = std::min(free_until_, time_of_leaving(outlook.path, box));
     const bool boxes_hold = kPathRounding * largest_coordinate(shortened(outlook.path, duration)) <= bvh_->slack();
     return boxes_hold ? std::optional(duration) : std::nullopt;
 }
@@ -118,7 +123,7 @@ std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
 // A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
 // before that end does not matter to what comes after.
 void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
-    if (duration == 0.0) return;  // it never comes near the triangles
+    if (duration == 0.0) return;  // it does not come near the triangles
     const Path way = shortened(outlook.path, duration);
     const Box3& box = world_.triangle_bounds();
     const double largest = std::max({largest_coordinate(way), max_abs(box.lower), max_abs(box.upper)});

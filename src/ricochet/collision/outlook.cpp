@@ -1,6 +1,7 @@
 #include "ricochet/collision/outlook.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ricochet {
@@ -32,6 +33,20 @@ double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     const double root = std::sqrt(discriminant);
     const double time = g1 < 0.0 ? 2.0 * g0 / (root - g1) : (g1 + root) / (-2.0 * g2);
     return std::min(path.duration, (1.0 - kTimeRounding) * time);
+}
+
+double time_outside(const Path& path, const Box3& box) {
+    constexpr std::array kAxes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    double longest = 0.0;
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+        const Vec3& normal = kAxes[axis];
+        const double place = dot(normal, path.c[0]);
+        const bool is_below = place < dot(normal, box.lower);
+        if (!is_below && place <= dot(normal, box.upper)) continue;
+        const Plane face{is_below ? box.lower : box.upper, normal};
+        longest = std::max(longest, time_free_of_plane(path, face, 0.0));
+    }
+    return longest;
 }
 
 double time_of_leaving(const Path& path, const Box3& box) {

@@ -26,6 +26,10 @@ struct Outlook {
 /// duration. Errs on the side of less.
 [[nodiscard]] double time_free_of_plane(const Path& path, const Plane& plane, double margin);
 
+/// The time for which the path certainly stays beyond one of the box's faces, s, at most its duration; 0 when it begins
+/// inside. Errs on the side of less.
+[[nodiscard]] double time_outside(const Path& path, const Box3& box);
+
 /// A time after which the path certainly stays out of the box, s, at most its duration; 0 when it never comes near it.
 /// For straight paths; others: their duration.
 [[nodiscard]] double time_of_leaving(const Path& path, const Box3& box);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -185,7 +186,8 @@ TEST(Advect, LeaksNothingFromClosedMeshesSlidingAndStopping) {
     for (const bool box : {false, true}) {
         for (const WallRule walls : {WallRule::slide, WallRule::stop}) {
             const TriangleMesh mesh = box ? box_mesh({-1, -1, -1}, {1, 1, 1}) : sphere_mesh({}, 1.0, 3);
-            SimulationSetup setup = carried(flow, {mesh_collider(mesh)}, cloud(test::scaled(200), 0.5, 0.03, 4), walls);
+            SimulationSetup setup =
+                carried(flow, {mesh_collider(mesh)}, cloud(std::max(20, test::scaled(200)), 0.5, 0.03, 4), walls);
             setup.options.duration = 0.5;
             Simulation simulation(std::move(setup));
             run(simulation);

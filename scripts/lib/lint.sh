@@ -1,6 +1,7 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154  # shared names: set here, used there
-# The style gate: clang-format on every file, clang-tidy on every compiled one where that is asked for. Sourced after common.sh.
+# The style gate: clang-format on every file, clang-tidy on every compiled one where that is asked for. Sourced after
+# common.sh.
 #
 # Another release of these tools formats and complains differently, so one release is the reference: that of Debian 12.
 # Where it is not at hand the gate is left out and says so.

@@ -65,7 +65,7 @@ bool makes_spheres(const SimulationSetup& setup) {
 ResponseSettings response_settings(const SimulationOptions& options) {
     return {options.integrator, options.resting_speed, options.bounce_budget, options.seed,
             options.time_step,  options.rollback,      options.project,       options.penalty,
-            options.flow,       options.walls,         options.foresight};
+            options.flow,       options.walls,         options.foresight,     options.duration};
 }
 
 double lightest_particle(const SimulationSetup& setup) {

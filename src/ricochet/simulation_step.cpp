@@ -12,6 +12,12 @@
 #include "ricochet/simulation_impl.h"
 
 namespace ricochet {
+namespace {
+
+/// Hits from the fetch of a triangle's totals from memory to their change.
+constexpr std::size_t kHitsFetchedAhead = 8;
+
+}  // namespace
 
 void Simulation::step() {
     if (!finished()) impl_->step();
@@ -195,7 +201,13 @@ std::span<SideMemory> Simulation::Impl::sides_of(std::size_t i) {
 }
 
 void Simulation::Impl::add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts) {
-    for (const SurfaceHit& hit : hits) {
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        if (k + kHitsFetchedAhead < hits.size()) {
+            const SurfaceTotals& later = totals[hits[k + kHitsFetchedAhead].surface];
+            __builtin_prefetch(&later.hits, 1);
+            __builtin_prefetch(&later.z, 1);
+        }
+        const SurfaceHit& hit = hits[k];
         SurfaceTotals& total = totals[hit.surface];
         if (hit.impact) total.hits.fetch_add(1, std::memory_order_relaxed);
         const bool x = total.x.add(hit.impulse.x, kImpulseUnit);

@@ -213,7 +213,7 @@ double CollisionWorld::mean_box() const {
     return sum / static_cast<double>(triangles_.size());
 }
 
-std::uint32_t CollisionWorld::collider_of(SurfaceId surface) const {
+std::uint32_t CollisionWorld::collider_among_many(SurfaceId surface) const {
     const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), surface,
                                         [](SurfaceId s, const Range& range) { return s < range.first_surface; });
     return static_cast<std::uint32_t>(after - ranges_.begin() - 1);
@@ -225,6 +225,7 @@ SurfaceName CollisionWorld::name_of(SurfaceId surface) const {
 }
 
 SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
+    if (ranges_.size() == 1) return triangle;
     // Planes own no triangles, so the last range that starts at or before the triangle and is a mesh is the owner.
     auto after = std::upper_bound(ranges_.begin(), ranges_.end(), triangle,
                                   [](std::uint32_t t, const Range& range) { return t < range.first_triangle; });
@@ -251,14 +252,18 @@ CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p
         return {closest.distance < 0.0 ? -closest.normal : closest.normal, std::fabs(closest.distance), false};
     }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
-    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
+    return nearest(TrianglePlane(a, b, c), p);
+}
+
+CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, const Vec3& p) {
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, triangle.a(), triangle.b(), triangle.c());
     if (closest.feature == TriangleFeature::kFace) {
-        const double distance = signed_distance(p, a, b, c);
-        const Vec3 normal = unit_normal(a, b, c);
+        const double distance = triangle.signed_distance(p);
+        const Vec3& normal = triangle.unit_normal();
         return {distance < 0.0 ? -normal : normal, std::fabs(distance), true};
     }
     const double distance = length(closest.offset);
-    return {distance > 0.0 ? closest.offset / distance : unit_normal(a, b, c), distance, false};
+    return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false};
 }
 
 CollisionWorld::Place CollisionWorld::place_on(SurfaceId surface, const Vec3& p) const {

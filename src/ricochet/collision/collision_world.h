@@ -72,6 +72,12 @@ public:
         return degenerate_count_ != 0 && degenerate_[triangle] != 0;
     }
     [[nodiscard]] SurfaceId surface_of_triangle(std::uint32_t triangle) const;
+    /// Place in triangles(); nothing for planes and shapes.
+    [[nodiscard]] std::optional<std::uint32_t> triangle_of(SurfaceId surface) const {
+        const Range& range = ranges_[collider_of(surface)];
+        if (range.kind != Kind::mesh) return std::nullopt;
+        return range.first_triangle + (surface - range.first_surface);
+    }
 
     /// Material of a surface: that of its triangle, or of its collider.
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
@@ -94,6 +100,8 @@ public:
         bool flat = true;       ///< a plane or the inside of a triangle; false: a rim, a corner or a curved surface
     };
     [[nodiscard]] Nearest nearest(SurfaceId surface, const Vec3& p) const;
+    /// The same of a triangle.
+    [[nodiscard]] static Nearest nearest(const TrianglePlane& triangle, const Vec3& p);
 
     /// A place on a surface.
     struct Place {
@@ -155,7 +163,10 @@ private:
     void flag_degenerate_triangles();
     [[nodiscard]] double mean_box() const;
     [[nodiscard]] double largest_radius_of_class(double radius) const;
-    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const;
+    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const {
+        return ranges_.size() == 1 ? 0 : collider_among_many(surface);
+    }
+    [[nodiscard]] std::uint32_t collider_among_many(SurfaceId surface) const;
 
     std::vector<ColliderDescription> colliders_;
     std::vector<Range> ranges_;

@@ -32,13 +32,19 @@ void drop_seams(std::vector<ContactScratch::Found>& found) {
     found.erase(std::remove_if(faces_end, found.end(), is_seam), found.end());
 }
 
-}  // namespace
+/// The latest time that counts as the same.
+double latest_with(double first) { return first + kSimultaneousUlps * ulp(first); }
 
-Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p, const Vec3& v) {
-    const Vec3 normal = world.unit_normal_of(surface, p);
+Vec3 facing(const Vec3& normal, int side, const Vec3& v) {
     if (side != 0) return side > 0 ? normal : -normal;
     const double speed = length(v);
     return speed > 0.0 ? v / -speed : normal;
+}
+
+}  // namespace
+
+Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p, const Vec3& v) {
+    return facing(world.unit_normal_of(surface, p), side, v);
 }
 
 std::optional<Contact> ContactSearch::search(const Path& path, double radius, const Outlook* outlook) {
@@ -97,14 +103,16 @@ void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
     if (free_until_ < outlook.least) free_until_ = 0.0;
 }
 
-// One question to the boxes must do: over what is looked at, the path, the foreseen one and all their chords of a step
-// stay within what the boxes leave beside the segment that is asked about. A straight way that leaves all triangles
-// behind is free for good; a bent one is free, and nothing need be asked, while it is beyond one side of them all.
+// Over the first stretch that is looked at, which one question to the boxes must answer, the path, the foreseen one and
+// all their chords of a step stay within what the boxes leave beside the segment that is asked about. A straight way that
+// leaves all triangles behind is free for good; a bent one is free, and nothing need be asked, while it is beyond one side
+// of them all.
 std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
     if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
     const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
     const Vec3 by{margin, margin, margin};
     const Box3 box{world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
+    double duration = free_until_;
     if (outlook.path.degree > 1) {
         const double outside = time_outside(outlook.path, box);
         if (outside >= outlook.least) {
@@ -112,30 +120,53 @@ std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
             return 0.0;
         }
         const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
-        free_until_ = std::min(free_until_, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
-        if (!(free_until_ >= outlook.least)) return std::nullopt;
+        duration = std::min(duration, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
+        if (!(duration >= outlook.least)) return std::nullopt;
     }
-    const double duration = std::min(free_until_, time_of_leaving(outlook.path, box));
-    const bool boxes_hold = kPathRounding * largest_coordinate(shortened(outlook.path, duration)) <= bvh_->slack();
-    return boxes_hold ? std::optional(duration) : std::nullopt;
+    duration = std::min(duration, time_of_leaving(outlook.path, box));
+    if (boxes_hold(outlook.path, free_until_)) return duration;
+    if (outlook.path.degree > 1) free_until_ = duration;
+    return boxes_hold(outlook.path, duration) ? std::optional(duration) : std::nullopt;
+}
+
+bool ContactSearch::boxes_hold(const Path& path, double duration) const {
+    return kPathRounding * largest_coordinate(shortened(path, duration)) <= bvh_->slack();
 }
 
 // A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
-// before that end does not matter to what comes after.
+// before that end does not matter to what comes after. Bent ways are looked along stretch by stretch until something is
+// near.
 void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
     if (duration == 0.0) return;  // it does not come near the triangles
-    const Path way = shortened(outlook.path, duration);
-    const Box3& box = world_.triangle_bounds();
-    const double largest = std::max({largest_coordinate(way), max_abs(box.lower), max_abs(box.upper)});
-    const double margin = radius_ + outlook.margin + kForesightSlack * largest;
-    const Tube tube(way.c[0], way.end, margin, duration * duration * way.c[2]);
-    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
+    const double limit = outlook.path.degree > 1 ? free_until_ : duration;
+    visit_stretch(outlook, 0.0, duration, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
-            if (enter * duration <= path.duration) (void)look_at_triangle(path, triangle);
-            if (leave * duration >= path.duration) free_until_ = std::min(free_until_, enter * duration);
+            if (enter <= path.duration) (void)look_at_triangle(path, triangle);
+            if (leave >= path.duration) free_until_ = std::min(free_until_, enter);
         }
-        const double until = std::min(first_time_, std::max(free_until_, path.duration));
-        return until < duration ? until / duration : 1.0;
+        return std::min(first_time_, std::max(free_until_, path.duration));
+    });
+    for (double from = duration; from < limit && free_until_ == limit && scratch_.found.empty(); from += duration) {
+        visit_stretch(outlook, from, std::min(from + duration, limit), [&](std::uint32_t triangle, double enter, double) {
+            if (!world_.is_left_out(triangle)) free_until_ = std::min(free_until_, enter);
+            return free_until_;
+        });
+    }
+}
+
+/// Calls visit(triangle, enter, leave), with times along the outlook's path, for what is near it between two times;
+/// visit returns the time from which on nothing matters any more.
+template <class Visit>
+void ContactSearch::visit_stretch(const Outlook& outlook, double from, double to, Visit&& visit) {
+    const double span = to - from;
+    const Box3& box = world_.triangle_bounds();
+    const double largest =
+        std::max({largest_coordinate(shortened(outlook.path, to)), max_abs(box.lower), max_abs(box.upper)});
+    const double margin = radius_ + outlook.margin + kForesightSlack * largest;
+    const Tube tube(outlook.path.position(from), outlook.path.position(to), margin, span * span * outlook.path.c[2]);
+    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
+        const double until = visit(triangle, from + enter * span, from + leave * span);
+        return until < to ? std::max(0.0, (until - from) / span) : 1.0;
     });
 }
 
@@ -232,25 +263,47 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
 
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
     if (world_.is_left_out(triangle)) return first_time_;
-    const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (sphere_ ? sphere_->clears(a, b, c) : clears_plane_of(path, a, b, c, slack_)) return first_time_;
+    sphere_ ? look_with_sphere(triangle) : look_with_point(path, triangle);
+    return first_time_;
+}
+
+void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
+    const TrianglePlane& plane = plane_of(triangle);
+    if (clears_plane_of(path, plane, slack_)) return;
     scratch_.triangles.push_back(triangle);
-    if (radius_ == 0.0) {
-        const auto crossing = first_crossing(path, a, b, c);
-        if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
-        return first_time_;
-    }
+    const auto crossing = first_crossing(path, plane, latest_with(first_time_));
+    if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
+}
+
+void ContactSearch::look_with_sphere(std::uint32_t triangle) {
+    const auto [a, b, c] = world_.corners_of_triangle(triangle);
+    if (sphere_->clears(a, b, c)) return;
+    scratch_.triangles.push_back(triangle);
     const SurfaceId surface = world_.surface_of_triangle(triangle);
     note_overlap(surface, std::sqrt(closest_point_on_triangle(start_, a, b, c).distance_squared));
     const auto contact = sphere_->first_contact(a, b, c);
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
-    return first_time_;
+}
+
+Vec3 ContactSearch::unit_normal_of(SurfaceId surface, const Vec3& p) const {
+    const auto triangle = world_.triangle_of(surface);
+    return triangle ? plane_of(*triangle).unit_normal() : world_.unit_normal_of(surface, p);
+}
+
+double ContactSearch::signed_distance_from(SurfaceId surface, const Vec3& p) const {
+    const auto triangle = world_.triangle_of(surface);
+    return triangle ? plane_of(*triangle).signed_distance(p) : world_.signed_distance_from(surface, p);
+}
+
+CollisionWorld::Nearest ContactSearch::nearest(SurfaceId surface, const Vec3& p) const {
+    const auto triangle = world_.triangle_of(surface);
+    return triangle ? CollisionWorld::nearest(plane_of(*triangle), p) : world_.nearest(surface, p);
 }
 
 Contact ContactSearch::first_of_found(const Path& path) const {
     Contact contact;
     contact.time = first_time_;
-    const double latest = first_time_ + kSimultaneousUlps * ulp(first_time_);
+    const double latest = latest_with(first_time_);
     auto& found = scratch_.found;
     std::erase_if(found, [&](const auto& f) { return f.time > latest; });
     // A surface that a point meets rim-on answers only when nothing is met from a side.
@@ -266,7 +319,7 @@ Contact ContactSearch::first_of_found(const Path& path) const {
         if (k > 0 && found[k].surface == found[k - 1].surface) continue;
         const auto& f = found[k];
         const bool ready = radius_ > 0.0 || !f.flat;
-        const Vec3 normal = ready ? f.normal : facing_normal(world_, f.surface, f.side, place, velocity);
+        const Vec3 normal = ready ? f.normal : facing(unit_normal_of(f.surface, place), f.side, velocity);
         contact.surfaces[static_cast<std::size_t>(contact.count++)] = {f.surface, normal, f.flat};
     }
     return contact;
@@ -296,9 +349,10 @@ bool ContactSearch::shape_blocks(const CollisionWorld::ShapeSurface& shape, cons
 }
 
 bool ContactSearch::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
+    if (radius_ == 0.0) return plane_of(triangle).is_met_by(p, q);
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
     if (segment_meets_triangle(p, q, a, b, c)) return true;
-    if (radius_ == 0.0 || sphere_leg_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
+    if (sphere_leg_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
     return !is_overlapped(world_.surface_of_triangle(triangle));
 }
 

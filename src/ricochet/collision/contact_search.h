@@ -10,6 +10,7 @@
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/outlook.h"
+#include "ricochet/collision/triangle_planes.h"
 #include "ricochet/geometry/path.h"
 #include "ricochet/geometry/sphere_sweep.h"
 
@@ -55,6 +56,7 @@ struct ContactScratch {
     std::vector<std::uint32_t> shapes;     ///< the same, indices into CollisionWorld::shapes()
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Found> found;
+    TrianglePlanes planes_of_triangles;
     std::vector<Vec3> chain;  ///< ends of the certified legs of the last travel, its start first
 };
 
@@ -62,7 +64,9 @@ struct ContactScratch {
 /// questions are then about places on or next to that path, up to that contact.
 class ContactSearch {
 public:
-    ContactSearch(const CollisionWorld& world, ContactScratch& scratch) : world_(world), scratch_(scratch) {}
+    ContactSearch(const CollisionWorld& world, ContactScratch& scratch) : world_(world), scratch_(scratch) {
+        scratch_.planes_of_triangles.forget();
+    }
 
     /// First contact of a point (radius 0) or a sphere whose centre follows `path`, under the order (time, collider,
     /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius). With an outlook, whose
@@ -84,6 +88,11 @@ public:
     /// All gathered surfaces on which the point lies exactly.
     [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
 
+    // The world's answers of the same names; those about triangles that were met last come faster here.
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const Vec3& p) const;
+    [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p) const;
+
     /// True when the surfaces gathered include all that the path's chord from time `from` to `to` may meet. Longer
     /// chords of a curved path may pass through places that the search has not looked at.
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
@@ -104,13 +113,18 @@ private:
     void search_meshes(const Path& path, double largest);
     void look_past_planes_and_shapes(const Outlook& outlook);
     [[nodiscard]] std::optional<double> visible_duration(const Outlook& outlook);
+    [[nodiscard]] bool boxes_hold(const Path& path, double duration) const;
     void search_ahead(const Path& path, const Outlook& outlook, double duration);
+    template <class Visit>
+    void visit_stretch(const Outlook& outlook, double from, double to, Visit&& visit);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);
     [[nodiscard]] bool may_reach_triangles(const Path& path, double from, double to) const;
     [[nodiscard]] std::vector<SurfaceId> gathered() const;
     double look_at_triangle(const Path& path, std::uint32_t triangle);
+    void look_with_point(const Path& path, std::uint32_t triangle);
+    void look_with_sphere(std::uint32_t triangle);
     void note(const ContactScratch::Found& found);
     void note_overlap(SurfaceId surface, double distance);
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
@@ -118,6 +132,9 @@ private:
     [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const;
     [[nodiscard]] Contact first_of_found(const Path& path) const;
+    [[nodiscard]] const TrianglePlane& plane_of(std::uint32_t triangle) const {
+        return scratch_.planes_of_triangles.of(world_, triangle);
+    }
 
     const CollisionWorld& world_;
     ContactScratch& scratch_;

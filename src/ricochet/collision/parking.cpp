@@ -70,10 +70,9 @@ Vec3 escape_direction(const Normals& normals) {
 Vec3 correction_at(const ContactSearch& search, const Vec3& place, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
     if (search.radius() == 0.0) {
-        const CollisionWorld& world = search.world();
-        return -world.signed_distance_from(surface, place) * world.unit_normal_of(surface, place);
+        return -search.signed_distance_from(surface, place) * search.unit_normal_of(surface, place);
     }
-    const double distance = search.world().nearest(surface, place).distance;
+    const double distance = search.nearest(surface, place).distance;
     return (search.radius() - distance) * contact.first().normal;
 }
 
@@ -92,11 +91,11 @@ Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Conta
 ContactSurface facing_surface(const ContactSearch& search, SurfaceId surface, const Vec3& p) {
     const CollisionWorld& world = search.world();
     if (search.radius() > 0.0) {
-        const auto nearest = world.nearest(surface, p);
+        const auto nearest = search.nearest(surface, p);
         return {surface, nearest.normal, nearest.flat};
     }
     const int side = world.side_of_surface(surface, p);
-    return {surface, static_cast<double>(side) * world.unit_normal_of(surface, p), true};
+    return {surface, static_cast<double>(side) * search.unit_normal_of(surface, p), true};
 }
 
 }  // namespace
@@ -134,7 +133,7 @@ Parking park(const ContactSearch& search, const Path& path, const Contact& conta
 
 std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
     Normals normals;
-    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.world().unit_normal_of(surface, p));
+    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
     double gap = parking_gap(p);
     for (int attempt = 0; attempt < kParkingAttempts; ++attempt, gap *= kParkingWidening) {

@@ -4,8 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 #include "ricochet/core/vec3.h"
 
@@ -208,10 +209,10 @@ inline constexpr double kFoldedRope = 1e-9;
 /// the order; the largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;
 
-/// Distance from x to the next larger double magnitude.
+/// Distance from x, which is finite, to the next larger double magnitude.
 [[nodiscard]] inline double ulp(double x) {
     const double magnitude = std::fabs(x);
-    return std::nextafter(magnitude, std::numeric_limits<double>::infinity()) - magnitude;
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) + 1) - magnitude;
 }
 
 /// The parking gap at a contact point, m: depends on the point's own coordinates only, so that a wall of two or two

@@ -118,10 +118,10 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// A new device; settings in Embree's own words, null for the defaults. Geometries want mask -1 and rays mask -1:
-/// Embree 4 masks always.
-[[nodiscard]] inline Device make_device(const char* settings = nullptr) {
-    Device device(rtcNewDevice(settings));
+/// A new device on large pages where the system has them; other settings in Embree's own words. Geometries want mask -1
+/// and rays mask -1: Embree 4 masks always.
+[[nodiscard]] inline Device make_device(const std::string& settings = {}) {
+    Device device(rtcNewDevice(("hugepages=1," + settings).c_str()));
     if (device.get() == nullptr) throw RunError("Embree could not create a device");
     return device;
 }

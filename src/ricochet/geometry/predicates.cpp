@@ -2,85 +2,14 @@
 
 #include <array>
 
-#include "ricochet/geometry/expansion.h"
+#include "ricochet/geometry/bounded_cross.h"
+#include "ricochet/geometry/detail/exact_determinant.h"
+#include "ricochet/geometry/triangle_plane.h"
 
 namespace ricochet {
 namespace {
 
 constexpr double kU = 0x1p-53;
-
-/// The exact difference of two points, each component the sum of two doubles.
-struct ExactDifference {
-    DoubleDouble x;
-    DoubleDouble y;
-    DoubleDouble z;
-
-    ExactDifference(const Vec3& to, const Vec3& from)
-        : x(two_diff(to.x, from.x)), y(two_diff(to.y, from.y)), z(two_diff(to.z, from.z)) {}
-    [[nodiscard]] Vec3 rounded() const { return {x.hi, y.hi, z.hi}; }
-};
-
-/// A number in double-double with a bound on its absolute error.
-struct BoundedValue {
-    DoubleDouble value;
-    double error = 0.0;
-
-    [[nodiscard]] bool sign_is_known() const { return std::fabs(value.hi) > error; }
-    [[nodiscard]] bool is_accurate(double relative_error) const {
-        return error <= relative_error * std::fabs(value.hi);
-    }
-};
-
-/// u x v in double-double. `magnitude` holds the sums of the magnitudes of each component's two terms.
-struct BoundedCross {
-    DoubleDouble x;
-    DoubleDouble y;
-    DoubleDouble z;
-    Vec3 magnitude;
-
-    BoundedCross(const ExactDifference& u, const ExactDifference& v)
-        : x(u.y * v.z - u.z * v.y),
-          y(u.z * v.x - u.x * v.z),
-          z(u.x * v.y - u.y * v.x),
-          magnitude(detail::filtered_cross(u.rounded(), v.rounded()).magnitude) {}
-
-    /// (u x v) . w. The differences are exact, so each of the six terms errs by two products (7 u^2 each), one
-    /// subtraction and at most two additions (3 u^2 each): 23 u^2 of its magnitude, u = 2^-53. The next power of two
-    /// also covers the higher orders and the rounding of the magnitude itself (some 10 u of it).
-    [[nodiscard]] BoundedValue dot(const ExactDifference& w) const {
-        const double terms =
-            magnitude.x * std::fabs(w.x.hi) + magnitude.y * std::fabs(w.y.hi) + magnitude.z * std::fabs(w.z.hi);
-        return {x * w.x + y * w.y + z * w.z, 32.0 * kU * kU * terms};
-    }
-};
-
-using ExactMinor = Expansion<16>;
-using ExactDeterminant = Expansion<192>;
-
-/// a d - b c for differences.
-ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c, const DoubleDouble& d) {
-    return Expansion<2>(a) * d - Expansion<2>(b) * c;
-}
-
-/// Component 0, 1 or 2 of u x v.
-ExactMinor exact_cross_component(const ExactDifference& u, const ExactDifference& v, int axis) {
-    if (axis == 0) return exact_minor(u.y, u.z, v.y, v.z);
-    if (axis == 1) return exact_minor(u.z, u.x, v.z, v.x);
-    return exact_minor(u.x, u.y, v.x, v.y);
-}
-
-ExactDeterminant exact_determinant(const ExactDifference& u, const ExactDifference& v, const ExactDifference& w) {
-    return exact_cross_component(u, v, 0) * w.x + exact_cross_component(u, v, 1) * w.y +
-           exact_cross_component(u, v, 2) * w.z;
-}
-
-/// The six-fold volume with a relative error below the one asked for (not below 2^-100).
-DoubleDouble volume(const BoundedCross& normal, const ExactDifference& u, const ExactDifference& v,
-                    const ExactDifference& w, double relative_error) {
-    const BoundedValue bounded = normal.dot(w);
-    if (bounded.is_accurate(relative_error)) return bounded.value;
-    return rounded(exact_determinant(u, v, w));
-}
 
 /// Sign of component `axis` of (b - a) x (c - a): the orientation of the three points projected along that axis.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
@@ -92,7 +21,7 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
     const double bound = kMinorFilter * filtered.magnitude[axis];
     if (value > bound) return 1;
     if (value < -bound) return -1;
-    return exact_cross_component(ExactDifference(b, a), ExactDifference(c, a), axis).sign();
+    return detail::exact_cross_component(ExactDifference(b, a), ExactDifference(c, a), axis).sign();
 }
 
 /// An axis along which the projection of the three points has an area, or -1 when they are collinear.
@@ -155,33 +84,6 @@ bool coplanar_segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a
 
 bool have_opposite_signs(int a, int b, int c) { return a * b < 0 || b * c < 0 || c * a < 0; }
 
-/// True when squares, products of two and their rounding errors stay far inside the range of doubles.
-bool is_moderate(double x) { return std::fabs(x) > 0x1p-400 && std::fabs(x) < 0x1p400; }
-
-/// The double nearest to x / y, up to 2^-100 of it; x not zero. Large and small numbers are scaled by powers of two, so
-/// that the intermediate products stay inside the range.
-double quotient(const DoubleDouble& x, const DoubleDouble& y) {
-    if (is_moderate(x.hi) && is_moderate(y.hi)) return (x / y).hi;
-    const int x_exponent = std::ilogb(x.hi);
-    const int y_exponent = std::ilogb(y.hi);
-    return std::ldexp((scaled(x, -x_exponent) / scaled(y, -y_exponent)).hi, x_exponent - y_exponent);
-}
-
-/// n / length(n) for n not zero, within 0.51 units in the last place of the largest component.
-Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
-    const double largest = max_abs({x.hi, y.hi, z.hi});
-    if (!is_moderate(largest)) {
-        const int exponent = -std::ilogb(largest);
-        x = scaled(x, exponent);
-        y = scaled(y, exponent);
-        z = scaled(z, exponent);
-    }
-    // What components much smaller than the largest lose to underflow is below 2^-200 of the result.
-    const DoubleDouble per_length = DoubleDouble{1.0} / sqrt(x * x + y * y + z * z);
-    // Adding zero turns -0 into +0.
-    return {(x * per_length).hi + 0.0, (y * per_length).hi + 0.0, (z * per_length).hi + 0.0};
-}
-
 }  // namespace
 
 int detail::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -189,13 +91,15 @@ int detail::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, 
     const ExactDifference v(c, a);
     const ExactDifference w(d, a);
     const BoundedValue bounded = BoundedCross(u, v).dot(w);
-    return bounded.sign_is_known() ? sign(bounded.value) : exact_determinant(u, v, w).sign();
+    return bounded.sign_is_known() ? sign(bounded.value) : detail::exact_determinant(u, v, w).sign();
 }
 
 DoubleDouble orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
-    return volume(BoundedCross(u, v), u, v, ExactDifference(d, a), 0x1p-91);
+    const ExactDifference w(d, a);
+    const BoundedValue bounded = BoundedCross(u, v).dot(w);
+    return bounded.is_accurate(0x1p-91) ? bounded.value : rounded(detail::exact_determinant(u, v, w));
 }
 
 DoubleDouble orient3d_estimate(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -237,29 +141,9 @@ bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
 }
 
 double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-    // The two volumes differ in sign, so their difference does not cancel and the quotient errs by some 2^-58 before it
-    // is rounded once.
-    constexpr double kAccuracy = 0x1p-60;
-    const ExactDifference u(b, a);
-    const ExactDifference v(c, a);
-    const BoundedCross normal(u, v);
-    const DoubleDouble from_p = volume(normal, u, v, ExactDifference(p, a), kAccuracy);
-    if (from_p.hi == 0.0) return 0.0;
-    const DoubleDouble from_q = volume(normal, u, v, ExactDifference(q, a), kAccuracy);
-    return quotient(from_p, from_p - from_q);
+    return TrianglePlane(a, b, c).crossing_fraction(p, q);
 }
 
-Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const ExactDifference u(b, a);
-    const ExactDifference v(c, a);
-    const BoundedCross normal(u, v);
-    // Each component errs by a product and a subtraction, 10 u^2 of its terms' magnitude; 16 u^2 covers the rest.
-    const double error = 16.0 * kU * kU * max_abs(normal.magnitude);
-    if (error <= 0x1p-60 * max_abs({normal.x.hi, normal.y.hi, normal.z.hi})) {
-        return normalized_normal(normal.x, normal.y, normal.z);
-    }
-    return normalized_normal(rounded(exact_cross_component(u, v, 0)), rounded(exact_cross_component(u, v, 1)),
-                             rounded(exact_cross_component(u, v, 2)));
-}
+Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return TrianglePlane(a, b, c).unit_normal(); }
 
 }  // namespace ricochet

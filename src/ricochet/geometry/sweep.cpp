@@ -35,26 +35,37 @@ Hull hull_of(const Path& path) {
 
 /// A triangle as a surface: sides and meetings are exact, the normal is rounded.
 struct TriangleSurface {
-    const Vec3& a;
-    const Vec3& b;
-    const Vec3& c;
+    const TrianglePlane& plane;
 
-    [[nodiscard]] Vec3 normal() const { return unit_normal(a, b, c); }
-    [[nodiscard]] int side(const Vec3& p) const { return orient3d(a, b, c, p); }
-    [[nodiscard]] const Vec3& origin() const { return a; }
-    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const {
-        return segment_meets_triangle(p, q, a, b, c);
-    }
-    [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, a, b, c); }
-    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return crossing_fraction(p, q, a, b, c); }
+    [[nodiscard]] const Vec3& normal() const { return plane.unit_normal(); }
+    [[nodiscard]] int side(const Vec3& p) const { return plane.side(p); }
+    [[nodiscard]] const Vec3& origin() const { return plane.a(); }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const { return plane.is_met_by(p, q); }
+    [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, plane.a(), plane.b(), plane.c()); }
+    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return plane.crossing_fraction(p, q); }
+    /// No more than fraction(), in plain doubles, for points that are on different sides.
+    [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
     /// Fraction of a segment in the triangle's plane, which meets the triangle, at which it enters: the last of the
     /// crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
     /// Clipping", Computers & Graphics 3, 1978).
     [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };
 
+// The heights err by no more than what the filter leaves for it.
+double TriangleSurface::least_fraction(const Vec3& p, const Vec3& q) const {
+    const auto& [normal, magnitude] = plane.cross();
+    const Vec3 to_p = p - plane.a();
+    const Vec3 to_q = q - plane.a();
+    const double p_height = std::fabs(dot(normal, to_p));
+    const double p_error = detail::kDeterminantFilter * dot(magnitude, abs(to_p));
+    const double q_height = std::fabs(dot(normal, to_q));
+    const double q_error = detail::kDeterminantFilter * dot(magnitude, abs(to_q));
+    const double all = p_height + q_height + p_error + q_error;
+    return all > 0.0 ? (1.0 - 8.0 * kUnitRoundoff) * ((p_height - p_error) / all) : 0.0;
+}
+
 double TriangleSurface::entry(const Vec3& p, const Vec3& q) const {
-    const std::array<const Vec3*, 3> corners{&a, &b, &c};
+    const std::array<const Vec3*, 3> corners{&plane.a(), &plane.b(), &plane.c()};
     const Vec3 n = abs(normal());
     const int axis = n.x >= n.y && n.x >= n.z ? 0 : (n.y >= n.z ? 1 : 2);
     double latest = 0.0;
@@ -91,11 +102,12 @@ struct PlaneSurface {
         const DoubleDouble at_p = plane_value(plane, p);
         return (at_p / (at_p - plane_value(plane, q))).hi;
     }
+    [[nodiscard]] double least_fraction(const Vec3& /*p*/, const Vec3& /*q*/) const { return 0.0; }
     [[nodiscard]] double entry(const Vec3& /*p*/, const Vec3& /*q*/) const { return 0.0; }
 };
 
 template <class Surface>
-std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& surface) {
+std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& surface, double latest) {
     const int before = surface.side(path.c[0]);
     const int after = surface.side(path.end);
     if (before == after && before != 0) return std::nullopt;
@@ -103,6 +115,7 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
     // A particle born on the surface is turned back from the side it heads for.
     if (before == 0) return Crossing{0.0, -after};
+    if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
 }
 
@@ -231,8 +244,8 @@ std::optional<Crossing> first_crossing_of_cubic(const Path& path, const Surface&
 }
 
 template <class Surface>
-std::optional<Crossing> crossing_of(const Path& path, const Surface& surface) {
-    if (path.degree < 2) return first_crossing_of_line(path, surface);
+std::optional<Crossing> crossing_of(const Path& path, const Surface& surface, double latest) {
+    if (path.degree < 2) return first_crossing_of_line(path, surface, latest);
     return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
 }
 
@@ -268,17 +281,16 @@ bool clears_plane(const Path& path, const Plane& plane, double slack) {
 // With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
 // N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
 bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
-    const Vec3 e1 = b - a;
-    const Vec3 e2 = c - a;
-    const Vec3 normal = cross(e1, e2);
-    const Vec3 f1 = abs(e1);
-    const Vec3 f2 = abs(e2);
-    const Vec3 magnitude{f1.y * f2.z + f1.z * f2.y, f1.z * f2.x + f1.x * f2.z, f1.x * f2.y + f1.y * f2.x};
+    return clears_plane_of(path, TrianglePlane(a, b, c), slack);
+}
+
+bool clears_plane_of(const Path& path, const TrianglePlane& triangle, double slack) {
+    const auto& [normal, magnitude] = triangle.cross();
     const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
     const Hull hull = hull_of(path);
     int side = 0;
     for (int k = 0; k < hull.count; ++k) {
-        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - a;
+        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - triangle.a();
         const double value = dot(normal, d);
         if (!(std::fabs(value) > clearance + 16.0 * kUnitRoundoff * dot(magnitude, abs(d)))) return false;
         const int here = value > 0.0 ? 1 : -1;
@@ -289,11 +301,15 @@ bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3&
 }
 
 std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c) {
-    return crossing_of(path, TriangleSurface{a, b, c});
+    return first_crossing(path, TrianglePlane(a, b, c));
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const TrianglePlane& triangle, double latest) {
+    return crossing_of(path, TriangleSurface{triangle}, latest);
 }
 
 std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
-    return crossing_of(path, PlaneSurface{plane});
+    return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
 }
 
 double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
@@ -314,7 +330,7 @@ double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const 
 }
 
 double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    return orient3d_estimate(a, b, c, p).hi / length(cross(b - a, c - a));
+    return TrianglePlane(a, b, c).signed_distance(p);
 }
 
 double signed_distance(const Vec3& p, const Plane& plane) { return plane_value(plane, p).hi; }

@@ -8,9 +8,11 @@
 /// caught by the certificate on its chords (collision/certificate.h), so nothing depends on it.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "ricochet/geometry/path.h"
+#include "ricochet/geometry/triangle_plane.h"
 
 namespace ricochet {
 
@@ -32,6 +34,8 @@ struct Crossing {
 /// True when the path, everything within `slack` metres of it and its chords stay strictly on one side of the
 /// triangle's plane: the triangle needs no further look. Errs on the side of false.
 [[nodiscard]] bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack);
+/// The same for a triangle that is asked more.
+[[nodiscard]] bool clears_plane_of(const Path& path, const TrianglePlane& triangle, double slack);
 /// The same for a plane.
 [[nodiscard]] bool clears_plane(const Path& path, const Plane& plane, double slack);
 
@@ -39,6 +43,9 @@ struct Crossing {
 /// For straight paths the time is the exact rational rounded (within 2 ulp); for parabolas it solves the quadratic with
 /// the triangle's unit normal.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c);
+/// The same for a triangle that is asked more; nothing also when the crossing is certainly later than `latest`, s.
+[[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const TrianglePlane& triangle,
+                                                     double latest = std::numeric_limits<double>::infinity());
 /// First crossing of a plane.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Plane& plane);
 

@@ -224,7 +224,7 @@ void TriangleBvh::Impl::write_bounds(std::uint32_t number, RTCBounds& bounds) co
 
 void TriangleBvh::Impl::build() {
     set_frame();
-    device = embree::make_device(ray_library_settings().c_str());
+    device = embree::make_device(ray_library_settings());
     rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
     scene = embree::Scene(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);

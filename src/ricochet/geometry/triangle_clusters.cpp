@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "ricochet/core/morton.h"
@@ -14,15 +13,23 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 12;
 
-/// Of the height of a point of size 1 above a triangle's plane, times the length of its normal, in single precision:
-/// some sixty roundings of 2^-24 of edges that are no longer than 2.
-constexpr float kRounding = 0x1p-17F;
+/// Half the largest extent of a cluster in its units, at most.
+constexpr float kExtent = 0x1p15F;
 
-/// Of the direction of an edge, whose ends are rounded to 2^-25.
-constexpr float kEdgeRounding = 0x1p-20F;
+/// Units by which a corner may lie beside where its whole numbers say: half of one along each axis, and one at the
+/// largest number, which is no power of two.
+constexpr double kCornerRounding = 2.0;
 
-/// No edge is longer: the diagonal of the unit cube and a little more.
-constexpr float kLongestEdge = 1.75F;
+/// Of the height of a point above a triangle's plane, times the length of its normal, in single precision: some sixty
+/// roundings of 2^-24 of edges that are no longer than two extents.
+constexpr float kRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
+
+/// Of twice the area that two points and a place span as seen along a way, in squares of what all of them are within:
+/// some thirty roundings of 2^-24.
+constexpr float kViewRounding = 0x1p-18F;
+
+/// A shorter direction is none: its reciprocal would leave the range of doubles.
+constexpr double kShortestDirection = 1e-290;
 
 /// Of a fraction that is a quotient of such numbers.
 constexpr float kFractionRounding = 0x1p-20F;
@@ -45,10 +52,13 @@ struct QuadVec {
     Quad z;
 };
 
+// Each number into the upper half of a wider one and down again with its sign: what all 64-bit processors do in three
+// instructions.
 Quad loaded(const TriangleCluster::Lanes& lanes) {
-    Quad quad;
-    std::memcpy(&quad, lanes.data(), sizeof(quad));
-    return quad;
+    using Numbers = std::int16_t __attribute__((vector_size(16)));
+    const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
+    const Numbers doubled = __builtin_shufflevector(numbers, numbers, 0, 0, 1, 1, 2, 2, 3, 3);
+    return __builtin_convertvector(std::bit_cast<Mask>(doubled) >> 16, Quad);
 }
 
 QuadVec operator-(const QuadVec& a, const QuadVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -74,7 +84,10 @@ Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 struct LocalSegment {
     double begin;  ///< fractions of the whole way
     double end;
-    std::array<float, 3> from;
+    Vec3 place;  ///< of the beginning, from the centre
+    Vec3 chord;
+    double width;  ///< margin
+    std::array<float, 3> from;  ///< the same in single precision
     std::array<float, 3> along;
     float margin;
     float reach;  ///< at least the size of all numbers here and of differences to the corners
@@ -83,53 +96,139 @@ struct LocalSegment {
 /// What else rounding does to the margin here is far below the bounds' own.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
-/// Only what is within a size and the margin of the centre can be within the margin of a triangle. The part is empty
-/// (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square of its
-/// share.
+/// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part is
+/// empty (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square of
+/// its share.
 LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
-    LocalSegment local{0.0, 1.0, {}, {}, 0.0F, 0.0F};
+    LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
     if (tube.per_length < kMostPerLength) {
         const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
         const double margin = (tube.margin + tube.sagitta) * kMarginRounding;
-        const double half = (1.0 / cluster.per_size + margin) * tube.per_length;
+        const double half = (2.0 * kExtent / cluster.per_unit + margin) * tube.per_length;
         local.begin = std::max(0.0, middle - half);
         local.end = std::min(1.0, middle + half);
     }
     const double share = local.end - local.begin;
     const Vec3 begin = tube.offset(local.begin);
-    const Vec3 from = cluster.per_size * (begin - offset);
-    const Vec3 along = cluster.per_size * (tube.offset(local.end) - begin);
-    const double margin = (tube.margin + share * share * tube.sagitta) * kMarginRounding;
-    local.margin = static_cast<float>(margin * cluster.per_size);
+    const Vec3 from = local.place = cluster.per_unit * (begin - offset);
+    const Vec3 along = local.chord = cluster.per_unit * (tube.offset(local.end) - begin);
+    const double margin = tube.margin + share * share * tube.sagitta;
+    local.width = kCornerRounding + cluster.per_unit * margin * kMarginRounding;
+    local.margin = static_cast<float>(local.width);
     local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
     local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
-    local.reach = static_cast<float>(1.0 + max_abs(from) + max_abs(along));
+    local.reach = 2.0F * kExtent + static_cast<float>(max_abs(from) + max_abs(along));
     return local;
 }
 
-/// How far beyond an edge the ends of a stretch are, at least; times the lengths of edge and normal.
-Quad beyond(const QuadVec& outward, const QuadVec& from_corner, const LocalSegment& segment, const Quad& enter,
-            const Quad& leave, Quad& at_enter, Quad& at_leave) {
-    const Quad start = dot(outward, from_corner);
-    const Quad slope = dot(outward, segment.along);
-    at_enter = start + enter * slope;
-    at_leave = start + leave * slope;
-    return min(at_enter, at_leave);
+/// A vector as seen along a shear whose axis is kAhead.
+template <int kAhead>
+struct Seen {
+    static constexpr int kRight = (kAhead + 1) % 3;
+    static constexpr int kUp = (kAhead + 2) % 3;
+};
+
+/// A way as it looks along itself from a cluster's centre, in the cluster's units: a place.
+struct View {
+    float right;  ///< of the shear
+    float up;
+    float x;  ///< to the right
+    float y;  ///< up
+    float margin;
+    float reach;  ///< at least the size of all numbers here and of differences to the corners
+};
+
+/// Along the shear, through a place relative to the cluster's centre and up to `extent` beyond.
+template <int kAhead>
+View view_through(const Vec3& place, const Shear& shear, double margin, float extent) {
+    using Axes = Seen<kAhead>;
+    View view{static_cast<float>(shear.right),
+              static_cast<float>(shear.up),
+              static_cast<float>(place[Axes::kRight] - shear.right * place[kAhead]),
+              static_cast<float>(place[Axes::kUp] - shear.up * place[kAhead]),
+              static_cast<float>(margin * (shear.stretch * kMarginRounding)),
+              0.0F};
+    view.reach = 4.0F * kExtent + view.margin + std::fabs(view.x) + std::fabs(view.y) + extent;
+    return view;
 }
 
-// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. It does not when
-// over all of that stretch the chord stays beyond one edge: heights over the edge are linear, so both ends of the
-// stretch tell, and the three of them always add up to -|normal|^2. Everything is compared without dividing by the
-// normal's length, so slivers only make the bound larger.
-unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, TubeStretches& stretches) {
+bool is_empty(const Mask& mask) {
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask);
+    return (halves[0] | halves[1]) == 0;
+}
+
+struct QuadPlace {
+    Quad x;
+    Quad y;
+};
+
+/// Twice the area that a place, the origin, and an edge span, and by how much it must differ from 0 for the place to be
+/// certainly more than the margin on one side of the edge.
+struct Beside {
+    Quad area;
+    Quad bound;
+};
+
+Beside beside(const QuadPlace& from, const QuadPlace& to, const View& view, float rounding) {
+    const Quad length = abs(to.x - from.x) + abs(to.y - from.y);
+    return {from.x * to.y - from.y * to.x, view.margin * length + rounding};
+}
+
+template <int kAxis>
+const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& cluster) {
+    return kAxis == 0 ? cluster.x : (kAxis == 1 ? cluster.y : cluster.z);
+}
+
+// A triangle as seen along the way is away from the way's place when the place is certainly beyond one of its edges, or
+// of its box. Which way round the triangle's corners are seen does not matter: the areas add up to that of the triangle,
+// so beyond an edge one has the sign that the other two do not have. A triangle that is seen as a line has its box.
+template <int kAhead>
+Mask in_view(const TriangleCluster& cluster, const View& view) {
+    using Axes = Seen<kAhead>;
+    std::array<QuadPlace, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Quad depth = loaded(coordinates<kAhead>(cluster)[k]);
+        corner[k].x = loaded(coordinates<Axes::kRight>(cluster)[k]) - view.right * depth - view.x;
+        corner[k].y = loaded(coordinates<Axes::kUp>(cluster)[k]) - view.up * depth - view.y;
+    }
+    const auto& [a, b, c] = corner;
+    const float rounding = kViewRounding * view.reach * view.reach;
+    const Beside ab = beside(a, b, view, rounding);
+    const Beside bc = beside(b, c, view, rounding);
+    const Beside ca = beside(c, a, view, rounding);
+    const Quad none{};
+    const Mask beyond = (min(min(ab.area + ab.bound, bc.area + bc.bound), ca.area + ca.bound) < none) &
+                        (max(max(ab.area - ab.bound, bc.area - bc.bound), ca.area - ca.bound) > none);
+    const float near = view.margin + kViewRounding * view.reach;
+    const Mask beside_box = (min(min(a.x, b.x), c.x) > near) | (max(max(a.x, b.x), c.x) < -near) |
+                            (min(min(a.y, b.y), c.y) > near) | (max(max(a.y, b.y), c.y) < -near);
+    return ~(beyond | beside_box);
+}
+
+/// The lanes that may be near a way that goes along the shear. Straight ways need not be cut first: their whole line is
+/// one place.
+Mask lanes_in_view(const TriangleCluster& cluster, const Vec3& place, const Shear& shear, double margin, float extent) {
+    switch (shear.ahead) {
+        case 0:
+            return in_view<0>(cluster, view_through<0>(place, shear, margin, extent));
+        case 1:
+            return in_view<1>(cluster, view_through<1>(place, shear, margin, extent));
+        default:
+            return in_view<2>(cluster, view_through<2>(place, shear, margin, extent));
+    }
+}
+
+// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. Everything is
+// compared without dividing by the normal's length, so slivers only make the bound larger.
+unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& seen,
+                    TubeStretches& stretches) {
     const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
     const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
     const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
     const QuadVec normal = cross(ab, ac);
-    const Quad size = size_of(normal);
     const float rounding = kRounding * segment.reach;
-    const Quad bound = segment.margin * size + rounding;
+    const Quad bound = segment.margin * size_of(normal) + rounding;
     const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
     const Quad height = dot(normal, start);
     const Quad slope = dot(normal, segment.along);
@@ -143,13 +242,7 @@ unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment,
     const Mask is_level = abs(slope) <= rounding;
     const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
     const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);
-    Mask near = is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave;
-    const Quad far = kLongestEdge * bound + (kEdgeRounding * segment.reach) * size;
-    std::array<Quad, 4> heights;
-    near &= beyond(cross(ab, normal), start, segment, enter, leave, heights[0], heights[1]) <= far;
-    near &= beyond(cross(normal, ac), start, segment, enter, leave, heights[2], heights[3]) <= far;
-    const Quad all = -dot(normal, normal);
-    near &= min(all - heights[0] - heights[2], all - heights[1] - heights[3]) <= far;
+    const Mask near = seen & (is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave);
     const double span = segment.end - segment.begin;
     unsigned bits = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
@@ -186,6 +279,8 @@ std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std:
     return order;
 }
 
+std::int16_t nearest_number(double x) { return static_cast<std::int16_t>(std::min(std::lrint(x), 32767L)); }
+
 TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                            std::span<const std::uint32_t> members) {
     Box3 box;
@@ -193,16 +288,16 @@ TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Trian
     TriangleCluster cluster;
     cluster.center = box.center();
     const double extent = max_abs(box.size());
-    if (extent > 0.0) cluster.per_size = std::ldexp(1.0, -std::ilogb(extent) - 1);
+    if (extent > 0.0) cluster.per_unit = 2.0 * kExtent * std::ldexp(1.0, -std::ilogb(extent) - 1);
     for (std::size_t lane = 0; lane < 4; ++lane) {
         const bool is_there = lane < members.size();
         const std::uint32_t triangle = members[is_there ? lane : 0];
         cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner = cluster.per_size * (vertices[triangles[triangle][k]] - cluster.center);
-            cluster.x[k][lane] = static_cast<float>(corner.x);
-            cluster.y[k][lane] = static_cast<float>(corner.y);
-            cluster.z[k][lane] = static_cast<float>(corner.z);
+            const Vec3 corner = cluster.per_unit * (vertices[triangles[triangle][k]] - cluster.center);
+            cluster.x[k][lane] = nearest_number(corner.x);
+            cluster.y[k][lane] = nearest_number(corner.y);
+            cluster.z[k][lane] = nearest_number(corner.z);
         }
     }
     return cluster;
@@ -264,18 +359,41 @@ std::vector<Stretch> divide(std::span<const Vec3> vertices, std::span<const Tria
 
 }  // namespace
 
+Shear::Shear(const Vec3& direction) {
+    const Vec3 size = abs(direction);
+    ahead = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    if (!(size[ahead] > kShortestDirection)) return;
+    right = direction[(ahead + 1) % 3] / direction[ahead];
+    up = direction[(ahead + 2) % 3] / direction[ahead];
+    stretch = std::sqrt(1.0 + right * right + up * up);
+}
+
 unsigned TriangleCluster::near(const Tube& tube, TubeStretches& stretches) const {
+    if (tube.is_straight) {
+        const Vec3 place = per_unit * (tube.from - center);
+        const Mask seen = lanes_in_view(*this, place, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
+        if (is_empty(seen)) return 0;
+        const LocalSegment segment = localized(*this, tube);
+        return segment.begin > segment.end ? 0 : near_lanes(*this, segment, seen, stretches);
+    }
     const LocalSegment segment = localized(*this, tube);
-    return segment.begin > segment.end ? 0 : near_lanes(*this, segment, stretches);
+    if (segment.begin > segment.end) return 0;
+    const Shear shear(segment.chord);
+    const Mask seen = lanes_in_view(*this, segment.place, shear, segment.width, segment.reach);
+    return is_empty(seen) ? 0 : near_lanes(*this, segment, seen, stretches);
 }
 
 Box3 TriangleCluster::box() const {
-    const double size = 1.0 / per_size;
+    const double unit = 1.0 / per_unit;
     Box3 result;
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        for (std::size_t k = 0; k < 3; ++k) result.include(center + size * Vec3{x[k][lane], y[k][lane], z[k][lane]});
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 corner{static_cast<double>(x[k][lane]), static_cast<double>(y[k][lane]),
+                              static_cast<double>(z[k][lane])};
+            result.include(center + unit * corner);
+        }
     }
-    const double rounding = 0x1p-23 * size;
+    const double rounding = kCornerRounding * unit;
     const Vec3 by{rounding, rounding, rounding};
     return {result.lower - by, result.upper + by};
 }

@@ -61,7 +61,9 @@ std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
     if (!is_foreseen) return std::nullopt;
     const double acceleration = length(flight.acceleration);
     const int steps = acceleration == 0.0 ? kMostForeseenSteps : kMostForeseenBentSteps;
-    const double duration = remaining_ + steps * time_step;
+    const double left = rules_.settings.end - (state_.time + remaining_);  // of the run, after this step
+    if (left < 0.5 * time_step) return std::nullopt;
+    const double duration = remaining_ + std::min(steps * time_step, left + time_step);
     Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
                     remaining_ + time_step};
     const double speed = length(flight.end_velocity) + acceleration * duration;

@@ -73,6 +73,7 @@ struct ResponseSettings {
     FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
     WallRule walls = WallRule::slide;  ///< only with a flow
     bool foresight = true;             ///< find out MoveOutcome::free_for
+    double end = std::numeric_limits<double>::infinity();  ///< s, when the run ends: what comes later is of no interest
 };
 
 /// An impulse that a particle gave to a surface.

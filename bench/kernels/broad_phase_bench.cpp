@@ -1,6 +1,7 @@
 /// \file
 /// Time of asking the broad phase which triangles a segment may touch, in a rocky cavity of 20 thousand and of 1.3
 /// million triangles: segments shorter than an edge, and segments across the cavity that end at their first triangle.
+/// And of one look at a cluster of triangles.
 
 #include <benchmark/benchmark.h>
 
@@ -11,6 +12,7 @@
 #include "generators/rock.h"
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/triangle_clusters.h"
 
 namespace ricochet {
 namespace {
@@ -67,6 +69,31 @@ void visit_across_until_the_first(benchmark::State& state) { visit(state, 4.0, 0
 BENCHMARK(visit_short)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across_until_the_first)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+
+/// Looks at clusters that a way of the given bend passes within one of their sizes.
+void look_at_clusters(benchmark::State& state, double bend) {
+    const TriangleMesh& mesh = ground(20'000).mesh;
+    const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
+    RandomSequence random(2, 0, 0);
+    std::vector<Tube> tubes;
+    for (const TriangleCluster& cluster : clusters) {
+        const Vec3 aim = cluster.center + 0.5 * cluster.box().diagonal() * random.in_unit_ball();
+        const Vec3 direction = random.unit_vector();
+        tubes.emplace_back(aim - direction, aim + direction, 1e-9, bend * random.unit_vector());
+    }
+    std::size_t i = 0;
+    std::size_t near = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        TubeStretches stretches;
+        near += clusters[i].near(tubes[i], stretches) != 0 ? 1 : 0;
+        i = i + 1 == clusters.size() ? 0 : i + 1;
+    }
+    state.counters["near"] = benchmark::Counter(static_cast<double>(near), benchmark::Counter::kAvgIterations);
+}
+void look_along_lines(benchmark::State& state) { look_at_clusters(state, 0.0); }
+void look_along_parabolas(benchmark::State& state) { look_at_clusters(state, 1e-3); }
+BENCHMARK(look_along_lines);
+BENCHMARK(look_along_parabolas);
 
 void build(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;

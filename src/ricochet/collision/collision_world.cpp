@@ -346,4 +346,13 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
     return mesh;
 }
 
+std::size_t CollisionWorld::memory_bytes() const {
+    const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    std::size_t bytes = held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) + held(degenerate_) +
+                        held(shapes_) + held(triangle_materials_);
+    if (clusters_) bytes += held(*clusters_);
+    for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
+    return bytes;
+}
+
 }  // namespace ricochet

@@ -140,6 +140,8 @@ public:
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
     /// Box of all triangles.
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
+    /// What all of this takes without the colliders' own meshes, bytes: also what the ray library maps by itself.
+    [[nodiscard]] std::size_t memory_bytes() const;
     /// Triangles that take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
 

@@ -104,9 +104,9 @@ void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
 }
 
 // Over the first stretch that is looked at, which one question to the boxes must answer, the path, the foreseen one and
-// all their chords of a step stay within what the boxes leave beside the segment that is asked about. A straight way that
-// leaves all triangles behind is free for good; a bent one is free, and nothing need be asked, while it is beyond one side
-// of them all.
+// all their chords of a step stay within what the boxes leave beside the segment that is asked about. A straight way
+// that leaves all triangles behind is free for good; a bent one is free, and nothing need be asked, while it is beyond
+// one side of them all.
 std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
     if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
     const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
@@ -147,10 +147,11 @@ void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, doubl
         return std::min(first_time_, std::max(free_until_, path.duration));
     });
     for (double from = duration; from < limit && free_until_ == limit && scratch_.found.empty(); from += duration) {
-        visit_stretch(outlook, from, std::min(from + duration, limit), [&](std::uint32_t triangle, double enter, double) {
-            if (!world_.is_left_out(triangle)) free_until_ = std::min(free_until_, enter);
-            return free_until_;
-        });
+        visit_stretch(outlook, from, std::min(from + duration, limit),
+                      [&](std::uint32_t triangle, double enter, double) {
+                          if (!world_.is_left_out(triangle)) free_until_ = std::min(free_until_, enter);
+                          return free_until_;
+                      });
     }
 }
 

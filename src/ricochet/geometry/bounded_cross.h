@@ -1,6 +1,6 @@
 /// \file
-/// Cross products and volumes of exact differences in double-double, with bounds on their errors: what stands between the
-/// filters in plain doubles and the exact expansions.
+/// Cross products and volumes of exact differences in double-double, with bounds on their errors: what stands between
+/// the filters in plain doubles and the exact expansions.
 #pragma once
 
 #include <cmath>

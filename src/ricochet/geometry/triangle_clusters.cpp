@@ -86,7 +86,7 @@ struct LocalSegment {
     double end;
     Vec3 place;  ///< of the beginning, from the centre
     Vec3 chord;
-    double width;  ///< margin
+    double width;               ///< margin
     std::array<float, 3> from;  ///< the same in single precision
     std::array<float, 3> along;
     float margin;
@@ -96,9 +96,9 @@ struct LocalSegment {
 /// What else rounding does to the margin here is far below the bounds' own.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
-/// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part is
-/// empty (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square of
-/// its share.
+/// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part
+/// is empty (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square
+/// of its share.
 LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
@@ -181,8 +181,9 @@ const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& 
 }
 
 // A triangle as seen along the way is away from the way's place when the place is certainly beyond one of its edges, or
-// of its box. Which way round the triangle's corners are seen does not matter: the areas add up to that of the triangle,
-// so beyond an edge one has the sign that the other two do not have. A triangle that is seen as a line has its box.
+// of its box. Which way round the triangle's corners are seen does not matter: the areas add up to that of the
+// triangle, so beyond an edge one has the sign that the other two do not have. A triangle that is seen as a line has
+// its box.
 template <int kAhead>
 Mask in_view(const TriangleCluster& cluster, const View& view) {
     using Axes = Seen<kAhead>;

@@ -34,8 +34,7 @@ public:
     [[nodiscard]] bool is_met_by(const Vec3& p, const Vec3& q) const {
         const int p_side = likely_side(p);
         const int q_side = likely_side(q);
-        return p_side * q_side <= 0 &&
-               detail::segment_meets_triangle_beyond_filter(p, q, a_, b_, c_, p_side, q_side);
+        return p_side * q_side <= 0 && detail::segment_meets_triangle_beyond_filter(p, q, a_, b_, c_, p_side, q_side);
     }
     /// See crossing_fraction().
     [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q) const;

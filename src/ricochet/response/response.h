@@ -71,8 +71,8 @@ struct ResponseSettings {
     ProjectSettings project = {};
     PenaltySettings penalty = {};
     FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
-    WallRule walls = WallRule::slide;  ///< only with a flow
-    bool foresight = true;             ///< find out MoveOutcome::free_for
+    WallRule walls = WallRule::slide;                      ///< only with a flow
+    bool foresight = true;                                 ///< find out MoveOutcome::free_for
     double end = std::numeric_limits<double>::infinity();  ///< s, when the run ends: what comes later is of no interest
 };
 

@@ -12,7 +12,8 @@ using ExactMinor = Expansion<16>;
 using ExactDeterminant = Expansion<192>;
 
 /// a d - b c for differences.
-inline ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c, const DoubleDouble& d) {
+inline ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                              const DoubleDouble& d) {
     return Expansion<2>(a) * d - Expansion<2>(b) * c;
 }
 
@@ -23,7 +24,8 @@ inline ExactMinor exact_cross_component(const ExactDifference& u, const ExactDif
     return exact_minor(u.x, u.y, v.x, v.y);
 }
 
-inline ExactDeterminant exact_determinant(const ExactDifference& u, const ExactDifference& v, const ExactDifference& w) {
+inline ExactDeterminant exact_determinant(const ExactDifference& u, const ExactDifference& v,
+                                          const ExactDifference& w) {
     return exact_cross_component(u, v, 0) * w.x + exact_cross_component(u, v, 1) * w.y +
            exact_cross_component(u, v, 2) * w.z;
 }

@@ -1,0 +1,78 @@
+#include "ricochet/geometry/triangle_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/sweep.h"
+#include "support/counts.h"
+#include "support/exact_oracle.h"
+#include "support/segment_triangle_cases.h"
+
+namespace ricochet {
+namespace {
+
+using testing::SegmentTriangle;
+
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+
+template <class Claim>
+void for_cases(std::uint64_t stream, int count, Claim&& claim) {
+    for (int i = 0; i < test::scaled(count); ++i) {
+        const SegmentTriangle s = testing::segment_triangle_case(stream, static_cast<std::uint64_t>(i));
+        if (are_collinear(s.a, s.b, s.c)) continue;
+        SCOPED_TRACE(testing::description(s));
+        claim(s);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(TrianglePlane, DecidesAsTheExactOracleDoes) {
+    for_cases(51, 10000, [](const SegmentTriangle& s) {
+        const TrianglePlane plane(s.a, s.b, s.c);
+        const int side = testing::sign_of(testing::exact_orient3d(s.a, s.b, s.c, s.p));
+        ASSERT_EQ(plane.side(s.p), side);
+        ASSERT_TRUE(plane.likely_side(s.p) == side || plane.likely_side(s.p) == 0);
+        ASSERT_EQ(plane.is_met_by(s.p, s.q), testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c));
+    });
+}
+
+TEST(TrianglePlane, AnswersWithTheSameBitsInAnyOrderAndEveryTime) {
+    for_cases(52, 10000, [](const SegmentTriangle& s) {
+        const TrianglePlane asked(s.a, s.b, s.c);
+        const Vec3 normal = asked.unit_normal();
+        const double distance = asked.signed_distance(s.p);
+        ASSERT_EQ(normal, unit_normal(s.a, s.b, s.c));
+        ASSERT_EQ(bits(distance), bits(signed_distance(s.p, s.a, s.b, s.c)));
+        ASSERT_EQ(asked.unit_normal(), normal);
+        ASSERT_EQ(bits(asked.signed_distance(s.p)), bits(distance));
+        if (asked.side(s.p) == asked.side(s.q)) return;
+        const double fraction = asked.crossing_fraction(s.p, s.q);
+        ASSERT_EQ(bits(fraction), bits(crossing_fraction(s.p, s.q, s.a, s.b, s.c)));
+        ASSERT_EQ(bits(TrianglePlane(s.a, s.b, s.c).crossing_fraction(s.p, s.q)), bits(fraction));
+    });
+}
+
+TEST(TrianglePlane, CrossingsAreLeftOutOnlyWhenTheyAreLater) {
+    int early = 0;
+    int late = 0;
+    for_cases(53, 10000, [&](const SegmentTriangle& s) {
+        const TrianglePlane plane(s.a, s.b, s.c);
+        Path path = line_path(s.p, s.q - s.p, 1.0);
+        path.end = s.q;
+        const auto crossing = first_crossing(path, plane);
+        if (!crossing) return;
+        const auto same = first_crossing(path, plane, crossing->time);
+        ASSERT_TRUE(same.has_value());
+        ASSERT_EQ(bits(same->time), bits(crossing->time));
+        ++early;
+        late += first_crossing(path, plane, 0.99 * crossing->time) ? 0 : 1;
+    });
+    EXPECT_GT(early, test::scaled(1000));
+    EXPECT_GT(late, early / 4) << "the cases next to a plane are too close to tell in plain doubles";
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -42,11 +42,15 @@ Simulation CaseRun::make_simulation() const {
 
 bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& states) {
     Simulation simulation = make_simulation();
-    for (std::uint64_t step = 0; step < case_.warm_up; ++step) {
-        if (!announce("warm-up", step + 1)) return false;
+    const auto keep = [&](std::span<const std::byte> bytes) {
+        start_.insert(start_.end(), bytes.begin(), bytes.end());
+    };
+    if (case_.warm_up == 0) simulation.save(keep);
+    for (std::uint64_t step = 1; step <= case_.warm_up; ++step) {
+        if (!announce("warm-up", step)) return false;
+        if (step == case_.warm_up) simulation.save(keep);
         simulation.step();
     }
-    simulation.save([&](std::span<const std::byte> bytes) { start_.insert(start_.end(), bytes.begin(), bytes.end()); });
     const SimulationStatistics before = simulation.statistics();
     for (std::uint64_t step = 0; step < case_.steps; ++step) {
         if (!announce("first run", step + 1)) return false;
@@ -81,6 +85,7 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         place += bytes.size();
     });
     if (!announce("simulation", 1)) return false;
+    if (case_.warm_up > 0) simulation.step();  // a simulation just restored searches for every particle
     bool goes_on = true;
     const double seconds = time_of([&] {
         simulation.advance(case_.steps, [&] {

@@ -71,7 +71,7 @@ private:
     Case case_;
     std::shared_ptr<const TriangleMesh> mesh_;
     std::vector<Particle> particles_;
-    std::vector<std::byte> start_;  ///< saved state after the warm-up
+    std::vector<std::byte> start_;  ///< saved state before the last step of the warm-up
     MemoryUse memory_;
     Course course_;
     std::optional<Reference> reference_;

@@ -68,8 +68,8 @@ using Hook = std::function<bool(const Progress&)>;
 
 /// Measures a group of cases on one mesh (see groups_of()), one row a case and number of threads, case by case. Every
 /// repeat goes through the numbers of threads and the cases in turns; each time the simulation starts from the state
-/// before the warm-up's last step and the references run after it, so that noise hits all alike. Nothing when the hook has ended it.
-/// Throws RunError when a repeat ends in another state than the others.
+/// before the warm-up's last step and the references run after it, so that noise hits all alike. Nothing when the hook
+/// has ended it. Throws RunError when a repeat ends in another state than the others.
 [[nodiscard]] std::optional<std::vector<Row>> measure_group(std::span<const Case> group, const MeasurementPlan& plan,
                                                             const Hook& hook = {});
 

@@ -63,14 +63,15 @@ double TrianglePlane::crossing_fraction(const Vec3& p, const Vec3& q) const {
 
 const Vec3& TrianglePlane::unit_normal() const {
     if (unit_normal_) return *unit_normal_;
-    const auto& [u, v, normal] = fine();
+    const Fine& known = fine();
+    const BoundedCross& normal = known.normal;
     // Each component errs by a product and a subtraction, 10 u^2 of its terms' magnitude; 16 u^2 covers the rest.
     constexpr double kError = 16.0 * 0x1p-53 * 0x1p-53;
     const double error = kError * max_abs(normal.magnitude);
     if (error <= 0x1p-60 * max_abs({normal.x.hi, normal.y.hi, normal.z.hi})) {
         unit_normal_ = normalized_normal(normal.x, normal.y, normal.z);
     } else {
-        const auto component = [&](int axis) { return rounded(detail::exact_cross_component(u, v, axis)); };
+        const auto component = [&](int axis) { return rounded(detail::exact_cross_component(known.u, known.v, axis)); };
         unit_normal_ = normalized_normal(component(0), component(1), component(2));
     }
     return *unit_normal_;

@@ -1,5 +1,5 @@
 // Memory for large arrays on large pages, for the whole program: particles and meshes are visited in no order, and with
-// small pages most visits also miss the processor's table of pages (measured: 10 to 20 % of a run with a million
+// small pages most visits also miss the processor's table of pages (measured: about a tenth of a run with a million
 // particles and triangles). Where the system has none to give, nothing changes. Replaces the global operator new, which
 // a program may and a library must not do; sanitizers bring their own.
 #include <sys/mman.h>

@@ -122,7 +122,7 @@ LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     return local;
 }
 
-/// A vector as seen along a shear whose axis is kAhead.
+/// The other axes, as seen along a shear whose axis is kAhead.
 template <int kAhead>
 struct Seen {
     static constexpr int kRight = (kAhead + 1) % 3;

@@ -20,7 +20,8 @@ void return_freed_memory();
 
 /// What a case's simulation holds after a step.
 struct MemoryUse {
-    /// With what the step itself keeps for the next one; for spheres with the search structures of their radii.
+    /// With what the step itself keeps for the next one; of the search structures for spheres only what the ray
+    /// library does not map past the allocator.
     double bytes_per_particle = 0.0;
     double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
 };

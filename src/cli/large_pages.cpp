@@ -26,6 +26,7 @@ constexpr std::size_t kLeastSize = 4 * kLargePage;
 
 void* allocate(std::size_t size, std::size_t alignment) {
     const std::size_t whole = (size + alignment - 1) / alignment * alignment;
+    if (whole < size) throw std::bad_alloc();  // more than there are addresses
     void* const memory = alignment <= alignof(std::max_align_t) ? std::malloc(size == 0 ? 1 : size)
                                                                 : std::aligned_alloc(alignment, whole);
     if (memory == nullptr) throw std::bad_alloc();

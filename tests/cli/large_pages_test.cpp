@@ -53,7 +53,12 @@ TEST(LargePages, EveryAlignmentAndSizeIsServed) {
             ::operator delete (aligned, std::align_val_t{alignment});
         }
     }
-    EXPECT_THROW((void)::operator new (std::size_t{1} << 62), std::bad_alloc);
+    // Read at run time, so that the compiler does not know better.
+    volatile std::size_t too_much = std::size_t{1} << 62;
+    EXPECT_THROW((void)::operator new(too_much), std::bad_alloc);
+    too_much = SIZE_MAX;
+    EXPECT_THROW((void)::operator new(too_much), std::bad_alloc);
+    EXPECT_THROW((void)::operator new (too_much, std::align_val_t{64}), std::bad_alloc);
 }
 
 }  // namespace

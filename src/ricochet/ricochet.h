@@ -4,6 +4,7 @@
 
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/awaited.h"
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/collision/outlook.h"

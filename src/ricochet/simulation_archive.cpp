@@ -159,6 +159,7 @@ void Simulation::Impl::replay_emitters() {
 // What is known of free ways serves speed only.
 void Simulation::Impl::forget_searches() {
     searched_again.resize(particles.size());
+    awaited.assign(particles.size(), Awaited{});
     for (std::size_t i = 0; i < particles.size(); ++i) searched_again[i] = stands_still(i) || is_asleep(i) ? kStill : 0;
 }
 

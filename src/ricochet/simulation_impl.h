@@ -131,6 +131,7 @@ struct Simulation::Impl {
     void coast_on(std::size_t i, const Coasting& coasting, double from, double to, BlockCounts& counts);
     [[nodiscard]] std::uint32_t next_search(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                             double until) const;
+    [[nodiscard]] Awaited awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const;
     [[nodiscard]] std::uint32_t end_of_coasting(std::size_t i, double free_until) const;
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(std::vector<BlockCounts>& blocks);
@@ -182,6 +183,7 @@ struct Simulation::Impl {
     /// Of every particle one more than the number of the step with which it is to be searched for again: until then it
     /// meets nothing. 0: nothing is known of it. See kStill.
     std::vector<std::uint32_t> searched_again;
+    std::vector<Awaited> awaited;  ///< of every particle, by the step with which it is searched for again
     std::optional<OwedSteps> owed;  ///< while coasting particles need not be where the simulation is
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;

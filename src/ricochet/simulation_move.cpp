@@ -143,6 +143,7 @@ void Simulation::Impl::fetch(std::size_t i) const {
     __builtin_prefetch(&particles.position[i], 1);
     __builtin_prefetch(&particles.velocity[i], 1);
     __builtin_prefetch(&searched_again[i], 1);
+    __builtin_prefetch(&awaited[i], 1);
     __builtin_prefetch(&particles.mass[i]);
     __builtin_prefetch(&particles.radius[i]);
     __builtin_prefetch(&particles.id[i]);
@@ -192,6 +193,7 @@ void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const Mo
     if (outcome.held) particles.booked_until[i] = until;
     if (outcome.unsimulated_time > 0.0) counts.cut_off.push_back({i, outcome.unsimulated_time});
     searched_again[i] = next_search(i, moved, outcome, until);
+    awaited[i] = awaited_by(searched_again[i], outcome, until);
     counts.add(outcome);
 }
 
@@ -207,6 +209,13 @@ std::uint32_t Simulation::Impl::next_search(std::size_t i, const MovingParticle&
     return 1 + (outcome.free_for > 0.0 ? end_of_coasting(i, until + outcome.free_for) : 0);
 }
 
+// They must be all that is near in the whole step.
+Awaited Simulation::Impl::awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const {
+    if (again == kStill || again == 0 || outcome.awaited_for == 0.0) return {};
+    const std::uint64_t end = std::max<std::uint64_t>(again, statistics.steps + 2);  // of the step, as a number of steps
+    return until + outcome.awaited_for >= time_at(end) ? outcome.awaited : Awaited{};
+}
+
 // Not the last step when it is shorter than the others, and not that in which the particle dies.
 std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until) const {
     const double until = std::min(free_until, particles.birth_time[i] + particles.lifetime[i]);
@@ -220,6 +229,7 @@ std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until
 // Arrays that say nothing new are neither read nor written: for particles in arbitrary order each costs a cache miss.
 MovingParticle Simulation::Impl::moving(std::size_t i, double start) {
     MovingParticle particle{input(i, start), particles.spin[i], particles.id[i], particles.draws[i], {}};
+    particle.awaited = awaited[i];
     if (!is_plain(i)) load_contact(i, particle);
     particle.sides = sides_of(i);
     if (offspring) particle.shatter_impulse = offspring->shatter_impulse(particles, i);

@@ -176,6 +176,7 @@ void Simulation::Impl::add(Particle particle) {
     if (starts_in_overlap(particle)) ++statistics.started_inside;
     particles.append(particle);
     searched_again.push_back(particle.pinned ? kStill : 0);
+    awaited.emplace_back();
     if (owed) owed->append();
     if (response->keeps_sides()) {
         sides.resize(particles.size() * world.colliders().size());

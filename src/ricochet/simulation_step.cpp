@@ -300,9 +300,12 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (keep[i] != 0) searched_again[kept++] = searched_again[i];
+        if (keep[i] == 0) continue;
+        searched_again[kept] = searched_again[i];
+        awaited[kept++] = awaited[i];
     }
     searched_again.resize(kept);
+    awaited.resize(kept);
     if (owed) owed->compact(keep);
     particles.compact(keep);
     if (check) check->compact(keep);

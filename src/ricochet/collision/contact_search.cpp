@@ -47,12 +47,26 @@ Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, con
     return facing(world.unit_normal_of(surface, p), side, v);
 }
 
-std::optional<Contact> ContactSearch::search(const Path& path, double radius, const Outlook* outlook) {
+std::optional<Contact> ContactSearch::search(const Path& path, double radius, const Outlook* outlook,
+                                             const Awaited& awaited) {
+    begin(path, radius);
+    search_planes(path);
+    search_shapes(path);
+    if (awaited.is_known()) look_at_awaited(path, awaited);
+    if (!awaited.is_known() || scratch_.found.empty()) search_triangles_of(path, outlook);
+    if (scratch_.found.empty()) return std::nullopt;
+    free_until_ = awaited_until_ = 0.0;
+    return first_of_found(path);
+}
+
+/// Forgets the last search.
+void ContactSearch::begin(const Path& path, double radius) {
     scratch_.triangles.clear();
     scratch_.planes.clear();
     scratch_.shapes.clear();
     scratch_.overlapped.clear();
     scratch_.found.clear();
+    scratch_.ahead.clear();
     const double largest = largest_coordinate(path);
     radius_ = radius;
     tolerance_ = radius > 0.0 ? sphere_tolerance(radius, largest) : 0.0;
@@ -63,24 +77,28 @@ std::optional<Contact> ContactSearch::search(const Path& path, double radius, co
     if (radius > 0.0) sphere_.emplace(path, radius);
     bvh_ = &world_.bvh_for(radius);
     bulge_ = bvh_->reach() - radius;
-    search_planes(path);
-    search_shapes(path);
+    largest_ = largest;
     all_triangles_ = false;
-    free_until_ = 0.0;
+    free_until_ = awaited_until_ = 0.0;
+}
+
+// Where none of them is met the particle has passed them by, and what comes then is not known: the boxes are asked.
+void ContactSearch::look_at_awaited(const Path& path, const Awaited& awaited) {
+    for (const std::uint32_t triangle : awaited.triangles()) (void)look_at_triangle(path, triangle);
+    if (scratch_.found.empty()) scratch_.triangles.clear();
+}
+
+void ContactSearch::search_triangles_of(const Path& path, const Outlook* outlook) {
     if (outlook != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*outlook);
-    if (!world_.triangles().empty()) {
-        const auto duration = free_until_ > 0.0 ? visible_duration(*outlook) : std::nullopt;
-        free_until_ = duration ? free_until_ : 0.0;
-        duration ? search_ahead(path, *outlook, *duration) : search_meshes(path, largest);
-    }
-    if (scratch_.found.empty()) return std::nullopt;
-    free_until_ = 0.0;
-    return first_of_found(path);
+    if (world_.triangles().empty()) return;
+    const auto duration = free_until_ > 0.0 ? visible_duration(*outlook) : std::nullopt;
+    free_until_ = duration ? free_until_ : 0.0;
+    duration ? search_ahead(path, *outlook, *duration) : search_meshes(path);
 }
 
 /// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
-void ContactSearch::search_meshes(const Path& path, double largest) {
-    const bool boxes_hold = world_.culls() && kPathRounding * largest <= bvh_->slack();
+void ContactSearch::search_meshes(const Path& path) {
+    const bool boxes_hold = world_.culls() && kPathRounding * largest_ <= bvh_->slack();
     if (boxes_hold) {
         search_triangles(path, 0.0, path.duration, kPieceDepth);
     } else if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) {
@@ -112,7 +130,8 @@ std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
     const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
     const Vec3 by{margin, margin, margin};
     const Box3 box{world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
-    double duration = free_until_;
+    const double whole = end_of_look(outlook);
+    double duration = whole;
     if (outlook.path.degree > 1) {
         const double outside = time_outside(outlook.path, box);
         if (outside >= outlook.least) {
@@ -124,8 +143,8 @@ std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
         if (!(duration >= outlook.least)) return std::nullopt;
     }
     duration = std::min(duration, time_of_leaving(outlook.path, box));
-    if (boxes_hold(outlook.path, free_until_)) return duration;
-    if (outlook.path.degree > 1) free_until_ = duration;
+    if (boxes_hold(outlook.path, whole)) return duration;
+    if (outlook.path.degree > 1) free_until_ = std::min(free_until_, duration);
     return boxes_hold(outlook.path, duration) ? std::optional(duration) : std::nullopt;
 }
 
@@ -138,20 +157,44 @@ bool ContactSearch::boxes_hold(const Path& path, double duration) const {
 // near.
 void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
     if (duration == 0.0) return;  // it does not come near the triangles
-    const double limit = outlook.path.degree > 1 ? free_until_ : duration;
+    const double whole = end_of_look(outlook);
+    const double limit = outlook.path.degree > 1 && boxes_hold(outlook.path, whole) ? whole : duration;
     visit_stretch(outlook, 0.0, duration, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
             if (enter <= path.duration) (void)look_at_triangle(path, triangle);
-            if (leave >= path.duration) free_until_ = std::min(free_until_, enter);
+            if (leave >= path.duration) note_ahead(triangle, enter);
         }
-        return std::min(first_time_, std::max(free_until_, path.duration));
+        return std::min(first_time_, end_of_interest(path, outlook));
     });
-    for (double from = duration; from < limit && free_until_ == limit && scratch_.found.empty(); from += duration) {
-        visit_stretch(outlook, from, std::min(from + duration, limit),
+    double seen = duration;
+    for (; seen < limit && scratch_.ahead.empty() && scratch_.found.empty(); seen += duration) {
+        visit_stretch(outlook, seen, std::min(seen + duration, limit),
                       [&](std::uint32_t triangle, double enter, double) {
-                          if (!world_.is_left_out(triangle)) free_until_ = std::min(free_until_, enter);
-                          return free_until_;
+                          if (!world_.is_left_out(triangle)) note_ahead(triangle, enter);
+                          return end_of_interest(path, outlook);
                       });
+    }
+    await(std::min(seen, end_of_interest(path, outlook)));
+}
+
+double ContactSearch::end_of_look(const Outlook& outlook) const {
+    return std::min(free_until_ + outlook.beyond, outlook.path.duration);
+}
+
+double ContactSearch::end_of_interest(const Path& path, const Outlook& outlook) const {
+    return std::max(free_until_, path.duration) + outlook.beyond;
+}
+
+void ContactSearch::note_ahead(std::uint32_t triangle, double enter) {
+    free_until_ = std::min(free_until_, enter);
+    scratch_.ahead.push_back({triangle, enter});
+}
+
+void ContactSearch::await(double until) {
+    awaited_until_ = until;
+    awaited_ = Awaited::none();
+    for (const auto& [triangle, enter] : scratch_.ahead) {
+        if (enter <= until && awaited_.is_known()) awaited_.add(triangle);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/collision/awaited.h"
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/outlook.h"
 #include "ricochet/collision/triangle_planes.h"
@@ -56,6 +57,11 @@ struct ContactScratch {
     std::vector<std::uint32_t> shapes;     ///< the same, indices into CollisionWorld::shapes()
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Found> found;
+    struct Ahead {
+        std::uint32_t triangle;
+        double enter;  ///< s along the outlook's path
+    };
+    std::vector<Ahead> ahead;  ///< triangles that come near after the path's end
     TrianglePlanes planes_of_triangles;
     std::vector<Vec3> chain;  ///< ends of the certified legs of the last travel, its start first
 };
@@ -70,12 +76,19 @@ public:
 
     /// First contact of a point (radius 0) or a sphere whose centre follows `path`, under the order (time, collider,
     /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius). With an outlook, whose
-    /// path begins with this one, the same search also finds out free_until(); the contact is the same.
-    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr);
+    /// path begins with this one, the same search also finds out free_until() and awaited(); the contact is the same.
+    /// `awaited` may hold all triangles that an earlier search with an outlook has seen near this path.
+    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr,
+                                                const Awaited& awaited = {});
 
     /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin. Where the
     /// path meets something, or looking ahead is not worth the while: no more than the path's duration.
     [[nodiscard]] double free_until() const { return free_until_; }
+
+    /// The triangles that come near the outlook's path between the searched path's end and awaited_until(), s along
+    /// it: at most its `beyond` after free_until().
+    [[nodiscard]] const Awaited& awaited() const { return awaited_; }
+    [[nodiscard]] double awaited_until() const { return awaited_until_; }
 
     /// The smallest numbered surface that stands in the way of the closed leg [p, q] of the centre: one that the
     /// segment itself meets (decided exactly for planes and triangles), or one that comes nearer to it than the radius
@@ -110,11 +123,18 @@ public:
 
 private:
     void search_planes(const Path& path);
-    void search_meshes(const Path& path, double largest);
+    void begin(const Path& path, double radius);
+    void look_at_awaited(const Path& path, const Awaited& awaited);
+    void search_triangles_of(const Path& path, const Outlook* outlook);
+    void search_meshes(const Path& path);
     void look_past_planes_and_shapes(const Outlook& outlook);
     [[nodiscard]] std::optional<double> visible_duration(const Outlook& outlook);
     [[nodiscard]] bool boxes_hold(const Path& path, double duration) const;
     void search_ahead(const Path& path, const Outlook& outlook, double duration);
+    [[nodiscard]] double end_of_look(const Outlook& outlook) const;
+    [[nodiscard]] double end_of_interest(const Path& path, const Outlook& outlook) const;
+    void note_ahead(std::uint32_t triangle, double enter);
+    void await(double until);
     template <class Visit>
     void visit_stretch(const Outlook& outlook, double from, double to, Visit&& visit);
     void search_shapes(const Path& path);
@@ -143,10 +163,13 @@ private:
     double radius_ = 0.0;
     double tolerance_ = 0.0;  ///< sphere_tolerance() of this path; 0 for points
     double slack_ = 0.0;
+    double largest_ = 0.0;        ///< largest coordinate that the path reaches, m
     double bulge_ = 0.0;          ///< what the boxes leave for the path's curvature, m
     bool all_triangles_ = false;  ///< every triangle is a candidate
     double first_time_ = 0.0;
-    double free_until_ = 0.0;  ///< s along the outlook's path
+    double free_until_ = 0.0;     ///< s along the outlook's path
+    double awaited_until_ = 0.0;  ///< the same
+    Awaited awaited_;
     Vec3 start_;
 };
 

@@ -17,6 +17,7 @@ struct Outlook {
     double margin = 0.0;  ///< m, > 0: nearer than the radius plus this nothing may come. It covers by how much the true
                           ///< way, the searched path too, and its chords of a step may lie beside `path`
     double least = 0.0;   ///< s along the path: looking no further than this is not worth the while
+    double beyond = 0.0;  ///< s: what comes near within this time after the free one is of interest too
 };
 
 /// The beginning of a path.

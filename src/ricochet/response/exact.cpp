@@ -31,15 +31,13 @@ MoveOutcome Mover::run() {
     std::optional<Contact> contact = go_on_in_contact();
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {
-        outcome_.free_for = 0.0;
+        outcome_.free_for = outcome_.awaited_for = 0.0;
         if (!contact) {
             flight = first ? first_flight(rules_, particle_, remaining_)
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
             const auto outlook = outlook_of(flight);
-            contact = follow(flight, outlook ? &*outlook : nullptr);
-            if (outlook && !contact && !outcome_.frozen) {
-                outcome_.free_for = std::max(0.0, search_.free_until() - flight.path.duration);
-            }
+            contact = follow(flight, outlook ? &*outlook : nullptr, first ? particle_.awaited : Awaited{});
+            if (outlook && !contact && !outcome_.frozen) look_beyond(flight);
         }
         while (contact && has_budget() && !outcome_.absorbed) contact = answer(flight, *contact);
         if (outcome_.absorbed) break;
@@ -49,6 +47,14 @@ MoveOutcome Mover::run() {
         }
     }
     return outcome_;
+}
+
+/// Notes what the search along the last flight has seen beyond its end.
+void Mover::look_beyond(const Flight& flight) {
+    const auto after_end = [&](double time) { return std::max(0.0, time - flight.path.duration); };
+    outcome_.free_for = after_end(search_.free_until());
+    outcome_.awaited_for = after_end(search_.awaited_until());
+    outcome_.awaited = search_.awaited();
 }
 
 /// How far ahead the last flight of a step may look: as far as its way is known, which it is where the acceleration is
@@ -65,7 +71,7 @@ std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining_ + std::min(steps * time_step, left + time_step);
     Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
-                    remaining_ + time_step};
+                    remaining_ + time_step, kWholeStep * time_step};
     const double speed = length(flight.end_velocity) + acceleration * duration;
     const double largest = max_abs(flight.path.end) + speed * duration + state_.radius;
     if (!(largest < kLargestCoordinate) || !(speed < kFastestSpeed)) return std::nullopt;
@@ -75,13 +81,13 @@ std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
 }
 
 /// Moves the particle along the flight: to its end, or to the contact that is returned.
-std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outlook) {
+std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outlook, const Awaited& awaited) {
     const Path& path = flight.path;
     if (!can_be_followed(path)) {
         freeze();
         return std::nullopt;
     }
-    std::optional<Contact> contact = search_.search(path, state_.radius, outlook);
+    std::optional<Contact> contact = search_.search(path, state_.radius, outlook, awaited);
     if (contact && contact->time == 0.0 && !search_.surfaces_at(path.c[0]).empty()) {
         leave_surface(flight);
         return std::nullopt;

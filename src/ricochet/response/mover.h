@@ -33,7 +33,8 @@ public:
 
 private:
     // Flying (exact.cpp).
-    std::optional<Contact> follow(const Flight& flight, const Outlook* outlook = nullptr);
+    std::optional<Contact> follow(const Flight& flight, const Outlook* outlook = nullptr, const Awaited& awaited = {});
+    void look_beyond(const Flight& flight);
     [[nodiscard]] std::optional<Outlook> outlook_of(const Flight& flight) const;
     void accept_chain();
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }

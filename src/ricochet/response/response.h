@@ -136,6 +136,7 @@ struct MovingParticle {
     /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
     /// own integrator says it. It must outlive the move.
     const Flight* planned = nullptr;
+    Awaited awaited = {};  ///< by this step (MoveOutcome::awaited of the last one)
 };
 
 /// What happened to one particle in one step.
@@ -153,6 +154,9 @@ struct MoveOutcome {
     /// s after the end of the move for which the particle, stepped on by coast() in steps of the run, certainly meets
     /// nothing; 0 where that was not found out.
     double free_for = 0.0;
+    /// s after the end of the move until which no triangles but `awaited` come near its way.
+    double awaited_for = 0.0;
+    Awaited awaited = {};
 };
 
 /// Key of the random numbers that impacts draw; emitters use the numbers below.

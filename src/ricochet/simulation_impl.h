@@ -13,6 +13,7 @@
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/fixed_point_sum.h"
+#include "ricochet/core/visit_few.h"
 #include "ricochet/coupled_motion.h"
 #include "ricochet/dynamics/coasting.h"
 #include "ricochet/offspring.h"
@@ -102,6 +103,7 @@ struct Simulation::Impl {
     void begin_owing();
     void end_owing();
     void catch_up(std::size_t i);
+    void catch_up_part(std::span<const std::uint32_t> due);
     void catch_up_all();
     void emit(double from, double to);
     void add(Particle particle);
@@ -116,13 +118,28 @@ struct Simulation::Impl {
                                           BlockCounts& counts);
     void order_by_place(DueParticles& due) const;
     void fetch(std::size_t i) const;
+    void fetch_triangles(std::size_t i) const;
+    void fetch_corners(std::size_t i) const;
     void move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts);
     void add_cut_off(const std::vector<BlockCounts>& blocks);
-    [[nodiscard]] bool is_due(std::size_t i) const {
-        return searched_again[i] != kStill && statistics.steps + 1 >= searched_again[i];
+    // The next step's number, one more than this one's; no run has 2^32 - 2 steps in which anything coasts.
+    [[nodiscard]] std::uint32_t next_step() const {
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(statistics.steps + 1, kStill - 1));
     }
-    [[nodiscard]] bool coasts(std::size_t i) const {
-        return searched_again[i] != kStill && statistics.steps + 1 < searched_again[i];
+    [[nodiscard]] bool is_due(std::size_t i) const { return searched_again[i] <= next_step(); }
+    // kStill + 1 is 0.
+    [[nodiscard]] bool coasts(std::size_t i) const { return searched_again[i] + 1U > next_step() + 1U; }
+    template <class Visit>
+    void visit_due(std::size_t begin, std::size_t end, const Visit& visit) const {
+        const std::uint32_t next = next_step();
+        const std::uint32_t* again = searched_again.data();
+        visit_few(begin, end, [=](std::size_t i) { return again[i] <= next; }, visit);
+    }
+    template <class Visit>
+    void visit_all_but_coasting(std::size_t begin, std::size_t end, const Visit& visit) const {
+        const std::uint32_t next = next_step();
+        const std::uint32_t* again = searched_again.data();
+        visit_few(begin, end, [=](std::size_t i) { return again[i] + 1U <= next + 1U; }, visit);
     }
     // It flies, and what the arrays keep of contact is empty.
     [[nodiscard]] bool is_plain(std::size_t i) const { return searched_again[i] != kStill && searched_again[i] != 0; }

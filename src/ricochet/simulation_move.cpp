@@ -20,6 +20,16 @@ constexpr std::size_t kFewTriangles = 1024;
 /// Particles from the fetch of one from memory to its move.
 constexpr std::size_t kFetchedAhead = 6;
 
+/// The same, to the triangles that it awaits, and to their corners.
+constexpr std::size_t kTrianglesFetchedAhead = 4;
+constexpr std::size_t kCornersFetchedAhead = 2;
+
+/// It may lie across two lines of the cache.
+void fetch_vector(const Vec3& v) {
+    __builtin_prefetch(&v.x, 1);
+    __builtin_prefetch(&v.z, 1);
+}
+
 }  // namespace
 
 // Between the steps of advance() nothing looks at a particle that coasts. But bounds and checks do in every step.
@@ -37,6 +47,18 @@ void Simulation::Impl::catch_up(std::size_t i) {
     const PhaseState state = owed->after(i, {particles.position[i], particles.velocity[i]});
     particles.position[i] = state.position;
     particles.velocity[i] = state.velocity;
+}
+
+// What they owe is worked out while the next ones are on their way from memory.
+void Simulation::Impl::catch_up_part(std::span<const std::uint32_t> due) {
+    for (std::size_t k = 0; k < due.size(); ++k) {
+        if (k + kFetchedAhead < due.size()) {
+            fetch_vector(particles.position[due[k + kFetchedAhead]]);
+            fetch_vector(particles.velocity[due[k + kFetchedAhead]]);
+        }
+        catch_up(due[k]);
+        owed->make_next(due[k]);
+    }
 }
 
 void Simulation::Impl::catch_up_all() {
@@ -61,34 +83,24 @@ DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double 
     for (std::size_t k = 1; k < due.ends.size(); ++k) due.ends[k] += due.ends[k - 1];
     due.particles.resize(due.ends.empty() ? 0 : due.ends.back());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        std::size_t at = block == 0 ? 0 : due.ends[block - 1];
-        for (std::size_t i = first + begin; i < first + end; ++i) {
-            if (!is_due(i)) continue;
-            due.particles[at++] = static_cast<std::uint32_t>(i);
-            if (!owed) continue;
-            catch_up(i);
-            owed->make_next(i);
-        }
+        std::uint32_t* next = due.particles.data() + (block == 0 ? 0 : due.ends[block - 1]);
+        visit_due(first + begin, first + end, [&](std::size_t i) { *next++ = static_cast<std::uint32_t>(i); });
+        if (owed) catch_up_part(due.part(block));
     });
     if (owed) owed->add({options.integrator, *forces.common_acceleration(), to - from});
     return due;
 }
 
-/// Returns how many are due. The loop that most particles of most steps go through: nothing but what it needs.
+/// Returns how many are due. The loops that most particles of most steps go through: nothing but what they need.
 std::size_t Simulation::Impl::coast_block(std::size_t begin, std::size_t end, double from, double to,
                                           BlockCounts& counts) {
     const std::optional<Vec3>& common = forces.common_acceleration();
     const Coasting shared(options.integrator, common.value_or(Vec3{}), to - from);
-    const std::uint64_t next = statistics.steps + 1;
     std::size_t due = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t again = searched_again[i];
-        if (again == kStill) continue;
-        if (next >= again) {
-            ++due;
-        } else if (owed) {
-            continue;
-        } else if (common && !check) {
+    for (std::size_t i = begin; i < end; ++i) due += is_due(i) ? 1 : 0;
+    for (std::size_t i = begin; i < end && !owed; ++i) {
+        if (!coasts(i)) continue;
+        if (common && !check) {
             const PhaseState state = shared.step(particles.position[i], particles.velocity[i]);
             particles.position[i] = state.position;
             particles.velocity[i] = state.velocity;
@@ -140,8 +152,8 @@ void Simulation::Impl::order_by_place(DueParticles& due) const {
 
 // What moving() and store() want of a particle, whose neighbours in space lie anywhere in memory.
 void Simulation::Impl::fetch(std::size_t i) const {
-    __builtin_prefetch(&particles.position[i], 1);
-    __builtin_prefetch(&particles.velocity[i], 1);
+    fetch_vector(particles.position[i]);
+    fetch_vector(particles.velocity[i]);
     __builtin_prefetch(&searched_again[i], 1);
     __builtin_prefetch(&awaited[i], 1);
     __builtin_prefetch(&particles.mass[i]);
@@ -158,6 +170,21 @@ void Simulation::Impl::fetch(std::size_t i) const {
     __builtin_prefetch(&particles.contacts[i], 1);
 }
 
+void Simulation::Impl::fetch_triangles(std::size_t i) const {
+    if (!awaited[i].is_known()) return;
+    for (const std::uint32_t triangle : awaited[i].triangles()) __builtin_prefetch(&world.triangles()[triangle]);
+}
+
+void Simulation::Impl::fetch_corners(std::size_t i) const {
+    if (!awaited[i].is_known()) return;
+    for (const std::uint32_t triangle : awaited[i].triangles()) {
+        for (const std::uint32_t vertex : world.triangles()[triangle]) {
+            __builtin_prefetch(&world.vertices()[vertex].x);
+            __builtin_prefetch(&world.vertices()[vertex].z);
+        }
+    }
+}
+
 void Simulation::Impl::move_due(std::span<const std::uint32_t> due, double from, double to, BlockCounts& counts) {
     thread_local MoveScratch scratch;
     scratch.hits.clear();
@@ -167,6 +194,8 @@ void Simulation::Impl::move_due(std::span<const std::uint32_t> due, double from,
     for (std::size_t k = 0; k < due.size(); ++k) {
         const std::uint32_t i = due[k];
         if (k + kFetchedAhead < due.size()) fetch(due[k + kFetchedAhead]);
+        if (k + kTrianglesFetchedAhead < due.size()) fetch_triangles(due[k + kTrianglesFetchedAhead]);
+        if (k + kCornersFetchedAhead < due.size()) fetch_corners(due[k + kCornersFetchedAhead]);
         const double start = std::max(from, particles.birth_time[i]);
         const double stop = std::min(to, particles.birth_time[i] + particles.lifetime[i]);
         if (stop <= start) continue;

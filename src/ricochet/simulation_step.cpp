@@ -247,13 +247,13 @@ void Simulation::Impl::retire(double now) {
     std::vector<Tally> blocks((particles.size() + kParticleBlock - 1) / kParticleBlock);
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         Tally& tally = blocks[block];
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; bounds && i < end; ++i) tally.leaving += coasts(i) && is_leaving(i, now) ? 1 : 0;
+        visit_all_but_coasting(begin, end, [&](std::size_t i) {
             const bool leaves = is_leaving(i, now);
             tally.leaving += leaves ? 1 : 0;
-            if (leaves || coasts(i)) continue;
-            tally.resting += particles.resting[i];
-            tally.held += particles.held[i];
-        }
+            tally.resting += leaves ? 0 : particles.resting[i];
+            tally.held += leaves ? 0 : particles.held[i];
+        });
     });
     Tally all;
     for (const Tally& tally : blocks) {

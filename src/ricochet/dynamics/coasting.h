@@ -26,6 +26,10 @@ public:
         return {flush_tiny(position + duration_ * (velocity + drift_kick_)), velocity + kick_};
     }
 
+    /// True when the velocity stays: only its zeros may change their sign, with the first step.
+    [[nodiscard]] bool is_straight() const { return kick_ == Vec3{} && drift_kick_ == Vec3{}; }
+    [[nodiscard]] double duration() const { return duration_; }
+
 private:
     double duration_;
     Vec3 kick_;

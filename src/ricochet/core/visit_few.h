@@ -1,0 +1,27 @@
+/// \file
+/// Finding the few among many.
+#pragma once
+
+#include <cstddef>
+
+namespace ricochet {
+
+/// Calls visit(i), in ascending order, for every i in [begin, end) with is_one(i). Fast where they are few and
+/// is_one(i), which must not have effects, compiles to vector instructions: runs without any are passed over at once.
+template <class Predicate, class Visit>
+void visit_few(std::size_t begin, std::size_t end, const Predicate& is_one, const Visit& visit) {
+    constexpr std::size_t kRun = 16;
+    for (; begin + kRun <= end; begin += kRun) {
+        unsigned any = 0;
+        for (std::size_t k = 0; k < kRun; ++k) any |= is_one(begin + k) ? 1U : 0U;
+        if (any == 0) continue;
+        for (std::size_t i = begin; i < begin + kRun; ++i) {
+            if (is_one(i)) visit(i);
+        }
+    }
+    for (; begin < end; ++begin) {
+        if (is_one(begin)) visit(begin);
+    }
+}
+
+}  // namespace ricochet

@@ -2,9 +2,9 @@
 /// Everything that the library offers. Installed headers can also be included one by one.
 #pragma once
 
+#include "ricochet/collision/awaited.h"
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/awaited.h"
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/collision/outlook.h"
@@ -64,6 +64,7 @@
 #include "ricochet/geometry/analytic_shape.h"
 #include "ricochet/geometry/bounded_cross.h"
 #include "ricochet/geometry/centred_ellipsoid.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/distance_polynomials.h"
 #include "ricochet/geometry/local_shape.h"

@@ -68,6 +68,7 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, doubl
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
     bulge_ = room * mean_box();
     prepare_radius(0.0);
+    clearance_ = ClearanceGrid(vertices_, triangles_, triangle_bounds_);
 }
 
 void CollisionWorld::add(ColliderDescription& collider) {
@@ -348,7 +349,7 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
 
 std::size_t CollisionWorld::memory_bytes() const {
     const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    std::size_t bytes = held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) + held(degenerate_) +
+    std::size_t bytes = clearance_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) + held(degenerate_) +
                         held(shapes_) + held(triangle_materials_);
     if (clusters_) bytes += held(*clusters_);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();

@@ -11,6 +11,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/analytic_shape.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/closest_point.h"
 #include "ricochet/geometry/sweep.h"
 #include "ricochet/geometry/triangle_bvh.h"
@@ -140,6 +141,8 @@ public:
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
     /// Box of all triangles.
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
+    /// How far it is to the triangles.
+    [[nodiscard]] const ClearanceGrid& clearance() const { return clearance_; }
     /// What all of this takes without the colliders' own meshes, bytes: also what the ray library maps by itself.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// Triangles that take no part in collisions.
@@ -188,6 +191,7 @@ private:
         double largest_radius;
         TriangleBvh bvh;
     };
+    ClearanceGrid clearance_;
     std::vector<RadiusClass> classes_;  ///< ascending in radius; the first serves points
     bool culls_ = true;
 };

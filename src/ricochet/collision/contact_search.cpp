@@ -91,15 +91,17 @@ void ContactSearch::look_at_awaited(const Path& path, const Awaited& awaited) {
 void ContactSearch::search_triangles_of(const Path& path, const Outlook* outlook) {
     if (outlook != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*outlook);
     if (world_.triangles().empty()) return;
-    const auto duration = free_until_ > 0.0 ? visible_duration(*outlook) : std::nullopt;
-    free_until_ = duration ? free_until_ : 0.0;
-    duration ? search_ahead(path, *outlook, *duration) : search_meshes(path);
+    const bool can_look = free_until_ > 0.0 && world_.culls();
+    const bool looks_ahead =
+        can_look && (outlook->path.degree > 1 ? look_along_parabola(path, *outlook) : look_along_line(path, *outlook));
+    if (looks_ahead) return;
+    free_until_ = 0.0;
+    search_meshes(path);
 }
 
 /// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
 void ContactSearch::search_meshes(const Path& path) {
-    const bool boxes_hold = world_.culls() && kPathRounding * largest_ <= bvh_->slack();
-    if (boxes_hold) {
+    if (world_.culls() && kPathRounding * largest_ <= bvh_->slack()) {
         search_triangles(path, 0.0, path.duration, kPieceDepth);
     } else if (!world_.culls() || may_reach_triangles(path, 0.0, path.duration)) {
         search_all_triangles(path);
@@ -121,60 +123,80 @@ void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
     if (free_until_ < outlook.least) free_until_ = 0.0;
 }
 
-// Over the first stretch that is looked at, which one question to the boxes must answer, the path, the foreseen one and
-// all their chords of a step stay within what the boxes leave beside the segment that is asked about. A straight way
-// that leaves all triangles behind is free for good; a bent one is free, and nothing need be asked, while it is beyond
-// one side of them all.
-std::optional<double> ContactSearch::visible_duration(const Outlook& outlook) {
-    if (!world_.culls() || !(outlook.margin < bulge_)) return std::nullopt;
+/// Where paths may come near triangles.
+Box3 ContactSearch::box_of_interest(const Outlook& outlook) const {
     const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
     const Vec3 by{margin, margin, margin};
-    const Box3 box{world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
-    const double whole = end_of_look(outlook);
-    double duration = whole;
-    if (outlook.path.degree > 1) {
-        const double outside = time_outside(outlook.path, box);
-        if (outside >= outlook.least) {
-            free_until_ = std::min(free_until_, outside);
-            return 0.0;
-        }
-        const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
-        duration = std::min(duration, std::sqrt(2.0 * (bulge_ - outlook.margin) / bend));
-        if (!(duration >= outlook.least)) return std::nullopt;
-    }
-    duration = std::min(duration, time_of_leaving(outlook.path, box));
-    if (boxes_hold(outlook.path, whole)) return duration;
-    if (outlook.path.degree > 1) free_until_ = std::min(free_until_, duration);
-    return boxes_hold(outlook.path, duration) ? std::optional(duration) : std::nullopt;
+    return {world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
 }
 
 bool ContactSearch::boxes_hold(const Path& path, double duration) const {
     return kPathRounding * largest_coordinate(shortened(path, duration)) <= bvh_->slack();
 }
 
-// A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
-// before that end does not matter to what comes after. Bent ways are looked along stretch by stretch until something is
-// near.
-void ContactSearch::search_ahead(const Path& path, const Outlook& outlook, double duration) {
-    if (duration == 0.0) return;  // it does not come near the triangles
-    const double whole = end_of_look(outlook);
-    const double limit = outlook.path.degree > 1 && boxes_hold(outlook.path, whole) ? whole : duration;
-    visit_stretch(outlook, 0.0, duration, [&](std::uint32_t triangle, double enter, double leave) {
-        if (!world_.is_left_out(triangle)) {
-            if (enter <= path.duration) (void)look_at_triangle(path, triangle);
-            if (leave >= path.duration) note_ahead(triangle, enter);
-        }
-        return std::min(first_time_, end_of_interest(path, outlook));
-    });
-    double seen = duration;
-    for (; seen < limit && scratch_.ahead.empty() && scratch_.found.empty(); seen += duration) {
-        visit_stretch(outlook, seen, std::min(seen + duration, limit),
-                      [&](std::uint32_t triangle, double enter, double) {
-                          if (!world_.is_left_out(triangle)) note_ahead(triangle, enter);
-                          return end_of_interest(path, outlook);
-                      });
+/// False when the path has still to be searched. A straight way that leaves all triangles behind is free for good.
+bool ContactSearch::look_along_line(const Path& path, const Outlook& outlook) {
+    const double end = std::min(end_of_look(outlook), time_of_leaving(outlook.path, box_of_interest(outlook)));
+    if (!(outlook.margin < bulge_) || !boxes_hold(outlook.path, end)) return false;
+    if (end == 0.0) return true;  // it does not come near the triangles
+    look_along_stretch(path, outlook, 0.0, end);
+    await(std::min(end, end_of_interest(path, outlook)));
+    return true;
+}
+
+/// The same along a bent way. While it is beyond one side of all triangles nothing need be asked. Free space is crossed
+/// in strides. Where triangles are near, the boxes are asked about stretch by stretch: over one, the path, the foreseen
+/// one and all their chords of a step stay within what the boxes leave beside the segment that is asked about. Where
+/// that is not even a step, only the free space beyond the path's end is looked through.
+bool ContactSearch::look_along_parabola(const Path& path, const Outlook& outlook) {
+    const double outside = time_outside(outlook.path, box_of_interest(outlook));
+    if (outside >= outlook.least) {
+        free_until_ = std::min(free_until_, outside);
+        return true;
+    }
+    const double end = end_of_look(outlook);
+    if (!boxes_hold(outlook.path, end)) return false;
+    const double margin = margin_of(outlook, end);
+    const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
+    const double stretch = std::sqrt(2.0 * std::max(0.0, bulge_ - outlook.margin) / bend);
+    if (stretch < outlook.least) {
+        search_meshes(path);
+        free_until_ = std::min(free_until_, time_clear_of(outlook.path, world_.clearance(), margin, path.duration));
+        return true;
+    }
+    double seen = 0.0;
+    while (seen < end && scratch_.ahead.empty() && scratch_.found.empty()) {
+        seen = std::min(end, time_clear_of(outlook.path, world_.clearance(), margin, seen));
+        const double next = std::min(seen + stretch, end);
+        if (seen < end) look_along_stretch(path, outlook, seen, next);
+        seen = next;
     }
     await(std::min(seen, end_of_interest(path, outlook)));
+    return true;
+}
+
+// A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
+// before that end does not matter to what comes after.
+void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook, double from, double to) {
+    const double span = to - from;
+    const Tube tube(outlook.path.position(from), outlook.path.position(to), margin_of(outlook, to),
+                    span * span * outlook.path.c[2]);
+    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
+        if (!world_.is_left_out(triangle)) {
+            if (from + enter * span <= path.duration) (void)look_at_triangle(path, triangle);
+            if (from + leave * span >= path.duration) note_ahead(triangle, from + enter * span);
+        }
+        const double until = std::min(first_time_, end_of_interest(path, outlook));
+        return until < to ? std::max(0.0, (until - from) / span) : 1.0;
+    });
+}
+
+/// m, how near to the outlook's path until some time triangles are of interest.
+double ContactSearch::margin_of(const Outlook& outlook, double until) const {
+    const Box3& box = world_.triangle_bounds();
+    const double largest =
+        std::max({largest_coordinate(shortened(outlook.path, until)), max_abs(box.lower), max_abs(box.upper)});
+    return radius_ + outlook.margin + kForesightSlack * largest;
 }
 
 double ContactSearch::end_of_look(const Outlook& outlook) const {
@@ -196,22 +218,6 @@ void ContactSearch::await(double until) {
     for (const auto& [triangle, enter] : scratch_.ahead) {
         if (enter <= until && awaited_.is_known()) awaited_.add(triangle);
     }
-}
-
-/// Calls visit(triangle, enter, leave), with times along the outlook's path, for what is near it between two times;
-/// visit returns the time from which on nothing matters any more.
-template <class Visit>
-void ContactSearch::visit_stretch(const Outlook& outlook, double from, double to, Visit&& visit) {
-    const double span = to - from;
-    const Box3& box = world_.triangle_bounds();
-    const double largest =
-        std::max({largest_coordinate(shortened(outlook.path, to)), max_abs(box.lower), max_abs(box.upper)});
-    const double margin = radius_ + outlook.margin + kForesightSlack * largest;
-    const Tube tube(outlook.path.position(from), outlook.path.position(to), margin, span * span * outlook.path.c[2]);
-    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
-        const double until = visit(triangle, from + enter * span, from + leave * span);
-        return until < to ? std::max(0.0, (until - from) / span) : 1.0;
-    });
 }
 
 void ContactSearch::note(const ContactScratch::Found& found) {
@@ -282,6 +288,8 @@ void ContactSearch::search_all_triangles(const Path& path) {
 // every triangle is judged on the whole path.
 void ContactSearch::search_triangles(const Path& path, double from, double to, int depth) {
     if (from > first_time_ || all_triangles_) return;
+    if (path.degree == 2) from = time_clear_of(path, world_.clearance(), margin_of(path), from);
+    if (path.degree == 2 && from >= to) return;
     if (!covers_chord(path, from, to)) {
         if (depth == 0) {
             search_all_triangles(path);
@@ -296,13 +304,17 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
     // Chords of the path that covers_chord() lets pass are covered too.
     const bool is_parabola = path.degree == 2;
     const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
-    const double beside_path = std::min(path.sagitta(0.0, path.duration), 0.5 * bulge_);
-    const double margin = radius_ + 2.0 * slack_ + beside_piece + beside_path;
+    const double margin = margin_of(path) + beside_piece;
     const Tube tube(path.position(from), path.position(to), margin, is_parabola ? span * span * path.c[2] : Vec3{});
     bvh_->visit_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
         const double first = look_at_triangle(path, triangle);
         return first < to ? std::max(0.0, (first - from) / span) : 1.0;
     });
+}
+
+/// m, how near to the path candidates may be: what its chords that covers_chord() lets pass may meet are among them.
+double ContactSearch::margin_of(const Path& path) const {
+    return radius_ + 2.0 * slack_ + std::min(path.sagitta(0.0, path.duration), 0.5 * bulge_);
 }
 
 double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {

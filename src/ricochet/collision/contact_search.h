@@ -128,15 +128,17 @@ private:
     void search_triangles_of(const Path& path, const Outlook* outlook);
     void search_meshes(const Path& path);
     void look_past_planes_and_shapes(const Outlook& outlook);
-    [[nodiscard]] std::optional<double> visible_duration(const Outlook& outlook);
+    [[nodiscard]] Box3 box_of_interest(const Outlook& outlook) const;
     [[nodiscard]] bool boxes_hold(const Path& path, double duration) const;
-    void search_ahead(const Path& path, const Outlook& outlook, double duration);
+    bool look_along_line(const Path& path, const Outlook& outlook);
+    bool look_along_parabola(const Path& path, const Outlook& outlook);
+    void look_along_stretch(const Path& path, const Outlook& outlook, double from, double to);
+    [[nodiscard]] double margin_of(const Outlook& outlook, double until) const;
+    [[nodiscard]] double margin_of(const Path& path) const;
     [[nodiscard]] double end_of_look(const Outlook& outlook) const;
     [[nodiscard]] double end_of_interest(const Path& path, const Outlook& outlook) const;
     void note_ahead(std::uint32_t triangle, double enter);
     void await(double until);
-    template <class Visit>
-    void visit_stretch(const Outlook& outlook, double from, double to, Visit&& visit);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);

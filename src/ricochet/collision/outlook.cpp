@@ -10,6 +10,9 @@ namespace {
 /// Relative rounding of the times here, generously: margins of distance are far above it.
 constexpr double kTimeRounding = 0x1p-40;
 
+/// Strides through free space at a time; a grid of a thousand cells is crossed in fewer but along walls.
+constexpr int kMostStrides = 64;
+
 }  // namespace
 
 Path shortened(const Path& path, double duration) {
@@ -47,6 +50,21 @@ double time_outside(const Path& path, const Box3& box) {
         longest = std::max(longest, time_free_of_plane(path, face, 0.0));
     }
     return longest;
+}
+
+// Within t the particle gets no further than v t + b t^2 / 2, which is the clearance at the root in the form without
+// cancellation.
+double time_clear_of(const Path& path, const ClearanceGrid& grid, double margin, double from) {
+    const double bend = 2.0 * length(path.c[2]);
+    double time = from;
+    for (int stride = 0; stride < kMostStrides && time < path.duration; ++stride) {
+        const double room = grid.at(path.position(time)) - margin;
+        if (!(room > 0.0)) break;
+        const double speed = length(path.velocity(time));
+        const double way = speed + std::sqrt(speed * speed + 2.0 * bend * room);
+        time += (1.0 - kTimeRounding) * (2.0 * room / way);
+    }
+    return std::min(time, path.duration);
 }
 
 double time_of_leaving(const Path& path, const Box3& box) {

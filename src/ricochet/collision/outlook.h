@@ -6,6 +6,7 @@
 #pragma once
 
 #include "ricochet/core/box3.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/path.h"
 #include "ricochet/geometry/sweep.h"
 
@@ -30,6 +31,10 @@ struct Outlook {
 /// The time for which the path certainly stays beyond one of the box's faces, s, at most its duration; 0 when it begins
 /// inside. Errs on the side of less.
 [[nodiscard]] double time_outside(const Path& path, const Box3& box);
+
+/// The time until which every point of the path from `from` on is certainly further than `margin` from the triangles of
+/// the grid, s, at most its duration; `from` where the grid cannot tell. For paths of degree 1 or 2.
+[[nodiscard]] double time_clear_of(const Path& path, const ClearanceGrid& grid, double margin, double from);
 
 /// A time after which the path certainly stays out of the box, s, at most its duration; 0 when it never comes near it.
 /// For straight paths; others: their duration.

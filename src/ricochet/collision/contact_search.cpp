@@ -336,7 +336,11 @@ void ContactSearch::look_with_sphere(std::uint32_t triangle) {
     if (sphere_->clears(a, b, c)) return;
     scratch_.triangles.push_back(triangle);
     const SurfaceId surface = world_.surface_of_triangle(triangle);
-    note_overlap(surface, std::sqrt(closest_point_on_triangle(start_, a, b, c).distance_squared));
+    if (!sphere_->starts_apart_from(a, b, c)) {
+        const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
+        note_overlap(surface, std::sqrt(nearest.distance_squared));
+        if (sphere_->recedes_from(nearest)) return;
+    }
     const auto contact = sphere_->first_contact(a, b, c);
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
 }

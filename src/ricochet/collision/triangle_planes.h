@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/geometry/triangle_plane.h"
@@ -24,7 +25,7 @@ public:
         const std::size_t slot = triangle % kSlots;
         if (triangle_[slot] != triangle) {
             const auto [a, b, c] = world.corners_of_triangle(triangle);
-            plane_[slot] = TrianglePlane(a, b, c);
+            std::construct_at(&plane_[slot], a, b, c);
             triangle_[slot] = triangle;
         }
         return plane_[slot];

@@ -10,6 +10,13 @@
 namespace ricochet {
 namespace {
 
+/// At most the squared distance of a point from a triangle: that from its box.
+double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 lower = min(a, min(b, c));
+    const Vec3 upper = max(a, max(b, c));
+    return length_squared(max(Vec3{}, max(lower - p, p - upper)));
+}
+
 /// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
 int side_ahead(const std::array<DoubleDouble, 4>& height) {
     for (const DoubleDouble& coefficient : height) {
@@ -71,6 +78,14 @@ bool SphereSweep::clears(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return misses_box(a, b, c) || misses_plane(detail::filtered_cross(b - a, c - a), a);
 }
 
+bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
+}
+
+bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start) const {
+    return path_.degree < 2 && dot(nearest_to_start.offset, path_.c[1]) > slack_ * length(path_.c[1]);
+}
+
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
     if (misses_box(a, b, c)) return std::nullopt;
     const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
@@ -115,12 +130,13 @@ bool sphere_leg_is_clear(const Vec3& p, const Vec3& q, double radius, double tol
         high.z < lower.z) {
         return true;
     }
-    const ClosestPointOnTriangle at_q = closest_point_on_triangle(q, a, b, c);
-    if (at_q.distance_squared < least * least) return false;
-    if (dot(at_q.offset, q - p) <= 0.0) return true;
-    const ClosestPointOnTriangle at_p = closest_point_on_triangle(p, a, b, c);
-    if (at_p.distance_squared < least * least) return false;
-    if (dot(at_p.offset, q - p) >= 0.0) return true;
+    // The end that seems nearer is likely to decide.
+    const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
+    for (const bool at_q : {from_q, !from_q}) {
+        const ClosestPointOnTriangle nearest = closest_point_on_triangle(at_q ? q : p, a, b, c);
+        if (nearest.distance_squared < least * least) return false;
+        if (dot(nearest.offset, at_q ? p - q : q - p) >= 0.0) return true;
+    }
     return squared_distance_of_segment_from_triangle(p, q, a, b, c) >= least * least;
 }
 

@@ -1,7 +1,7 @@
 /// \file
 /// Time of asking the broad phase which triangles a segment may touch, in a rocky cavity of 20 thousand and of 1.3
 /// million triangles: segments shorter than an edge, and segments across the cavity that end at their first triangle.
-/// And of one look at a cluster of triangles.
+/// Of one look at a cluster of triangles, and of one at the grid of distances.
 
 #include <benchmark/benchmark.h>
 
@@ -11,6 +11,7 @@
 #include "generators/build_near.h"
 #include "generators/rock.h"
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/clearance_grid.h"
 #include "ricochet/geometry/triangle_bvh.h"
 #include "ricochet/geometry/triangle_clusters.h"
 
@@ -94,6 +95,36 @@ void look_along_lines(benchmark::State& state) { look_at_clusters(state, 0.0); }
 void look_along_parabolas(benchmark::State& state) { look_at_clusters(state, 1e-3); }
 BENCHMARK(look_along_lines);
 BENCHMARK(look_along_parabolas);
+
+/// At places all over the cavity, most of them free.
+void look_up_clearance(benchmark::State& state) {
+    const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
+    Box3 box;
+    for (const Vec3& v : mesh.vertices) box.include(v);
+    const ClearanceGrid grid(mesh.vertices, mesh.triangles, box);
+    RandomSequence random(3, 0, 0);
+    std::vector<Vec3> places(4096);
+    for (Vec3& place : places) place = 1.5 * random.in_unit_ball();
+    std::size_t i = 0;
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(grid.at(places[i++ % places.size()]));
+}
+BENCHMARK(look_up_clearance)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+
+void build_clearance(benchmark::State& state) {
+    const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
+    Box3 box;
+    for (const Vec3& v : mesh.vertices) box.include(v);
+    for ([[maybe_unused]] auto _ : state) {
+        const ClearanceGrid grid(mesh.vertices, mesh.triangles, box);
+        benchmark::DoNotOptimize(grid.memory_bytes());
+    }
+}
+BENCHMARK(build_clearance)
+    ->ArgName("triangles")
+    ->Arg(20'000)
+    ->Arg(1'300'000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void build(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/contact_search.h"
@@ -128,6 +130,90 @@ TEST(Outlook, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
     }
     EXPECT_GT(looked, 0.95 * possible);
     EXPECT_GT(looked_bent, 0.9 * possible_bent);
+}
+
+/// A rough ball of fine triangles, with some things inside.
+TriangleMesh furnished_ball(RandomSequence& random) {
+    TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
+    for (Vec3& v : mesh.vertices) v *= 1.0 + 0.02 * random.uniform();
+    return testing::merged(std::move(mesh), testing::sphere_mesh({0.2, 0.1, 0.3}, 0.15, 3));
+}
+
+TEST(TimeClearOf, IsBeforeAnyTriangleIsNearAndMostOfTheWayToTheFirst) {
+    RandomSequence random(3, 0, 0);
+    const TriangleMesh mesh = furnished_ball(random);
+    const CollisionWorld world = rough_world(mesh);
+    double told = 0.0;
+    double possible = 0.0;
+    for (int i = 0; i < test::scaled(300); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Vec3 velocity = i % 7 == 0 ? Vec3{} : 2.0 * random.in_unit_ball();
+        const Path path = parabola_path(0.5 * random.in_unit_ball(), velocity, acceleration, 1.0);
+        const double margin = 0.05 * random.uniform();
+        const double from = 0.1 * random.uniform();
+        const double until = time_clear_of(path, world.clearance(), margin, from);
+        ASSERT_GE(until, from);
+        ASSERT_LE(until, path.duration);
+        for (int k = 0; k < 20 && until > from; ++k) {
+            ASSERT_GT(distance_from(mesh, path.position(from + (until - from) * k / 20.0)), margin) << k;
+        }
+        ContactScratch scratch;
+        const auto hit = ContactSearch(world, scratch).search(path, 0.0);
+        told += until;
+        possible += hit ? hit->time : 1.0;
+    }
+    EXPECT_GT(told, 0.5 * possible);
+    EXPECT_EQ(time_clear_of(line_path({}, {1, 0, 0}, 1.0), ClearanceGrid(), 0.0, 0.25), 0.25);
+}
+
+/// Chains of steps of one particle: where it is free the search of every step must say so, and what it awaits must lead
+/// to the contact that a search without it finds.
+TEST(Outlook, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
+    RandomSequence random(4, 0, 0);
+    const TriangleMesh mesh = furnished_ball(random);
+    CollisionWorld world = rough_world(mesh);
+    world.prepare_radius(0.01);
+    ContactScratch scratch;
+    ContactScratch other;
+    int awaited = 0;
+    int met = 0;
+    for (int i = 0; i < test::scaled(1500); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const double radius = i % 4 == 0 ? 0.01 : 0.0;
+        const Vec3 acceleration = i % 2 == 0 ? Vec3{} : 2.0 * random.unit_vector();
+        const Vec3 start = 0.9 * random.in_unit_ball();
+        const Vec3 velocity = 3.0 * random.unit_vector();
+        const double h = 0.005 + 0.01 * random.uniform();
+        const double margin = 1e-9 + 0.125 * h * h * length(acceleration);
+        const Path path = parabola_path(start, velocity, acceleration, h);
+        const Outlook outlook{parabola_path(start, velocity, acceleration, 1.0), margin, 2.0 * h, h};
+        ContactSearch search(world, scratch);
+        if (search.search(path, radius, &outlook)) continue;
+        // The last step that begins before something is near.
+        const double free = std::max(search.free_until(), h);
+        const double from = h * std::max(1.0, std::floor(free / h));
+        if (!search.awaited().is_known() || search.awaited_until() < from + h) continue;
+        const Vec3 p = outlook.path.position(from);
+        const Vec3 v = outlook.path.velocity(from);
+        const Path step = parabola_path(p, v, acceleration, h);
+        const auto by_awaited = ContactSearch(world, scratch).search(step, radius, nullptr, search.awaited());
+        const auto by_boxes = ContactSearch(world, other).search(step, radius);
+        ASSERT_EQ(by_awaited.has_value(), by_boxes.has_value());
+        ++awaited;
+        if (!by_boxes) continue;
+        ++met;
+        ASSERT_EQ(by_awaited->time, by_boxes->time);
+        ASSERT_EQ(by_awaited->count, by_boxes->count);
+        for (int k = 0; k < by_boxes->count; ++k) {
+            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].surface,
+                      by_boxes->all()[static_cast<std::size_t>(k)].surface);
+            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].normal,
+                      by_boxes->all()[static_cast<std::size_t>(k)].normal);
+        }
+    }
+    EXPECT_GT(awaited, test::scaled(1500) / 3);
+    EXPECT_GT(met, test::scaled(1500) / 6);
 }
 
 }  // namespace

@@ -607,5 +607,28 @@ TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
     EXPECT_GT(legs, 500);
 }
 
+TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOverlapped) {
+    int receding = 0;
+    int apart = 0;
+    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
+        SphereCase s = random_case(index);
+        if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
+        const auto& [a, b, c] = s.triangle;
+        const SphereSweep sweep(s.path, s.radius);
+        const ClosestPointOnTriangle nearest = closest_point_on_triangle(s.path.c[0], a, b, c);
+        if (sweep.starts_apart_from(a, b, c)) {
+            ASSERT_GT(nearest.distance_squared, s.radius * s.radius);
+            ++apart;
+        }
+        if (sweep.recedes_from(nearest)) {
+            ASSERT_FALSE(contact_of(s).has_value());
+            ++receding;
+        }
+    }
+    EXPECT_GT(receding, test::scaled(20'000) / 10);
+    EXPECT_GT(apart, test::scaled(20'000) / 10);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -44,7 +44,7 @@ public:
     /// Where a particle that owes steps is after them.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
         std::size_t k = made_[i];
-        if (k == steps_.size()) return state;
+        if (k >= steps_.size()) return state;  // more than these, where the step that is made now has failed
         state = steps_[k++].step(state.position, state.velocity);
         if (is_straight_ && moves_far(state.velocity)) return straight_on(k, state);
         for (; k < steps_.size(); ++k) state = steps_[k].step(state.position, state.velocity);

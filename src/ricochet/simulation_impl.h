@@ -133,13 +133,15 @@ struct Simulation::Impl {
     void visit_due(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t next = next_step();
         const std::uint32_t* again = searched_again.data();
-        visit_few(begin, end, [=](std::size_t i) { return again[i] <= next; }, visit);
+        visit_few(
+            begin, end, [=](std::size_t i) { return again[i] <= next; }, visit);
     }
     template <class Visit>
     void visit_all_but_coasting(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t next = next_step();
         const std::uint32_t* again = searched_again.data();
-        visit_few(begin, end, [=](std::size_t i) { return again[i] + 1U <= next + 1U; }, visit);
+        visit_few(
+            begin, end, [=](std::size_t i) { return again[i] + 1U <= next + 1U; }, visit);
     }
     // It flies, and what the arrays keep of contact is empty.
     [[nodiscard]] bool is_plain(std::size_t i) const { return searched_again[i] != kStill && searched_again[i] != 0; }
@@ -200,7 +202,7 @@ struct Simulation::Impl {
     /// Of every particle one more than the number of the step with which it is to be searched for again: until then it
     /// meets nothing. 0: nothing is known of it. See kStill.
     std::vector<std::uint32_t> searched_again;
-    std::vector<Awaited> awaited;  ///< of every particle, by the step with which it is searched for again
+    std::vector<Awaited> awaited;   ///< of every particle, by the step with which it is searched for again
     std::optional<OwedSteps> owed;  ///< while coasting particles need not be where the simulation is
     std::vector<SideMemory> sides;  ///< one a collider for every particle, for responses that keep sides
     Particles particles;

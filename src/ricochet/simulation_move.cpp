@@ -241,7 +241,8 @@ std::uint32_t Simulation::Impl::next_search(std::size_t i, const MovingParticle&
 // They must be all that is near in the whole step.
 Awaited Simulation::Impl::awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const {
     if (again == kStill || again == 0 || outcome.awaited_for == 0.0) return {};
-    const std::uint64_t end = std::max<std::uint64_t>(again, statistics.steps + 2);  // of the step, as a number of steps
+    const std::uint64_t end =
+        std::max<std::uint64_t>(again, statistics.steps + 2);  // of the step, as a number of steps
     return until + outcome.awaited_for >= time_at(end) ? outcome.awaited : Awaited{};
 }
 

@@ -199,6 +199,28 @@ TEST(ContactSearch, EndsForPathsThatCurveEnormously) {
     EXPECT_FALSE(ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0), 0.0));
 }
 
+TEST(ContactSearch, LooksAtABentPathThatEndsWhereItBegins) {
+    const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const auto contact = search.search(parabola_path({1, 0.25, 0.125}, {1, 0, 0}, {0, 0, -9.81}, 0.0), 0.0);
+    ASSERT_TRUE(contact.has_value());
+    EXPECT_EQ(contact->time, 0.0);
+    EXPECT_TRUE(search.starts_in_overlap());
+}
+
+TEST(ContactSearch, MissesNothingAlongAPathThatBendsByLessThanAnyNumberTells) {
+    const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Vec3 hardly{0, 0, -1e-170};
+    const Path path = parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 1.0);
+    const Outlook outlook{parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 100.0), 10.0, 2.0, 1.0};
+    const auto contact = search.search(path, 0.0, &outlook);
+    ASSERT_TRUE(contact.has_value());
+    EXPECT_NEAR(contact->time, 0.45, 1e-12);
+}
+
 TEST(ContactSearch, ListsTheSurfacesAPointStandsOn) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), mesh_collider(testing::floor_mesh(1.0, 2)),
                                 plane_collider({0, 0, 5}, {0, 0, 1}));

@@ -621,7 +621,7 @@ TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOv
             ASSERT_GT(nearest.distance_squared, s.radius * s.radius);
             ++apart;
         }
-        if (sweep.recedes_from(nearest)) {
+        if (sweep.recedes_from(nearest, a, b, c)) {
             ASSERT_FALSE(contact_of(s).has_value());
             ++receding;
         }

@@ -349,8 +349,8 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
 
 std::size_t CollisionWorld::memory_bytes() const {
     const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    std::size_t bytes = clearance_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) + held(degenerate_) +
-                        held(shapes_) + held(triangle_materials_);
+    std::size_t bytes = clearance_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) +
+                        held(degenerate_) + held(shapes_) + held(triangle_materials_);
     if (clusters_) bytes += held(*clusters_);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
     return bytes;

@@ -159,7 +159,7 @@ bool ContactSearch::look_along_parabola(const Path& path, const Outlook& outlook
     const double margin = margin_of(outlook, end);
     const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
     const double stretch = std::sqrt(2.0 * std::max(0.0, bulge_ - outlook.margin) / bend);
-    if (stretch < outlook.least) {
+    if (!(stretch >= outlook.least)) {
         search_meshes(path);
         free_until_ = std::min(free_until_, time_clear_of(outlook.path, world_.clearance(), margin, path.duration));
         return true;
@@ -288,8 +288,11 @@ void ContactSearch::search_all_triangles(const Path& path) {
 // every triangle is judged on the whole path.
 void ContactSearch::search_triangles(const Path& path, double from, double to, int depth) {
     if (from > first_time_ || all_triangles_) return;
-    if (path.degree == 2) from = time_clear_of(path, world_.clearance(), margin_of(path), from);
-    if (path.degree == 2 && from >= to) return;
+    if (path.degree == 2) {
+        const double clear = time_clear_of(path, world_.clearance(), margin_of(path), from);
+        if (clear > from && clear >= to) return;
+        from = clear;
+    }
     if (!covers_chord(path, from, to)) {
         if (depth == 0) {
             search_all_triangles(path);
@@ -339,7 +342,7 @@ void ContactSearch::look_with_sphere(std::uint32_t triangle) {
     if (!sphere_->starts_apart_from(a, b, c)) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
         note_overlap(surface, std::sqrt(nearest.distance_squared));
-        if (sphere_->recedes_from(nearest)) return;
+        if (sphere_->recedes_from(nearest, a, b, c)) return;
     }
     const auto contact = sphere_->first_contact(a, b, c);
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});

@@ -106,9 +106,9 @@ inline constexpr int kMostForeseenBentSteps = 256;
 inline constexpr double kChordRoom = 1.0 / 32;
 inline constexpr double kForesightRoom = 1.0 / 16;
 
-/// What rounding may do to places in a clearance grid, in cells. Reason: places are rounded to some 2^-50 of the largest
-/// coordinate, of which a cell is kSmallestClearanceCell at least, and to as much of the grid's thousand cells. Smaller
-/// than some 2^-18: a triangle could be nearer than the grid says. Larger: clearances are that much smaller.
+/// What rounding may do to places in a clearance grid, in cells. Reason: places are rounded to some 2^-50 of the
+/// largest coordinate, of which a cell is kSmallestClearanceCell at least, and to as much of the grid's thousand cells.
+/// Smaller than some 2^-18: a triangle could be nearer than the grid says. Larger: clearances are that much smaller.
 inline constexpr double kClearanceRounding = 0x1p-10;
 
 /// Smallest edge of a clearance grid's cell, relative to the largest coordinate. Smaller than some 2^-36: see

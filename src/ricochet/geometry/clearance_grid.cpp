@@ -127,7 +127,8 @@ void ClearanceGrid::mark_cells_of(const Box3& box) {
     for (std::size_t z = first[2]; z <= last[2]; ++z) {
         for (std::size_t y = first[1]; y <= last[1]; ++y) {
             for (std::size_t x = first[0]; x <= last[0]; ++x) {
-                std::atomic_ref(cells_[index(x, y, z)]).store(0, std::memory_order_relaxed);
+                const std::atomic_ref cell(cells_[index(x, y, z)]);
+                if (cell.load(std::memory_order_relaxed) != 0) cell.store(0, std::memory_order_relaxed);
             }
         }
     }

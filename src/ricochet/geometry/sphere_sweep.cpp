@@ -82,8 +82,12 @@ bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c)
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
 
-bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start) const {
-    return path_.degree < 2 && dot(nearest_to_start.offset, path_.c[1]) > slack_ * length(path_.c[1]);
+// The offset errs by some roundings of the largest coordinate.
+bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
+                               const Vec3& c) const {
+    if (path_.degree > 1) return false;
+    const double largest = std::max({scale_, max_abs(a), max_abs(b), max_abs(c)});
+    return dot(nearest_to_start.offset, path_.c[1]) > kCandidateSlack * largest * length(path_.c[1]);
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {

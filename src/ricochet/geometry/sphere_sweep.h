@@ -57,9 +57,11 @@ public:
 
     /// True when the start is certainly further than the radius from the triangle. Cheap; errs on the side of false.
     [[nodiscard]] bool starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const;
-    /// Given the triangle's point nearest to the start: true when the path is straight and certainly leads away from
-    /// there. The distance from a convex set is convex along a line, so it never shrinks then, and nothing is met.
-    [[nodiscard]] bool recedes_from(const ClosestPointOnTriangle& nearest_to_start) const;
+    /// Given the point of the triangle (a, b, c) nearest to the start: true when the path is straight and certainly
+    /// leads away from there. The distance from a convex set is convex along a line, so it never shrinks then, and
+    /// nothing is met.
+    [[nodiscard]] bool recedes_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
+                                    const Vec3& c) const;
 
     [[nodiscard]] const Path& path() const { return path_; }
     [[nodiscard]] double radius() const { return radius_; }

@@ -37,7 +37,7 @@ MoveOutcome Mover::run() {
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
             const auto outlook = outlook_of(flight);
             contact = follow(flight, outlook ? &*outlook : nullptr, first ? particle_.awaited : Awaited{});
-            if (outlook && !contact && !outcome_.frozen) look_beyond(flight);
+            if (outlook && !contact && state_.position == flight.path.end) look_beyond(flight);
         }
         while (contact && has_budget() && !outcome_.absorbed) contact = answer(flight, *contact);
         if (outcome_.absorbed) break;
@@ -70,8 +70,8 @@ std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
     const double left = rules_.settings.end - (state_.time + remaining_);  // of the run, after this step
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining_ + std::min(steps * time_step, left + time_step);
-    Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
-                    remaining_ + time_step, kWholeStep * time_step};
+    Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0, remaining_ + time_step,
+                    kWholeStep * time_step};
     const double speed = length(flight.end_velocity) + acceleration * duration;
     const double largest = max_abs(flight.path.end) + speed * duration + state_.radius;
     if (!(largest < kLargestCoordinate) || !(speed < kFastestSpeed)) return std::nullopt;

@@ -27,8 +27,8 @@ set offsets 0,0,graph 0.05,0
 set xtics ('gas-20k' 0, 'gas-1300k' 1) rotate by -30 noenhanced
 set xrange [-0.6:1.6]
 $numbers << EOD
-"gas-20k" 1.80891 1.00171 2.08624
-"gas-1300k" 1.73319 0.835855 1.98326
+"gas-20k" 2.69233 1.41355 3.1322
+"gas-1300k" 2.23776 0.965808 2.48604
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -27,7 +27,7 @@ set offsets 0,0,graph 0.05,0
 set xtics ('hail' 0) rotate by -30 noenhanced
 set xrange [-0.6:0.6]
 $numbers << EOD
-"hail" 0.590584 0.269476 0.738067
+"hail" 0.701345 0.262918 0.868693
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -26,17 +26,17 @@ set offsets 0,0,graph 0.05,0
 set xtics ('obj-20k' 0, 'ply-20k' 1, 'ascii-ply-20k' 2, 'stl-20k' 3, 'off-20k' 4, 'obj-1M' 5, 'ply-1M' 6, 'ascii-ply-1M' 7, 'stl-1M' 8, 'off-1M' 9, 'ply-5M' 10) rotate by -30 noenhanced
 set xrange [-0.6:10.6]
 $numbers << EOD
-"obj-20k" 3.26183 1.68784
-"ply-20k" 18.4712 1.71477
-"ascii-ply-20k" 3.86866 1.82891
-"stl-20k" 6.53105 1.72842
-"off-20k" 3.66546 1.67236
-"obj-1M" 3.28663 2.4471
-"ply-1M" 15.4058 2.43413
-"ascii-ply-1M" 3.57879 2.55007
-"stl-1M" 4.52372 2.85388
-"off-1M" 5.91322 3.04453
-"ply-5M" 21.3204 2.70698
+"obj-20k" 5.55658 1.91129
+"ply-20k" 21.0789 1.6982
+"ascii-ply-20k" 6.34825 1.90105
+"stl-20k" 11.9881 2.08747
+"off-20k" 7.0126 2.17548
+"obj-1M" 4.65408 2.41643
+"ply-1M" 24.2496 2.58682
+"ascii-ply-1M" 5.74696 2.63432
+"stl-1M" 4.09749 2.40488
+"off-1M" 4.50026 2.47423
+"ply-5M" 24.405 3.1481
 EOD
 plot $numbers using ($0+(-0.1667)):2 with boxes linestyle 1 title 'reading, one thread', \
      $numbers using ($0+(-0.1667)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

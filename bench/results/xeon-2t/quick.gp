@@ -27,9 +27,9 @@ set offsets 0,0,graph 0.05,0
 set xtics ('gas' 0, 'hail' 1, 'pinball' 2) rotate by -30 noenhanced
 set xrange [-0.6:2.6]
 $numbers << EOD
-"gas" 1.87556 1.19582 2.28311
-"hail" 0.654935 0.307982 0.784855
-"pinball" 0.0199906 0.0177938 0.220766
+"gas" 2.06596 1.24989 2.6033
+"hail" 0.623464 0.356024 0.763504
+"pinball" 0.0210563 0.0185467 0.21937
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -26,11 +26,11 @@ set xtics ('gas-points' 0, 'gas-spheres' 1, 'gas-decades' 2, 'pinball-points' 3,
 set xrange [-0.6:5.6]
 $numbers << EOD
 "gas-points" 1
-"gas-spheres" 3.49182
-"gas-decades" 4.40135
+"gas-spheres" 4.03129
+"gas-decades" 5.34742
 "pinball-points" 1
-"pinball-spheres" 3.84448
-"pinball-decades" 5.14627
+"pinball-spheres" 3.39458
+"pinball-decades" 4.48466
 EOD
 plot $numbers using ($0+(0)):2 with boxes linestyle 1 title 'cost over points', \
      $numbers using ($0+(0)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

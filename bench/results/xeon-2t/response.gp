@@ -26,9 +26,9 @@ set xtics ('exact' 0, 'rollback' 1, 'project' 2, 'penalty' 3) rotate by -30 noen
 set xrange [-0.6:3.6]
 $numbers << EOD
 "exact" 1
-"rollback" 3.06641
-"project" 5.14684
-"penalty" 23.583
+"rollback" 3.92236
+"project" 6.15251
+"penalty" 24.8768
 EOD
 plot $numbers using ($0+(0)):2 with boxes linestyle 1 title 'cost over exact', \
      $numbers using ($0+(0)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

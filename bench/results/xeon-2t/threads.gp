@@ -25,15 +25,15 @@ set xtics (1, 2)
 set xrange [0.9091:2.2]
 $case0 << EOD
 1 1 1
-2 1.65061 1.68287
+2 1.39996 1.86081
 EOD
 $case1 << EOD
 1 1 1
-2 2.03762 2.20113
+2 1.94663 1.99679
 EOD
 $case2 << EOD
 1 1 1
-2 1.67919 2.21141
+2 1.91577 1.84843
 EOD
 plot x with lines linecolor '#a0a0a0' title 'ideal', \
      $case0 using 1:2 with linespoints linestyle 1 title 'gas', \

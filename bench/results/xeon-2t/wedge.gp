@@ -27,7 +27,7 @@ set offsets 0,0,graph 0.05,0
 set xtics ('wedge' 0) rotate by -30 noenhanced
 set xrange [-0.6:0.6]
 $numbers << EOD
-"wedge" 0.000825428 0.000622576 0.119967
+"wedge" 0.000835104 0.000576012 0.125633
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -11,12 +11,14 @@
 
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/closest_point.h"
 #include "support/counts.h"
+#include "support/mesh_distance.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
 namespace {
+
+using testing::distance_from;
 
 double height(const Plane& plane, const Vec3& p) { return dot(plane.normal, p - plane.point); }
 
@@ -76,15 +78,6 @@ CollisionWorld rough_world(const TriangleMesh& mesh) {
     std::vector<ColliderDescription> colliders;
     colliders.push_back({"mesh", MeshShape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}}, 0});
     return CollisionWorld(std::move(colliders));
-}
-
-double distance_from(const TriangleMesh& mesh, const Vec3& p) {
-    double least = 1e300;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        least = std::min(
-            least, closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
-    }
-    return std::sqrt(least);
 }
 
 TEST(Outlook, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {

@@ -9,26 +9,19 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/closest_point.h"
 #include "support/counts.h"
+#include "support/mesh_distance.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
 namespace {
 
+using testing::distance_from;
+
 ClearanceGrid grid_of(const TriangleMesh& mesh) {
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.include(v);
     return {mesh.vertices, mesh.triangles, box};
-}
-
-double distance_from(const TriangleMesh& mesh, const Vec3& p) {
-    double least = 1e300;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        least = std::min(
-            least, closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
-    }
-    return std::sqrt(least);
 }
 
 /// Of any shape and size, slivers and points among them.

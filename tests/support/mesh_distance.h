@@ -1,0 +1,24 @@
+/// \file
+/// Distance from a mesh by looking at every triangle.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/geometry/closest_point.h"
+#include "ricochet/geometry/triangle_mesh.h"
+
+namespace ricochet::testing {
+
+/// m.
+inline double distance_from(const TriangleMesh& mesh, const Vec3& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b, c] : mesh.triangles) {
+        least = std::min(
+            least, closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
+    }
+    return std::sqrt(least);
+}
+
+}  // namespace ricochet::testing

@@ -14,12 +14,12 @@ constexpr std::size_t kTrianglesPerBlock = 1 << 12;
 constexpr std::size_t kFewestCells = 1 << 15;
 constexpr std::size_t kCellsPerTriangle = 2;
 
-/// Cells along one axis: more would not fit into the distances that a byte holds.
+/// Cells along the longest axis. Distances beyond what a byte holds are told as that: less than they are.
 constexpr double kMostAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Work that a triangle, and one in a million of every grid, may make on average.
+/// Marks that are afforded for each triangle, and for a million more in every grid.
 constexpr double kMostMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }

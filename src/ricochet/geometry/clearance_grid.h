@@ -24,8 +24,8 @@ class ClearanceGrid {
 public:
     /// Knows nothing: at() is 0 everywhere.
     ClearanceGrid() = default;
-    /// Built with all threads, from triangles with finite corners inside the box. Some two cells a triangle, at most
-    /// kMostCells, each a byte.
+    /// Built with all threads, from triangles with finite corners inside the box. Some two cells a triangle, 2^15 for
+    /// small meshes, at most kMostCells, each a byte; fewer where large triangles lie in heaps.
     ClearanceGrid(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box);
 
     /// m: no triangle is nearer to p than this. 0 where they are too near to tell. p must be finite.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ricochet/core/reserve_more.h"
 #include "ricochet/dynamics/coasting.h"
 
 namespace ricochet {
@@ -32,6 +33,8 @@ public:
 
     /// A particle that is born within the step that is made now: it owes nothing.
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
+    /// Makes room for `more` particles.
+    void reserve(std::size_t more) { reserve_more(made_, more); }
     /// Keeps the particles whose flag is not 0. keep.size() is the number of particles.
     void compact(const std::vector<std::uint8_t>& keep) {
         std::size_t kept = 0;

@@ -26,6 +26,11 @@ namespace ricochet {
 /// Particles per unit of parallel work.
 inline constexpr std::size_t kParticleBlock = 256;
 
+/// Blocks that so many particles make.
+inline constexpr std::size_t blocks_of(std::size_t particles) {
+    return (particles + kParticleBlock - 1) / kParticleBlock;
+}
+
 /// Totals of one surface.
 struct SurfaceTotals {
     std::atomic<std::uint64_t> hits{0};
@@ -40,14 +45,15 @@ inline constexpr std::uint32_t kStill = 0xFFFFFFFFU;
 
 /// The particles of a step that must be searched for, in the parts that one thread moves at a time.
 struct DueParticles {
-    std::vector<std::uint32_t> particles;
-    std::vector<std::size_t> ends;  ///< of the parts
+    explicit DueParticles(std::size_t count) : particles(count) {}
 
-    [[nodiscard]] std::size_t parts() const { return ends.size(); }
+    [[nodiscard]] std::size_t parts() const { return blocks_of(particles.size()); }
     [[nodiscard]] std::span<const std::uint32_t> part(std::size_t k) const {
-        const std::size_t begin = k == 0 ? 0 : ends[k - 1];
-        return std::span(particles).subspan(begin, ends[k] - begin);
+        const std::size_t begin = k * kParticleBlock;
+        return std::span(particles).subspan(begin, std::min(kParticleBlock, particles.size() - begin));
     }
+
+    std::vector<std::uint32_t> particles;
 };
 
 /// Time of a particle that its bounce budget has cut off.
@@ -56,7 +62,8 @@ struct CutOff {
     double time = 0.0;  ///< s
 };
 
-/// What a block of particles adds to the statistics; blocks are added in order.
+/// What a block of particles adds to the statistics; blocks are added in order. There are as many as there is work: what
+/// is done for each is done by one thread.
 struct BlockCounts {
     std::uint64_t contacts = 0;
     std::uint64_t stayed = 0;
@@ -95,6 +102,10 @@ struct BlockCounts {
     }
 };
 
+inline void grow_to(std::vector<BlockCounts>& blocks, std::size_t count) {
+    if (blocks.size() < count) blocks.resize(count);
+}
+
 struct Simulation::Impl {
     explicit Impl(SimulationSetup setup);
 
@@ -106,6 +117,8 @@ struct Simulation::Impl {
     void catch_up_part(std::span<const std::uint32_t> due);
     void catch_up_all();
     void emit(double from, double to);
+    /// Makes room for so many particles.
+    void make_room(std::size_t births);
     void add(Particle particle);
     void move_all(double from, double to);
     void move_from(std::size_t first, double from, double to);
@@ -115,7 +128,7 @@ struct Simulation::Impl {
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
     [[nodiscard]] DueParticles coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     [[nodiscard]] std::size_t coast_block(std::size_t begin, std::size_t end, double from, double to,
-                                          BlockCounts& counts);
+                                          std::vector<Violation>* seen);
     void order_by_place(DueParticles& due) const;
     void fetch(std::size_t i) const;
     void fetch_triangles(std::size_t i) const;
@@ -147,7 +160,7 @@ struct Simulation::Impl {
     [[nodiscard]] bool is_plain(std::size_t i) const { return searched_again[i] != kStill && searched_again[i] != 0; }
     [[nodiscard]] static bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome);
     [[nodiscard]] Coasting coasting_of(std::size_t i, double from, double to) const;
-    void coast_on(std::size_t i, const Coasting& coasting, double from, double to, BlockCounts& counts);
+    void coast_on(std::size_t i, const Coasting& coasting, double from, double to, std::vector<Violation>* seen);
     [[nodiscard]] std::uint32_t next_search(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                             double until) const;
     [[nodiscard]] Awaited awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "ricochet/core/morton.h"
@@ -71,21 +72,23 @@ void Simulation::Impl::catch_up_all() {
     owed->clear();
 }
 
-// Particles that meet nothing go on here. The others are due, listed by the blocks that they are in.
+// Particles that meet nothing go on here. The others are due, listed in their order.
 DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
     const std::size_t count = particles.size() - first;
     if (owed && owed->is_full()) catch_up_all();
-    DueParticles due;
-    due.ends.resize(blocks.size());
+    std::vector<std::size_t> ends(blocks_of(count));  // of every block's due particles in the list of all
+    if (check) grow_to(blocks, ends.size());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        due.ends[block] = coast_block(first + begin, first + end, from, to, blocks[block]);
+        auto* seen = check ? &blocks[block].violations : nullptr;
+        ends[block] = coast_block(first + begin, first + end, from, to, seen);
     });
-    for (std::size_t k = 1; k < due.ends.size(); ++k) due.ends[k] += due.ends[k - 1];
-    due.particles.resize(due.ends.empty() ? 0 : due.ends.back());
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    DueParticles due(ends.empty() ? 0 : ends.back());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        std::uint32_t* next = due.particles.data() + (block == 0 ? 0 : due.ends[block - 1]);
+        const std::size_t place = block == 0 ? 0 : ends[block - 1];
+        std::uint32_t* next = due.particles.data() + place;
         visit_due(first + begin, first + end, [&](std::size_t i) { *next++ = static_cast<std::uint32_t>(i); });
-        if (owed) catch_up_part(due.part(block));
+        if (owed) catch_up_part(std::span(due.particles).subspan(place, ends[block] - place));
     });
     if (owed) owed->add({options.integrator, *forces.common_acceleration(), to - from});
     return due;
@@ -93,7 +96,7 @@ DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double 
 
 /// Returns how many are due. The loops that most particles of most steps go through: nothing but what they need.
 std::size_t Simulation::Impl::coast_block(std::size_t begin, std::size_t end, double from, double to,
-                                          BlockCounts& counts) {
+                                          std::vector<Violation>* seen) {
     const std::optional<Vec3>& common = forces.common_acceleration();
     const Coasting shared(options.integrator, common.value_or(Vec3{}), to - from);
     std::size_t due = 0;
@@ -105,7 +108,7 @@ std::size_t Simulation::Impl::coast_block(std::size_t begin, std::size_t end, do
             particles.position[i] = state.position;
             particles.velocity[i] = state.velocity;
         } else {
-            coast_on(i, common ? shared : coasting_of(i, from, to), from, to, counts);
+            coast_on(i, common ? shared : coasting_of(i, from, to), from, to, seen);
         }
     }
     return due;
@@ -116,14 +119,15 @@ Coasting Simulation::Impl::coasting_of(std::size_t i, double from, double to) co
 }
 
 // A step of a particle that meets nothing: the end of the path that would be searched.
-void Simulation::Impl::coast_on(std::size_t i, const Coasting& coasting, double from, double to, BlockCounts& counts) {
+void Simulation::Impl::coast_on(std::size_t i, const Coasting& coasting, double from, double to,
+                                std::vector<Violation>* seen) {
     const PhaseState end = coasting.step(particles.position[i], particles.velocity[i]);
     if (check) {
         const Leg leg{particles.position[i], end.position, from};
         ForceInput moved = input(i, to);
         moved.position = end.position;
         moved.velocity = end.velocity;
-        check->look_at(i, particles, moved, to, {&leg, 1}, counts.violations);
+        check->look_at(i, particles, moved, to, {&leg, 1}, *seen);
     }
     particles.position[i] = end.position;
     particles.velocity[i] = end.velocity;
@@ -143,11 +147,9 @@ void Simulation::Impl::order_by_place(DueParticles& due) const {
         }
     });
     parallel_sort(keys);
-    for (std::size_t k = 0; k < keys.size(); ++k) due.particles[k] = index_of_key(keys[k], bits);
-    due.ends.clear();
-    for (std::size_t end = kParticleBlock; end < keys.size() + kParticleBlock; end += kParticleBlock) {
-        due.ends.push_back(std::min(end, keys.size()));
-    }
+    parallel_for_blocks(keys.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) due.particles[k] = index_of_key(keys[k], bits);
+    });
 }
 
 // What moving() and store() want of a particle, whose neighbours in space lie anywhere in memory.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/reserve_more.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/spring_stability.h"
 #include "ricochet/geometry/predicates.h"
@@ -157,10 +158,19 @@ Simulation::Impl::Impl(SimulationSetup setup)
     }
     offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
     if (offspring->empty()) offspring.reset();
+    make_room(setup.particles.size());
     for (const Particle& particle : setup.particles) add(particle);
     spring_faces = std::move(setup.spring_faces);
     if (coupled.is_active()) coupled.bind(particles);
     if (options.verify) check = std::make_unique<RunCheck>(world);
+}
+
+void Simulation::Impl::make_room(std::size_t births) {
+    particles.reserve(births);
+    reserve_more(searched_again, births);
+    reserve_more(awaited, births);
+    if (owed) owed->reserve(births);
+    if (response->keeps_sides()) reserve_more(sides, births * world.colliders().size());
 }
 
 void Simulation::Impl::add(Particle particle) {
@@ -206,6 +216,7 @@ void Simulation::Impl::emit(double from, double to) {
         options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
     const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
     statistics.births_refused_by_population += born.size() - allowed;
+    make_room(allowed);
     for (std::size_t k = 0; k < allowed; ++k) add(born[k]);
     if (allowed > 0 && coupled.is_active()) coupled.bind(particles);
 }

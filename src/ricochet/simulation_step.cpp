@@ -81,7 +81,7 @@ void Simulation::Impl::bear_children(double from, double to) {
 // newborn join them with the next step.
 void Simulation::Impl::move_from(std::size_t first, double from, double to) {
     const std::size_t count = particles.size() - first;
-    std::vector<BlockCounts> blocks((count + kParticleBlock - 1) / kParticleBlock);
+    std::vector<BlockCounts> blocks;
     const bool is_planned = coupled.is_active() && first == 0;
     for (double now = from; now < to;) {
         const double whole = to - now;
@@ -107,6 +107,7 @@ void Simulation::Impl::move_part(std::size_t first, double from, double to, std:
     }
     DueParticles due = coast_all(first, from, to, blocks);
     order_by_place(due);
+    grow_to(blocks, due.parts());
     parallel_for_blocks(due.parts(), 1, [&](std::size_t part, std::size_t, std::size_t) {
         move_due(due.part(part), from, to, blocks[part]);
     });
@@ -174,6 +175,7 @@ void Simulation::Impl::move_system(std::size_t first, double from, double to, st
         system[k].stop = stop;
         system[k].is_out = stands_still(i);
     }
+    grow_to(blocks, blocks_of(system.size()));
     std::vector<MoveScratch> scratch(blocks.size());
     for (MoveScratch& block : scratch) {
         block.record_contacts = keeps_records();
@@ -244,7 +246,7 @@ void Simulation::Impl::retire(double now) {
         std::uint64_t resting = 0;
         std::uint64_t held = 0;
     };
-    std::vector<Tally> blocks((particles.size() + kParticleBlock - 1) / kParticleBlock);
+    std::vector<Tally> blocks(blocks_of(particles.size()));
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         Tally& tally = blocks[block];
         for (std::size_t i = begin; bounds && i < end; ++i) tally.leaving += coasts(i) && is_leaving(i, now) ? 1 : 0;

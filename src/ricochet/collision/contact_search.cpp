@@ -183,8 +183,9 @@ void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook,
                     span * span * outlook.path.c[2]);
     bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
-            if (from + enter * span <= path.duration) (void)look_at_triangle(path, triangle);
-            if (from + leave * span >= path.duration) note_ahead(triangle, from + enter * span);
+            const bool is_near = from + enter * span <= path.duration;
+            const bool is_left = is_near && look_at_triangle(path, triangle) && outlook.path.degree == 1;
+            if (from + leave * span >= path.duration && !is_left) note_ahead(triangle, from + enter * span);
         }
         const double until = std::min(first_time_, end_of_interest(path, outlook));
         return until < to ? std::max(0.0, (until - from) / span) : 1.0;
@@ -222,7 +223,9 @@ void ContactSearch::await(double until) {
 
 void ContactSearch::note(const ContactScratch::Found& found) {
     scratch_.found.push_back(found);
-    first_time_ = std::min(first_time_, found.time);
+    if (!(found.time < first_time_)) return;
+    first_time_ = found.time;
+    if (sphere_) sphere_->narrow(latest_with(first_time_));
 }
 
 void ContactSearch::note_overlap(SurfaceId surface, double distance) {
@@ -310,8 +313,8 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
     const double margin = margin_of(path) + beside_piece;
     const Tube tube(path.position(from), path.position(to), margin, is_parabola ? span * span * path.c[2] : Vec3{});
     bvh_->visit_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
-        const double first = look_at_triangle(path, triangle);
-        return first < to ? std::max(0.0, (first - from) / span) : 1.0;
+        (void)look_at_triangle(path, triangle);
+        return first_time_ < to ? std::max(0.0, (first_time_ - from) / span) : 1.0;
     });
 }
 
@@ -320,10 +323,12 @@ double ContactSearch::margin_of(const Path& path) const {
     return radius_ + 2.0 * slack_ + std::min(path.sagitta(0.0, path.duration), 0.5 * bulge_);
 }
 
-double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
-    if (world_.is_left_out(triangle)) return first_time_;
-    sphere_ ? look_with_sphere(triangle) : look_with_point(path, triangle);
-    return first_time_;
+/// True when a sphere that goes straight on certainly leaves the triangle behind for good.
+bool ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
+    if (world_.is_left_out(triangle)) return false;
+    if (sphere_) return look_with_sphere(triangle);
+    look_with_point(path, triangle);
+    return false;
 }
 
 void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
@@ -334,18 +339,19 @@ void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
     if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
 }
 
-void ContactSearch::look_with_sphere(std::uint32_t triangle) {
+bool ContactSearch::look_with_sphere(std::uint32_t triangle) {
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (sphere_->clears(a, b, c)) return;
+    if (sphere_->clears(a, b, c)) return false;
     scratch_.triangles.push_back(triangle);
     const SurfaceId surface = world_.surface_of_triangle(triangle);
     if (!sphere_->starts_apart_from(a, b, c)) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
         note_overlap(surface, std::sqrt(nearest.distance_squared));
-        if (sphere_->recedes_from(nearest, a, b, c)) return;
+        if (sphere_->recedes_from(nearest, a, b, c)) return true;
     }
-    const auto contact = sphere_->first_contact(a, b, c);
+    const auto contact = sphere_->first_contact_nearby(a, b, c);
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
+    return false;
 }
 
 Vec3 ContactSearch::unit_normal_of(SurfaceId surface, const Vec3& p) const {

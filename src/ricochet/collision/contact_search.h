@@ -144,9 +144,9 @@ private:
     void search_all_triangles(const Path& path);
     [[nodiscard]] bool may_reach_triangles(const Path& path, double from, double to) const;
     [[nodiscard]] std::vector<SurfaceId> gathered() const;
-    double look_at_triangle(const Path& path, std::uint32_t triangle);
+    bool look_at_triangle(const Path& path, std::uint32_t triangle);
     void look_with_point(const Path& path, std::uint32_t triangle);
-    void look_with_sphere(std::uint32_t triangle);
+    bool look_with_sphere(std::uint32_t triangle);
     void note(const ContactScratch::Found& found);
     void note_overlap(SurfaceId surface, double distance);
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/reserve_more.h"
 
 namespace ricochet {
 namespace {
@@ -64,6 +65,12 @@ void AttributeTable::append(std::span<const AttributeValue> values) {
         const bool given = k < values.size() && !is_missing(values[k]);
         const AttributeValue value = given ? values[k] : columns_[k].fallback;
         for (int c = 0; c < columns_[k].components; ++c) values_[k].push_back(value[c]);
+    }
+}
+
+void AttributeTable::reserve(std::size_t more) {
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+        reserve_more(values_[k], more * static_cast<std::size_t>(columns_[k].components));
     }
 }
 

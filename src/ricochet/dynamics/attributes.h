@@ -55,6 +55,8 @@ public:
 
     /// Appends a particle: one value a column; where there are fewer values, or one is missing, the fallback.
     void append(std::span<const AttributeValue> values);
+    /// Makes room for `more` particles.
+    void reserve(std::size_t more);
     /// Keeps the entries whose flag is not 0, in their order.
     void compact(const std::vector<std::uint8_t>& keep);
     /// Forgets all entries, keeps the columns.

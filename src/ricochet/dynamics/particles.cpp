@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ricochet/core/reserve_more.h"
+
 namespace ricochet {
 namespace {
 
@@ -56,6 +58,30 @@ void Particles::append(const Particle& particle) {
     booked_until.push_back(0.0);
     attributes.append(particle.attributes);
     if (keeps_origin) origin.push_back(particle.origin);
+}
+
+void Particles::reserve(std::size_t more) {
+    reserve_more(id, more);
+    reserve_more(position, more);
+    reserve_more(velocity, more);
+    reserve_more(spin, more);
+    reserve_more(mass, more);
+    reserve_more(radius, more);
+    reserve_more(birth_time, more);
+    reserve_more(lifetime, more);
+    reserve_more(unsimulated_time, more);
+    reserve_more(contacts, more);
+    reserve_more(frozen, more);
+    reserve_more(resting, more);
+    reserve_more(held, more);
+    reserve_more(absorbed, more);
+    reserve_more(draws, more);
+    reserve_more(support, more);
+    reserve_more(cascade_left, more);
+    reserve_more(pinned, more);
+    reserve_more(booked_until, more);
+    attributes.reserve(more);
+    if (keeps_origin) reserve_more(origin, more);
 }
 
 Particle Particles::at(std::size_t i) const {

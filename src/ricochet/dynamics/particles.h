@@ -77,6 +77,8 @@ public:
     [[nodiscard]] std::size_t size() const { return id.size(); }
     [[nodiscard]] bool empty() const { return id.empty(); }
     void append(const Particle& particle);
+    /// Makes room for `more` entries in every array.
+    void reserve(std::size_t more);
     /// Value of entry i.
     [[nodiscard]] Particle at(std::size_t i) const;
     /// Keeps the entries whose flag is not 0, in their order. keep.size() == size().

@@ -17,6 +17,20 @@ double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
 }
 
+/// Are both points certainly further than `distance` from the triangle's plane, on the same side? The error of each
+/// height is bounded as in detail::filtered_sign, that of the normal's length by some roundings.
+bool are_beyond_plane(const Vec3& p, const Vec3& q, double distance, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
+    const double longest = length(normal.value) + detail::kDeterminantFilter * length(normal.magnitude);
+    const double least = (1.0 + 0x1p-48) * distance * longest;
+    const auto height = [&](const Vec3& w) { return dot(normal.value, w); };
+    const auto error = [&](const Vec3& w) { return detail::kDeterminantFilter * dot(normal.magnitude, abs(w)); };
+    const Vec3 from_p = p - a;
+    const Vec3 from_q = q - a;
+    const double side = height(from_p) < 0.0 ? -1.0 : 1.0;
+    return side * height(from_p) > least + error(from_p) && side * height(from_q) > least + error(from_q);
+}
+
 /// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
 int side_ahead(const std::array<DoubleDouble, 4>& height) {
     for (const DoubleDouble& coefficient : height) {
@@ -30,29 +44,42 @@ int side_ahead(const std::array<DoubleDouble, 4>& height) {
 SphereSweep::SphereSweep(const Path& path, double radius)
     : path_(path),
       radius_(radius),
+      latest_(path.duration),
       squared_displacement_(ricochet::squared_displacement<double>(path)),
       precise_squared_displacement_(ricochet::squared_displacement<DoubleDouble>(path)) {
     const double h = path.duration;
-    hull_ = {path.c[0], path.end, path.c[0] + (h / path.degree) * path.c[1],
-             path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2])};
     hull_count_ = path.degree + 1;
-    Vec3 lower = path.c[0];
-    Vec3 upper = path.c[0];
-    for (int i = 1; i < hull_count_; ++i) {
-        lower = min(lower, hull(i));
-        upper = max(upper, hull(i));
-    }
-    scale_ = std::max(max_abs(lower), max_abs(upper)) + radius;
+    enclose();
+    scale_ = std::max(max_abs(lower_), max_abs(upper_)) + radius;
     slack_ = kCandidateSlack * scale_;
-    const double margin = radius + slack_;
-    lower_ = lower - Vec3{margin, margin, margin};
-    upper_ = upper + Vec3{margin, margin, margin};
     reach_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
 }
 
+/// The hull of the path until latest_, and its box.
+void SphereSweep::enclose() {
+    const Vec3& start = path_.c[0];
+    const double h = latest_;
+    hull_ = {start, path_.position(h), start + (h / path_.degree) * path_.c[1],
+             start + (h / 3.0) * (2.0 * path_.c[1] + h * path_.c[2])};
+    lower_ = upper_ = start;
+    for (int i = 1; i < hull_count_; ++i) {
+        lower_ = min(lower_, hull(i));
+        upper_ = max(upper_, hull(i));
+    }
+}
+
+// A contact with an edge may turn out to be one with the face, at a time that differs by rounding.
+void SphereSweep::narrow(double latest) {
+    const double until = latest + 2.0 * kCandidateSlack * path_.duration;
+    if (!(until < latest_)) return;
+    latest_ = until;
+    enclose();
+}
+
 bool SphereSweep::misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    const auto is_apart = [](double x, double y, double z, double low, double high) {
-        return std::min({x, y, z}) > high || std::max({x, y, z}) < low;
+    const double margin = radius_ + slack_;
+    const auto is_apart = [margin](double x, double y, double z, double low, double high) {
+        return std::min({x, y, z}) > high + margin || std::max({x, y, z}) < low - margin;
     };
     return is_apart(a.x, b.x, c.x, lower_.x, upper_.x) || is_apart(a.y, b.y, c.y, lower_.y, upper_.y) ||
            is_apart(a.z, b.z, c.z, lower_.z, upper_.z);
@@ -91,10 +118,12 @@ bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start, c
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    if (misses_box(a, b, c)) return std::nullopt;
-    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
-    if (misses_plane(normal, a)) return std::nullopt;
-    return TriangleContactSearch(*this, a, b, c, normal).first();
+    if (clears(a, b, c)) return std::nullopt;
+    return first_contact_nearby(a, b, c);
+}
+
+std::optional<SphereContact> SphereSweep::first_contact_nearby(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    return TriangleContactSearch(*this, a, b, c, detail::filtered_cross(b - a, c - a)).first();
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) const {
@@ -134,6 +163,7 @@ bool sphere_leg_is_clear(const Vec3& p, const Vec3& q, double radius, double tol
         high.z < lower.z) {
         return true;
     }
+    if (are_beyond_plane(p, q, least, a, b, c)) return true;
     // The end that seems nearer is likely to decide.
     const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
     for (const bool at_q : {from_q, !from_q}) {

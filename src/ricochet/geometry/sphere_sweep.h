@@ -47,9 +47,15 @@ public:
     /// vertices. Where face, edges and vertices tie to rounding (kSeamSlack) the face is reported, with the face's time
     /// and the bits of unit_normal(a, b, c) or their opposite.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    /// The same for a triangle that clears() has not discarded.
+    [[nodiscard]] std::optional<SphereContact> first_contact_nearby(const Vec3& a, const Vec3& b, const Vec3& c) const;
     /// First contact with a plane, from either side. Where the plane is axis-aligned, so that its normal is exact, the
     /// time has the same bits as that of any triangle in it.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Plane& plane) const;
+
+    /// What comes after `latest`, s, does not matter any more: clears() is about the path up to then only, and contacts
+    /// with triangles after it need not be found. Those before it are the same. A pure narrowing.
+    void narrow(double latest);
 
     /// True when the sphere and its chords certainly stay clear of the triangle by `kCandidateSlack`: the cheap test
     /// that decides most candidates. Errs on the side of false. first_contact makes this test itself.
@@ -70,17 +76,19 @@ private:
     friend class TriangleContactSearch;
 
     [[nodiscard]] const Vec3& hull(int i) const { return hull_[static_cast<std::size_t>(i)]; }
+    void enclose();
     [[nodiscard]] bool misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const;
     [[nodiscard]] bool misses_plane(const detail::FilteredCross& normal, const Vec3& a) const;
 
     Path path_;
     double radius_;
-    std::array<Vec3, 4> hull_{};  ///< Bezier points: path and chords lie in their convex hull
+    double latest_;               ///< s, until which contacts matter
+    std::array<Vec3, 4> hull_{};  ///< Bezier points: path and chords until then lie in their convex hull
     int hull_count_ = 0;
-    Vec3 lower_;  ///< box of the sphere's whole way, widened by the slack
+    Vec3 lower_;  ///< their box
     Vec3 upper_;
     double reach_ = 0.0;  ///< bound of the distance from the start, m
-    double scale_ = 0.0;  ///< largest coordinate of the hull plus radius, m
+    double scale_ = 0.0;  ///< largest coordinate of the whole path's hull plus radius, m
     double slack_ = 0.0;  ///< kCandidateSlack of that, m
     Coefficients<double> squared_displacement_{};
     Coefficients<DoubleDouble> precise_squared_displacement_{};

@@ -77,7 +77,7 @@ TriangleContactSearch::TriangleContactSearch(const SphereSweep& sphere, const Ve
       corners_{a, b, c},
       rough_normal_(rough_normal),
       largest_coordinate_(std::max({max_abs(a), max_abs(b), max_abs(c)})),
-      limit_(sphere.path_.duration) {}
+      limit_(sphere.latest_) {}
 
 std::optional<SphereContact> TriangleContactSearch::first() {
     search(0.0);
@@ -89,7 +89,7 @@ std::optional<SphereContact> TriangleContactSearch::first() {
 /// The face comes first, then the vertices, since what they find shortens the search along the edges, the costliest.
 void TriangleContactSearch::search(double from) {
     best_.reset();
-    limit_ = path_.duration;
+    limit_ = sphere_.latest_;
     search_face(from);
     for (int i = 0; i < 3; ++i) search_vertex(i, from);
     for (int i = 0; i < 3; ++i) search_edge(i, from);
@@ -182,6 +182,7 @@ void TriangleContactSearch::search_face(double from) {
     const auto height = height_over_face(scaled_radius);
     if (abs(height[0]) <= scaled_radius && foot_is_on_face(path_.c[0])) starts_in_overlap_ = true;
     for (const double time : face_crossings(height, scaled_radius, from)) {
+        if (time > limit_) return;
         if (!foot_is_on_face(path_.position(time))) continue;
         offer(time, TriangleFeature::kFace);
         return;
@@ -308,6 +309,7 @@ std::optional<SphereContact> TriangleContactSearch::search_from_overlap() {
     if (end.kind == OverlapEnd::kStopped) {
         return contact_at({end.time, nearest_to(path_.position(end.time)).feature});
     }
+    if (end.time > sphere_.latest_) return std::nullopt;
     search(end.time);
     if (!best_) return std::nullopt;
     return contact_at(*best_);

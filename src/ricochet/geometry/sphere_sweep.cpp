@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/separation.h"
 #include "ricochet/geometry/triangle_contact_search.h"
 
 namespace ricochet {
@@ -15,20 +16,6 @@ double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 lower = min(a, min(b, c));
     const Vec3 upper = max(a, max(b, c));
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
-}
-
-/// Are both points certainly further than `distance` from the triangle's plane, on the same side? The error of each
-/// height is bounded as in detail::filtered_sign, that of the normal's length by some roundings.
-bool are_beyond_plane(const Vec3& p, const Vec3& q, double distance, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
-    const double longest = length(normal.value) + detail::kDeterminantFilter * length(normal.magnitude);
-    const double least = (1.0 + 0x1p-48) * distance * longest;
-    const auto height = [&](const Vec3& w) { return dot(normal.value, w); };
-    const auto error = [&](const Vec3& w) { return detail::kDeterminantFilter * dot(normal.magnitude, abs(w)); };
-    const Vec3 from_p = p - a;
-    const Vec3 from_q = q - a;
-    const double side = height(from_p) < 0.0 ? -1.0 : 1.0;
-    return side * height(from_p) > least + error(from_p) && side * height(from_q) > least + error(from_q);
 }
 
 /// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
@@ -109,6 +96,14 @@ bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c)
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
 
+// Along the direction it is beyond the radius, and stays so.
+bool SphereSweep::leaves_behind(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    if (path_.degree > 1) return false;
+    const Vec3 away = direction_away(path_.c[0], a, b, c);
+    return distance_along(away, path_.c[0], a, b, c) > radius_ &&
+           dot(away, path_.c[1]) > kCandidateSlack * length(away) * length(path_.c[1]);
+}
+
 // The offset errs by some roundings of the largest coordinate.
 bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
                                const Vec3& c) const {
@@ -163,9 +158,10 @@ bool sphere_leg_is_clear(const Vec3& p, const Vec3& q, double radius, double tol
         high.z < lower.z) {
         return true;
     }
-    if (are_beyond_plane(p, q, least, a, b, c)) return true;
     // The end that seems nearer is likely to decide.
     const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
+    const Vec3 away = direction_away(from_q ? q : p, a, b, c);
+    if (distance_along(away, p, a, b, c) > least && distance_along(away, q, a, b, c) > least) return true;
     for (const bool at_q : {from_q, !from_q}) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(at_q ? q : p, a, b, c);
         if (nearest.distance_squared < least * least) return false;

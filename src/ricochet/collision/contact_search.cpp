@@ -18,6 +18,9 @@ constexpr int kPieceDepth = 40;
 /// near. Fewer: steps in which it is searched for in vain. More: each costs some hundred operations.
 constexpr int kLooksAtDistance = 3;
 
+/// What a further look may gain is not worth it when the last one has gained less than this part of a step or two.
+constexpr double kLittleOfAStep = 0x1p-5;
+
 double largest_coordinate(const Path& path) {
     const double h = path.duration;
     Vec3 magnitude = abs(path.c[0]);
@@ -191,7 +194,8 @@ void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook,
             const bool is_near = from + enter * span <= path.duration;
             const bool is_left = is_near && look_at_triangle(path, triangle) && outlook.path.degree == 1;
             if (from + leave * span >= path.duration && !is_left && scratch_.found.empty()) {
-                note_ahead(triangle, outlook, from + enter * span, from + leave * span);
+                const double last = std::min(from + leave * span, end_of_interest(path, outlook));
+                note_ahead(triangle, outlook, from + enter * span, last);
             }
         }
         const double until = std::min(first_time_, end_of_interest(path, outlook));
@@ -215,9 +219,9 @@ double ContactSearch::end_of_interest(const Path& path, const Outlook& outlook) 
     return std::max(free_until_, path.duration) + outlook.beyond;
 }
 
-void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double leave) {
-    const double begin = sphere_ ? time_of_approach(triangle, outlook, enter, leave) : enter;
-    if (begin > leave) return;
+void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double last) {
+    const double begin = sphere_ ? time_of_approach(triangle, outlook, enter, last) : enter;
+    if (begin > last) return;
     free_until_ = std::min(free_until_, begin);
     scratch_.ahead.push_back({triangle, begin});
 }
@@ -225,19 +229,22 @@ void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, d
 // What the boxes say about a sphere is how it passes the triangle's plane, and beside the triangle it does that early.
 // No distance changes faster than the sphere moves (conservative advancement: B. Mirtich, "Impulse-based Dynamic
 // Simulation of Rigid Body Systems", PhD thesis, Berkeley 1996, section 2.3).
-/// A time before which the sphere certainly does not come near the triangle, s along the outlook's path.
+/// A time before which the sphere certainly does not come near the triangle, s along the outlook's path; later than
+/// `last` when it does not until then.
 double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& outlook, double enter,
-                                       double leave) const {
+                                       double last) const {
     const Path& path = outlook.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    const double near = margin_of(outlook, leave);
-    const double fastest = length(path.c[1]) + 2.0 * leave * length(path.c[2]);
+    const double near = margin_of(outlook, last);
+    const double fastest = length(path.c[1]) + 2.0 * last * length(path.c[2]);
+    const double little = kLittleOfAStep * outlook.beyond * fastest;
     double time = enter;
-    for (int look = 0; look < kLooksAtDistance && time <= leave; ++look) {
+    for (int look = 0; look < kLooksAtDistance && time <= last; ++look) {
         const Vec3 place = path.position(time);
         const double distance = distance_along(direction_away(place, a, b, c), place, a, b, c);
         if (!(distance > near)) break;
         time += (distance - near) / fastest;
+        if (distance - near < little) break;
     }
     return time;
 }
@@ -245,6 +252,8 @@ double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& ou
 void ContactSearch::await(double until) {
     awaited_until_ = until;
     awaited_ = Awaited::none();
+    // What is met first makes short work of the others.
+    std::sort(scratch_.ahead.begin(), scratch_.ahead.end(), [](const auto& x, const auto& y) { return x.enter < y.enter; });
     for (const auto& [triangle, enter] : scratch_.ahead) {
         if (enter <= until && awaited_.is_known()) awaited_.add(triangle);
     }
@@ -371,15 +380,18 @@ void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
 bool ContactSearch::look_with_sphere(std::uint32_t triangle) {
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
     if (sphere_->clears(a, b, c)) return false;
+    const bool starts_near = !sphere_->starts_apart_from(a, b, c);
+    const bool is_left = starts_near && sphere_->leaves_behind(a, b, c);
+    if (sphere_->stays_apart(a, b, c)) return is_left;
     scratch_.triangles.push_back(triangle);
+    if (is_left) return true;
     const SurfaceId surface = world_.surface_of_triangle(triangle);
-    if (!sphere_->starts_apart_from(a, b, c)) {
-        if (sphere_->leaves_behind(a, b, c)) return true;
+    if (starts_near) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
         note_overlap(surface, std::sqrt(nearest.distance_squared));
         if (sphere_->recedes_from(nearest, a, b, c)) return true;
     }
-    const auto contact = sphere_->first_contact_nearby(a, b, c);
+    const auto contact = sphere_->first_contact_nearby(plane_of(triangle));
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
     return false;
 }

@@ -137,9 +137,9 @@ private:
     [[nodiscard]] double margin_of(const Path& path) const;
     [[nodiscard]] double end_of_look(const Outlook& outlook) const;
     [[nodiscard]] double end_of_interest(const Path& path, const Outlook& outlook) const;
-    void note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double leave);
+    void note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double last);
     [[nodiscard]] double time_of_approach(std::uint32_t triangle, const Outlook& outlook, double enter,
-                                          double leave) const;
+                                          double last) const;
     void await(double until);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);

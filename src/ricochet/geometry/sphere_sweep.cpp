@@ -92,6 +92,15 @@ bool SphereSweep::clears(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return misses_box(a, b, c) || misses_plane(detail::filtered_cross(b - a, c - a), a);
 }
 
+// Where another surface ends the path, it comes nearest to most triangles at that end.
+bool SphereSweep::stays_apart(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const Vec3 away = direction_away(hull(1), a, b, c);
+    for (int i = 0; i < hull_count_; ++i) {
+        if (!(distance_along(away, hull(i), a, b, c) > radius_ + slack_)) return false;
+    }
+    return true;
+}
+
 bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
@@ -114,11 +123,11 @@ bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start, c
 
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
     if (clears(a, b, c)) return std::nullopt;
-    return first_contact_nearby(a, b, c);
+    return first_contact_nearby(TrianglePlane(a, b, c));
 }
 
-std::optional<SphereContact> SphereSweep::first_contact_nearby(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    return TriangleContactSearch(*this, a, b, c, detail::filtered_cross(b - a, c - a)).first();
+std::optional<SphereContact> SphereSweep::first_contact_nearby(const TrianglePlane& triangle) const {
+    return TriangleContactSearch(*this, triangle).first();
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) const {

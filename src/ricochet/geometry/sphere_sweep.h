@@ -21,6 +21,7 @@
 #include "ricochet/geometry/path.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/sweep.h"
+#include "ricochet/geometry/triangle_plane.h"
 
 namespace ricochet {
 
@@ -48,7 +49,7 @@ public:
     /// and the bits of unit_normal(a, b, c) or their opposite.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const;
     /// The same for a triangle that clears() has not discarded.
-    [[nodiscard]] std::optional<SphereContact> first_contact_nearby(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] std::optional<SphereContact> first_contact_nearby(const TrianglePlane& triangle) const;
     /// First contact with a plane, from either side. Where the plane is axis-aligned, so that its normal is exact, the
     /// time has the same bits as that of any triangle in it.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Plane& plane) const;
@@ -60,6 +61,9 @@ public:
     /// True when the sphere and its chords certainly stay clear of the triangle by `kCandidateSlack`: the cheap test
     /// that decides most candidates. Errs on the side of false. first_contact makes this test itself.
     [[nodiscard]] bool clears(const Vec3& a, const Vec3& b, const Vec3& c) const;
+
+    /// The same as clears() by a test that costs more and serves where the path comes nearest to the triangle at its end.
+    [[nodiscard]] bool stays_apart(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
     /// True when the start is certainly further than the radius from the triangle. Cheap; errs on the side of false.
     [[nodiscard]] bool starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const;

@@ -69,14 +69,13 @@ Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& h
     return p;
 }
 
-TriangleContactSearch::TriangleContactSearch(const SphereSweep& sphere, const Vec3& a, const Vec3& b, const Vec3& c,
-                                             const detail::FilteredCross& rough_normal)
+TriangleContactSearch::TriangleContactSearch(const SphereSweep& sphere, const TrianglePlane& plane)
     : sphere_(sphere),
       path_(sphere.path_),
       radius_(sphere.radius_),
-      corners_{a, b, c},
-      rough_normal_(rough_normal),
-      largest_coordinate_(std::max({max_abs(a), max_abs(b), max_abs(c)})),
+      plane_(plane),
+      corners_{plane.a(), plane.b(), plane.c()},
+      largest_coordinate_(std::max({max_abs(plane.a()), max_abs(plane.b()), max_abs(plane.c())})),
       limit_(sphere.latest_) {}
 
 std::optional<SphereContact> TriangleContactSearch::first() {
@@ -104,10 +103,8 @@ void TriangleContactSearch::offer(double time, TriangleFeature feature) {
 const std::optional<Vec3>& TriangleContactSearch::normal() {
     if (!normal_is_known_) {
         normal_is_known_ = true;
-        const bool is_plain = max_abs(rough_normal_.value) > 0x1p-40 * max_abs(rough_normal_.magnitude);
-        if (is_plain || !are_collinear(corners_[0], corners_[1], corners_[2])) {
-            normal_ = unit_normal(corners_[0], corners_[1], corners_[2]);
-        }
+        const bool is_plain = max_abs(plane_.cross().value) > 0x1p-40 * max_abs(plane_.cross().magnitude);
+        if (is_plain || !are_collinear(corners_[0], corners_[1], corners_[2])) normal_ = plane_.unit_normal();
     }
     return normal_;
 }
@@ -141,11 +138,11 @@ Times TriangleContactSearch::face_crossings(const std::array<DoubleDouble, 4>& h
 
 /// True when some edge has the whole path on its outer side, so that no foot is on the face.
 bool TriangleContactSearch::certainly_passes_beside_face() const {
-    const double normal_size = length(rough_normal_.magnitude);
+    const double normal_size = length(plane_.cross().magnitude);
     for (int i = 0; i < 3; ++i) {
         const Vec3& from = corners_[static_cast<size_t>(i)];
         const Vec3 d = corners_[static_cast<size_t>(next(i))] - from;
-        const Vec3 outward = cross(d, rough_normal_.value);
+        const Vec3 outward = cross(d, plane_.cross().value);
         const double size = length(d) * normal_size;
         bool is_outside = true;
         for (int k = 0; k < sphere_.hull_count_; ++k) {

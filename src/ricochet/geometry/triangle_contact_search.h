@@ -15,6 +15,7 @@
 #include "ricochet/geometry/polynomial.h"
 #include "ricochet/geometry/predicates.h"
 #include "ricochet/geometry/sphere_sweep.h"
+#include "ricochet/geometry/triangle_plane.h"
 
 namespace ricochet {
 
@@ -87,8 +88,7 @@ template <class OffsetAt>
 /// One search; see SphereSweep::first_contact.
 class TriangleContactSearch {
 public:
-    TriangleContactSearch(const SphereSweep& sphere, const Vec3& a, const Vec3& b, const Vec3& c,
-                          const detail::FilteredCross& rough_normal);
+    TriangleContactSearch(const SphereSweep& sphere, const TrianglePlane& plane);
 
     [[nodiscard]] std::optional<SphereContact> first();
 
@@ -138,8 +138,8 @@ private:
     const SphereSweep& sphere_;
     const Path& path_;
     double radius_;
+    const TrianglePlane& plane_;
     std::array<Vec3, 3> corners_;
-    detail::FilteredCross rough_normal_;
     double largest_coordinate_;  ///< of the corners
     std::optional<Vec3> normal_;
     bool normal_is_known_ = false;

@@ -62,8 +62,8 @@ struct CutOff {
     double time = 0.0;  ///< s
 };
 
-/// What a block of particles adds to the statistics; blocks are added in order. There are as many as there is work: what
-/// is done for each is done by one thread.
+/// What a block of particles adds to the statistics; blocks are added in order, by one thread: there are no more of
+/// them than there is work.
 struct BlockCounts {
     std::uint64_t contacts = 0;
     std::uint64_t stayed = 0;

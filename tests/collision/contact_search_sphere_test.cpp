@@ -2,14 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "collision/worlds.h"
 #include "response/course.h"
+#include "ricochet/collision/contact_search.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep.h"
 #include "support/counts.h"
+#include "support/simple_meshes.h"
 
 namespace ricochet {
 namespace {
@@ -35,6 +40,45 @@ struct TiltedFloor {
     Vec3 across;
     TriangleMesh mesh;
 };
+
+/// Every triangle by itself, nothing narrowed: the first contact time.
+std::optional<double> first_of_all(const CollisionWorld& world, const Path& path, double radius) {
+    const SphereSweep sweep(path, radius);
+    std::optional<double> first;
+    for (std::uint32_t triangle = 0; triangle < world.triangles().size(); ++triangle) {
+        const auto [a, b, c] = world.corners_of_triangle(triangle);
+        const auto contact = sweep.first_contact(a, b, c);
+        if (contact && (!first || contact->time < *first)) first = contact->time;
+    }
+    return first;
+}
+
+// Whatever the order in which triangles are proposed, and whatever is left out after the first contact that is found.
+TEST(SphereAmongTriangles, MeetsFirstWhatItMeetsFirstOfAll) {
+    constexpr std::uint64_t kSeed = 4711;
+    RandomSequence random(kSeed, 0, 0);
+    TriangleMesh rough = testing::sphere_mesh({}, 1.0, 3);
+    for (Vec3& v : rough.vertices) v *= 1.0 + 0.2 * random.uniform();
+    CollisionWorld world = testing::world_of(testing::mesh_collider(rough));
+    ContactScratch scratch;
+    int contacts = 0;
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " of seed " + std::to_string(kSeed));
+        const double radius = std::pow(10.0, -3.0 + 2.5 * random.uniform());
+        world.prepare_radius(radius);
+        const Vec3 start = 1.2 * random.uniform() * random.unit_vector();
+        const Vec3 v = std::pow(10.0, random.uniform()) * random.unit_vector();
+        const Vec3 a = i % 2 == 0 ? Vec3{} : 5.0 * random.unit_vector();
+        const Path path = i % 2 == 0 ? line_path(start, v, 0.5) : parabola_path(start, v, a, 0.5);
+        const auto expected = first_of_all(world, path, radius);
+        const auto found = ContactSearch(world, scratch).search(path, radius);
+        ASSERT_EQ(found.has_value(), expected.has_value());
+        if (!found) continue;
+        ASSERT_EQ(found->time, *expected);
+        ++contacts;
+    }
+    EXPECT_GT(contacts, test::scaled(2000) / 2);
+}
 
 // Flat inner edges and vertices must not be felt: no kick out of the plane of incidence, no second impact.
 TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneEvenOverSeamsAndVertices) {

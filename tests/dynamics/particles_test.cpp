@@ -35,6 +35,20 @@ TEST(Particles, GiveBackWhatWasAppended) {
     EXPECT_FALSE(second.pinned);
 }
 
+TEST(Particles, AreTheSameWithRoomMadeForThem) {
+    Particles particles;
+    particles.keeps_origin = true;
+    particles.attributes = AttributeTable({{"heat", 1, {1.5, 0, 0}}, {"wind", 3, {1, 2, 3}}});
+    particles.reserve(1000);
+    const Vec3* const first = particles.position.data();
+    for (std::uint64_t id = 0; id < 1000; ++id) particles.append(numbered(id));
+    EXPECT_EQ(particles.position.data(), first) << "nothing was moved";
+    EXPECT_EQ(particles.position.capacity(), 1000U);
+    EXPECT_EQ(particles.origin.capacity(), 1000U);
+    EXPECT_EQ(particles.at(7).position, numbered(7).position);
+    EXPECT_EQ(particles.attributes.value(1, 999), (AttributeValue{1, 2, 3}));
+}
+
 TEST(Particles, StartWithoutAHistory) {
     const Particles particles = with_ids({1});
     EXPECT_EQ(particles.contacts[0], 0U);

@@ -630,5 +630,63 @@ TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOv
     EXPECT_GT(apart, test::scaled(20'000) / 10);
 }
 
+TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped) {
+    int left = 0;
+    int apart = 0;
+    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
+        SphereCase s = random_case(index);
+        if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+        if (index % 3 == 0) s.path.c[0] = s.path.end + (2.0 * s.radius) * RandomSequence(kSeed, 9, index).unit_vector();
+        if (index % 6 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
+        const auto& [a, b, c] = s.triangle;
+        const SphereSweep sweep(s.path, s.radius);
+        const bool is_left = sweep.leaves_behind(a, b, c);
+        const bool stays_apart = sweep.stays_apart(a, b, c);
+        left += is_left ? 1 : 0;
+        apart += stays_apart ? 1 : 0;
+        if (!is_left && !stays_apart) continue;
+        ASSERT_GT(closest_point_on_triangle(s.path.c[0], a, b, c).distance_squared, s.radius * s.radius);
+        ASSERT_FALSE(contact_of(s).has_value());
+    }
+    EXPECT_GT(left, test::scaled(20'000) / 40);
+    EXPECT_GT(apart, test::scaled(20'000) / 40);
+}
+
+// What another surface has been found to stop need not be followed further, and what comes before that is not changed.
+TEST(SphereSweep, FindsTheSameBitsWhenNarrowedAndNothingEarlier) {
+    int kept = 0;
+    int dropped = 0;
+    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
+        const SphereCase s = random_case(index);
+        const auto whole = contact_of(s);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
+        const auto& [a, b, c] = s.triangle;
+        const double random = RandomSequence(kSeed, 5, index).uniform();
+        const double latest = whole && index % 3 == 0 ? whole->time : random * s.path.duration;
+        SphereSweep sweep(s.path, s.radius);
+        sweep.narrow(latest);
+        const auto found = sweep.first_contact(a, b, c);
+        if (whole && whole->time <= latest) {
+            ASSERT_FALSE(sweep.clears(a, b, c));
+            ASSERT_FALSE(sweep.stays_apart(a, b, c));
+            ASSERT_TRUE(found.has_value());
+            ++kept;
+        }
+        if (whole && !found) {
+            ASSERT_GT(whole->time, latest);
+            ++dropped;
+        }
+        if (!found) continue;
+        ASSERT_TRUE(whole.has_value());
+        ASSERT_EQ(found->time, whole->time);
+        ASSERT_EQ(found->normal, whole->normal);
+        ASSERT_EQ(found->point, whole->point);
+        ASSERT_EQ(found->feature, whole->feature);
+    }
+    EXPECT_GT(kept, test::scaled(20'000) / 10);
+    EXPECT_GT(dropped, test::scaled(20'000) / 10);
+}
+
 }  // namespace
 }  // namespace ricochet

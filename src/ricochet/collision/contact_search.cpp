@@ -253,7 +253,8 @@ void ContactSearch::await(double until) {
     awaited_until_ = until;
     awaited_ = Awaited::none();
     // What is met first makes short work of the others.
-    std::sort(scratch_.ahead.begin(), scratch_.ahead.end(), [](const auto& x, const auto& y) { return x.enter < y.enter; });
+    std::sort(scratch_.ahead.begin(), scratch_.ahead.end(),
+              [](const auto& x, const auto& y) { return x.enter < y.enter; });
     for (const auto& [triangle, enter] : scratch_.ahead) {
         if (enter <= until && awaited_.is_known()) awaited_.add(triangle);
     }

@@ -16,8 +16,8 @@ namespace ricochet {
 /// anything, zero and no number too, for triangles and places that they are not enough for.
 [[nodiscard]] Vec3 direction_away(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// p's distance from the triangle (a, b, c) is certainly no less than this, m. Negative or no number where the direction
-/// tells nothing. With the same direction it holds for all places between two: the smaller of the two bounds.
+/// p's distance from the triangle (a, b, c) is certainly no less than this, m. Negative or no number where the
+/// direction tells nothing. All places between two are as far as the smaller of their bounds along the same direction.
 [[nodiscard]] double distance_along(const Vec3& direction, const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace ricochet

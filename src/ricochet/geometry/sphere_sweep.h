@@ -62,7 +62,8 @@ public:
     /// that decides most candidates. Errs on the side of false. first_contact makes this test itself.
     [[nodiscard]] bool clears(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
-    /// The same as clears() by a test that costs more and serves where the path comes nearest to the triangle at its end.
+    /// The same as clears() by a test that costs more, and serves where the path comes nearest to the triangle at its
+    /// end.
     [[nodiscard]] bool stays_apart(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
     /// True when the start is certainly further than the radius from the triangle. Cheap; errs on the side of false.

@@ -45,15 +45,19 @@ inline constexpr std::uint32_t kStill = 0xFFFFFFFFU;
 
 /// The particles of a step that must be searched for, in the parts that one thread moves at a time.
 struct DueParticles {
-    explicit DueParticles(std::size_t count) : particles(count) {}
-
-    [[nodiscard]] std::size_t parts() const { return blocks_of(particles.size()); }
-    [[nodiscard]] std::span<const std::uint32_t> part(std::size_t k) const {
-        const std::size_t begin = k * kParticleBlock;
-        return std::span(particles).subspan(begin, std::min(kParticleBlock, particles.size() - begin));
-    }
-
     std::vector<std::uint32_t> particles;
+    std::vector<std::size_t> ends;  ///< of the parts
+
+    [[nodiscard]] std::size_t parts() const { return ends.size(); }
+    [[nodiscard]] std::span<const std::uint32_t> part(std::size_t k) const {
+        const std::size_t begin = k == 0 ? 0 : ends[k - 1];
+        return std::span(particles).subspan(begin, ends[k] - begin);
+    }
+    /// Parts of kParticleBlock: no more of them than there is work, since what they count is added up by one thread.
+    void cut_evenly() {
+        ends.resize(blocks_of(particles.size()));
+        for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = std::min((k + 1) * kParticleBlock, particles.size());
+    }
 };
 
 /// Time of a particle that its bounce budget has cut off.
@@ -62,8 +66,7 @@ struct CutOff {
     double time = 0.0;  ///< s
 };
 
-/// What a block of particles adds to the statistics; blocks are added in order, by one thread: there are no more of
-/// them than there is work.
+/// What a block of particles adds to the statistics; blocks are added in order.
 struct BlockCounts {
     std::uint64_t contacts = 0;
     std::uint64_t stayed = 0;
@@ -117,7 +120,7 @@ struct Simulation::Impl {
     void catch_up_part(std::span<const std::uint32_t> due);
     void catch_up_all();
     void emit(double from, double to);
-    /// Makes room for so many particles.
+    /// Makes room for so many more particles.
     void make_room(std::size_t births);
     void add(Particle particle);
     void move_all(double from, double to);
@@ -126,6 +129,7 @@ struct Simulation::Impl {
     [[nodiscard]] bool keeps_records() const { return options.record_contacts || offspring; }
     void move_part(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     void stop_runaways(const std::vector<BlockCounts>& blocks, double to) const;
+    void take_over(const std::vector<BlockCounts>& blocks, double to);
     [[nodiscard]] DueParticles coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks);
     [[nodiscard]] std::size_t coast_block(std::size_t begin, std::size_t end, double from, double to,
                                           std::vector<Violation>* seen);
@@ -166,7 +170,7 @@ struct Simulation::Impl {
     [[nodiscard]] Awaited awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const;
     [[nodiscard]] std::uint32_t end_of_coasting(std::size_t i, double free_until) const;
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
-    void collect_records(std::vector<BlockCounts>& blocks);
+    void collect_records(const std::vector<BlockCounts>& blocks);
     void sort_records();
     // What holds a particle under steady forces holds it for good, so asking again is not needed.
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles.held[i] != 0 && may_sleep; }

@@ -72,25 +72,28 @@ void Simulation::Impl::catch_up_all() {
     owed->clear();
 }
 
-// Particles that meet nothing go on here. The others are due, listed in their order.
+// Particles that meet nothing go on here. The others are due, listed in their order. Depths of penetration are added up
+// by blocks of all particles, due or not; no other sum depends on how the list is cut.
 DueParticles Simulation::Impl::coast_all(std::size_t first, double from, double to, std::vector<BlockCounts>& blocks) {
     const std::size_t count = particles.size() - first;
     if (owed && owed->is_full()) catch_up_all();
-    std::vector<std::size_t> ends(blocks_of(count));  // of every block's due particles in the list of all
+    DueParticles due;
+    std::vector<std::size_t>& ends = due.ends;
+    ends.resize(blocks_of(count));
     if (check) grow_to(blocks, ends.size());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         auto* seen = check ? &blocks[block].violations : nullptr;
         ends[block] = coast_block(first + begin, first + end, from, to, seen);
     });
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    DueParticles due(ends.empty() ? 0 : ends.back());
+    due.particles.resize(ends.empty() ? 0 : ends.back());
     parallel_for_blocks(count, kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        const std::size_t place = block == 0 ? 0 : ends[block - 1];
-        std::uint32_t* next = due.particles.data() + place;
+        std::uint32_t* next = due.particles.data() + (block == 0 ? 0 : ends[block - 1]);
         visit_due(first + begin, first + end, [&](std::size_t i) { *next++ = static_cast<std::uint32_t>(i); });
-        if (owed) catch_up_part(std::span(due.particles).subspan(place, ends[block] - place));
+        if (owed) catch_up_part(due.part(block));
     });
     if (owed) owed->add({options.integrator, *forces.common_acceleration(), to - from});
+    if (options.response == ResponseKind::exact) due.cut_evenly();
     return due;
 }
 

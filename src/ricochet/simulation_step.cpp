@@ -81,21 +81,28 @@ void Simulation::Impl::bear_children(double from, double to) {
 // newborn join them with the next step.
 void Simulation::Impl::move_from(std::size_t first, double from, double to) {
     const std::size_t count = particles.size() - first;
-    std::vector<BlockCounts> blocks;
+    pass_records.clear();
     const bool is_planned = coupled.is_active() && first == 0;
     for (double now = from; now < to;) {
         const double whole = to - now;
         const double planned = is_planned ? coupled.plan(particles, now, whole) : whole;
         const double next = planned < whole ? now + planned : to;
+        std::vector<BlockCounts> blocks;
         move_part(first, now, next, blocks);
+        take_over(blocks, to);
         now = next;
     }
-    stop_runaways(blocks, to);
     if (is_planned) coupled.settle(particles);
-    for (const BlockCounts& block : blocks) block.add_to(statistics);
-    add_cut_off(blocks);
     statistics.particle_steps += count;
     statistics.unsolved_steps = coupled.unsolved_steps();
+    if (options.record_contacts) records.insert(records.end(), pass_records.begin(), pass_records.end());
+}
+
+// Part by part, so that what happens to a particle stays in the order of time. `to` is the end of the step.
+void Simulation::Impl::take_over(const std::vector<BlockCounts>& blocks, double to) {
+    stop_runaways(blocks, to);
+    for (const BlockCounts& block : blocks) block.add_to(statistics);
+    add_cut_off(blocks);
     if (keeps_records()) collect_records(blocks);
     if (check) collect_violations(blocks);
 }
@@ -148,12 +155,10 @@ void Simulation::Impl::add_cut_off(const std::vector<BlockCounts>& blocks) {
     statistics.budget_exhausted += all.size();
 }
 
-void Simulation::Impl::collect_records(std::vector<BlockCounts>& blocks) {
-    pass_records.clear();
+void Simulation::Impl::collect_records(const std::vector<BlockCounts>& blocks) {
     for (const BlockCounts& block : blocks) {
         pass_records.insert(pass_records.end(), block.records.begin(), block.records.end());
     }
-    if (options.record_contacts) records.insert(records.end(), pass_records.begin(), pass_records.end());
 }
 
 // Within a particle the order of impacts is that of time already, so a stable sort by (time, id) settles everything.

@@ -641,7 +641,7 @@ TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const auto& [a, b, c] = s.triangle;
         const SphereSweep sweep(s.path, s.radius);
-        const bool is_left = sweep.leaves_behind(a, b, c);
+        const bool is_left = sweep.speed_of_leaving(a, b, c) > 0.0;
         const bool stays_apart = sweep.stays_apart(a, b, c);
         left += is_left ? 1 : 0;
         apart += stays_apart ? 1 : 0;

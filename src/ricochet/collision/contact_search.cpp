@@ -184,7 +184,7 @@ bool ContactSearch::look_along_parabola(const Path& path, const Outlook& outlook
 }
 
 // A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
-// before that end does not matter to what comes after.
+// before that end, or is left behind, does not matter to what comes after.
 void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook, double from, double to) {
     const double span = to - from;
     const Tube tube(outlook.path.position(from), outlook.path.position(to), margin_of(outlook, to),
@@ -192,8 +192,9 @@ void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook,
     bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
             const bool is_near = from + enter * span <= path.duration;
-            const bool is_left = is_near && look_at_triangle(path, triangle) && outlook.path.degree == 1;
-            if (from + leave * span >= path.duration && !is_left && scratch_.found.empty()) {
+            const double speed = is_near ? look_at_triangle(path, triangle) : 0.0;
+            const bool is_ahead = from + leave * span >= path.duration && !leaves_for_good(speed, outlook);
+            if (is_ahead && scratch_.found.empty()) {
                 const double last = std::min(from + leave * span, end_of_interest(path, outlook));
                 note_ahead(triangle, outlook, from + enter * span, last);
             }
@@ -362,12 +363,12 @@ double ContactSearch::margin_of(const Path& path) const {
     return radius_ + 2.0 * slack_ + std::min(path.sagitta(0.0, path.duration), 0.5 * bulge_);
 }
 
-/// True when a sphere that goes straight on certainly leaves the triangle behind for good.
-bool ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
-    if (world_.is_left_out(triangle)) return false;
+/// Where a sphere goes straight away from the triangle: the speed of that, m/s. Else 0.
+double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle) {
+    if (world_.is_left_out(triangle)) return 0.0;
     if (sphere_) return look_with_sphere(triangle);
     look_with_point(path, triangle);
-    return false;
+    return 0.0;
 }
 
 void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
@@ -378,23 +379,33 @@ void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
     if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
 }
 
-bool ContactSearch::look_with_sphere(std::uint32_t triangle) {
+double ContactSearch::look_with_sphere(std::uint32_t triangle) {
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (sphere_->clears(a, b, c)) return false;
+    if (sphere_->clears(a, b, c)) return 0.0;
     const bool starts_near = !sphere_->starts_apart_from(a, b, c);
-    const bool is_left = starts_near && sphere_->leaves_behind(a, b, c);
-    if (sphere_->stays_apart(a, b, c)) return is_left;
+    const double speed = starts_near ? sphere_->speed_of_leaving(a, b, c) : 0.0;
+    if (sphere_->stays_apart(a, b, c)) return speed;
     scratch_.triangles.push_back(triangle);
-    if (is_left) return true;
+    if (speed > 0.0) return speed;
     const SurfaceId surface = world_.surface_of_triangle(triangle);
     if (starts_near) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
         note_overlap(surface, std::sqrt(nearest.distance_squared));
-        if (sphere_->recedes_from(nearest, a, b, c)) return true;
+        if (sphere_->recedes_from(nearest, a, b, c)) {
+            return dot(nearest.offset, sphere_->path().c[1]) / std::sqrt(nearest.distance_squared);
+        }
     }
     const auto contact = sphere_->first_contact_nearby(plane_of(triangle));
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
-    return false;
+    return 0.0;
+}
+
+// The steps to come are rounded. Each must lead away from the triangle by more than that, else they may lead back
+// through it; and what is parked elsewhere on the way must not be moved through it.
+/// May a triangle be forgotten that a sphere leaves behind at some speed, m/s?
+bool ContactSearch::leaves_for_good(double speed, const Outlook& outlook) const {
+    if (speed == 0.0 || outlook.path.degree > 1 || !(radius_ > outlook.margin)) return false;
+    return speed * outlook.least > kPathRounding * largest_coordinate(outlook.path);
 }
 
 Vec3 ContactSearch::unit_normal_of(SurfaceId surface, const Vec3& p) const {

@@ -52,7 +52,7 @@ struct ContactScratch {
         bool flat;
         Vec3 normal;  ///< for spheres; that of points is worked out for the first contact only
     };
-    std::vector<std::uint32_t> triangles;  ///< candidates that the path does not clear
+    std::vector<std::uint32_t> triangles;  ///< candidates that the path does not clear, up to the first contact found
     std::vector<std::uint32_t> planes;     ///< the same, indices into CollisionWorld::planes()
     std::vector<std::uint32_t> shapes;     ///< the same, indices into CollisionWorld::shapes()
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
@@ -81,12 +81,13 @@ public:
     [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr,
                                                 const Awaited& awaited = {});
 
-    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin. Where the
-    /// path meets something, or looking ahead is not worth the while: no more than the path's duration.
+    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin, but for those
+    /// that a sphere leaves behind for good. Where the path meets something, or looking ahead is not worth the while:
+    /// no more than the path's duration.
     [[nodiscard]] double free_until() const { return free_until_; }
 
-    /// The triangles that come near the outlook's path between the searched path's end and awaited_until(), s along
-    /// it: at most its `beyond` after free_until().
+    /// The triangles, other than those left behind, that come near the outlook's path between the searched path's end
+    /// and awaited_until(), s along it: at most its `beyond` after free_until().
     [[nodiscard]] const Awaited& awaited() const { return awaited_; }
     [[nodiscard]] double awaited_until() const { return awaited_until_; }
 
@@ -146,9 +147,10 @@ private:
     void search_all_triangles(const Path& path);
     [[nodiscard]] bool may_reach_triangles(const Path& path, double from, double to) const;
     [[nodiscard]] std::vector<SurfaceId> gathered() const;
-    bool look_at_triangle(const Path& path, std::uint32_t triangle);
+    double look_at_triangle(const Path& path, std::uint32_t triangle);
     void look_with_point(const Path& path, std::uint32_t triangle);
-    bool look_with_sphere(std::uint32_t triangle);
+    double look_with_sphere(std::uint32_t triangle);
+    [[nodiscard]] bool leaves_for_good(double speed, const Outlook& outlook) const;
     void note(const ContactScratch::Found& found);
     void note_overlap(SurfaceId surface, double distance);
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;

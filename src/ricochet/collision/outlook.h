@@ -15,9 +15,10 @@ namespace ricochet {
 /// Where a particle is going beyond the path that is searched, if nothing stands in its way.
 struct Outlook {
     Path path;            ///< a line or parabola that begins with the searched path
-    double margin = 0.0;  ///< m, > 0: nearer than the radius plus this nothing may come. It covers by how much the true
-                          ///< way, the searched path too, and its chords of a step may lie beside `path`
-    double least = 0.0;   ///< s along the path: looking no further than this is not worth the while
+    double margin = 0.0;  ///< m, > 0: nearer than the radius plus this nothing may come that is not left behind. It
+                          ///< covers by how much the true way, the searched path too, and its chords of a step may lie
+                          ///< beside `path`
+    double least = 0.0;   ///< s along the path, a step: looking no further than this is not worth the while
     double beyond = 0.0;  ///< s: what comes near within this time after the free one is of interest too
 };
 

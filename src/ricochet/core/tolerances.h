@@ -116,14 +116,15 @@ inline constexpr double kClearanceRounding = 0x1p-10;
 /// piece by piece.
 inline constexpr double kSmallestClearanceCell = 0x1p-30;
 
-/// Distance, relative to the largest coordinate involved, by which a candidate triangle's plane must clear the path
-/// before the triangle is dropped. Reason: covers the parking displacement (2^-40) and the rounding of points on the
-/// path. Smaller: a certificate could miss a triangle near the parked point. Larger: more triangles reach the exact
-/// tests.
+/// Distance, relative to the largest coordinate involved, by which a candidate triangle, its box or its plane must
+/// clear the path before the triangle is dropped; also the sine of the angle at which a path leads away from one.
+/// Reason: covers the parking displacement (2^-40) and the rounding of points on the path. Smaller: a certificate could
+/// miss a triangle near the parked point. Larger: more triangles reach the exact tests.
 inline constexpr double kCandidateSlack = 0x1p-39;
 
 /// Rounding of a point on a path, relative to the largest coordinate that the path's terms reach: some ten roundings of
-/// 2^-53. Where that exceeds what the boxes allow for, all triangles are candidates.
+/// 2^-53. Where that exceeds what the boxes allow for, all triangles are candidates; foreseen steps that lead a sphere
+/// away from a triangle by less than that may lead it back. Smaller: a sphere could be taken through such a triangle.
 inline constexpr double kPathRounding = 0x1p-48;
 
 /// Boxes handed to the ray library grow by this many units of 2^-24 times the scene's largest centred coordinate.

@@ -105,12 +105,13 @@ bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c)
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
 
-// Along the direction it is beyond the radius, and stays so.
-bool SphereSweep::leaves_behind(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    if (path_.degree > 1) return false;
+// Along the direction it is beyond the radius, and its way gets further.
+double SphereSweep::speed_of_leaving(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    if (path_.degree > 1) return 0.0;
     const Vec3 away = direction_away(path_.c[0], a, b, c);
-    return distance_along(away, path_.c[0], a, b, c) > radius_ &&
-           dot(away, path_.c[1]) > kCandidateSlack * length(away) * length(path_.c[1]);
+    if (!(distance_along(away, path_.c[0], a, b, c) > radius_)) return 0.0;
+    const double speed = dot(away, path_.c[1]) / length(away);
+    return speed > kCandidateSlack * length(path_.c[1]) ? speed : 0.0;
 }
 
 // The offset errs by some roundings of the largest coordinate.

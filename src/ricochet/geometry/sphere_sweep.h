@@ -68,9 +68,10 @@ public:
 
     /// True when the start is certainly further than the radius from the triangle. Cheap; errs on the side of false.
     [[nodiscard]] bool starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const;
-    /// True when the path is straight and certainly leads away from the triangle, which the sphere does not overlap, so
-    /// that nothing is met. Cheap; errs on the side of false, always so where the sphere touches the triangle.
-    [[nodiscard]] bool leaves_behind(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    /// Where the path is straight and certainly leads away from the triangle, which the sphere does not overlap, so
+    /// that nothing is met: the speed, m/s, along a direction in which the triangle is behind. Else 0. Cheap; errs on
+    /// the side of 0, always so where the sphere touches the triangle.
+    [[nodiscard]] double speed_of_leaving(const Vec3& a, const Vec3& b, const Vec3& c) const;
     /// Given the point of the triangle (a, b, c) nearest to the start: true when the path is straight and certainly
     /// leads away from there. The distance from a convex set is convex along a line, so it never shrinks then, and
     /// nothing is met.

@@ -16,9 +16,9 @@ constexpr int kPieceDepth = 40;
 
 /// Looks at how far a sphere is from a triangle that it comes near, each from where the one before says that it may be
 /// near. Fewer: steps in which it is searched for in vain. More: each costs some hundred operations.
-constexpr int kLooksAtDistance = 3;
+constexpr int kLooksAtDistance = 4;
 
-/// What a further look may gain is not worth it when the last one has gained less than this part of a step or two.
+/// What a further look may gain is not worth it when the last one has gained less than this part of a step.
 constexpr double kLittleOfAStep = 0x1p-5;
 
 double largest_coordinate(const Path& path) {
@@ -228,8 +228,9 @@ void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, d
 }
 
 // What the boxes say about a sphere is how it passes the triangle's plane, and beside the triangle it does that early.
-// No distance changes faster than the sphere moves (conservative advancement: B. Mirtich, "Impulse-based Dynamic
-// Simulation of Rigid Body Systems", PhD thesis, Berkeley 1996, section 2.3).
+// Along a direction in which the triangle is behind, the distance shrinks no faster than the sphere goes against it
+// (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley
+// 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
 /// A time before which the sphere certainly does not come near the triangle, s along the outlook's path; later than
 /// `last` when it does not until then.
 double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& outlook, double enter,
@@ -237,15 +238,18 @@ double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& ou
     const Path& path = outlook.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
     const double near = margin_of(outlook, last);
-    const double fastest = length(path.c[1]) + 2.0 * last * length(path.c[2]);
-    const double little = kLittleOfAStep * outlook.beyond * fastest;
+    const Vec3 last_velocity = path.velocity(last);
     double time = enter;
     for (int look = 0; look < kLooksAtDistance && time <= last; ++look) {
         const Vec3 place = path.position(time);
-        const double distance = distance_along(direction_away(place, a, b, c), place, a, b, c);
+        const Vec3 away = direction_away(place, a, b, c);
+        const double distance = distance_along(away, place, a, b, c);
         if (!(distance > near)) break;
-        time += (distance - near) / fastest;
-        if (distance - near < little) break;
+        const double approach = -std::min(dot(away, path.velocity(time)), dot(away, last_velocity)) / length(away);
+        if (!(approach > 0.0)) return std::numeric_limits<double>::infinity();
+        const double gain = (distance - near) / approach;
+        time += gain;
+        if (gain < kLittleOfAStep * outlook.least) break;
     }
     return time;
 }

@@ -607,12 +607,18 @@ TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
     EXPECT_GT(legs, 500);
 }
 
+/// Every second path is straight.
+SphereCase often_straight_case(std::uint64_t index) {
+    SphereCase s = random_case(index);
+    if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+    return s;
+}
+
 TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOverlapped) {
     int receding = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
-        SphereCase s = random_case(index);
-        if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+        const SphereCase s = often_straight_case(index);
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const auto& [a, b, c] = s.triangle;
         const SphereSweep sweep(s.path, s.radius);
@@ -634,10 +640,11 @@ TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped
     int left = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
-        SphereCase s = random_case(index);
-        if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
-        if (index % 3 == 0) s.path.c[0] = s.path.end + (2.0 * s.radius) * RandomSequence(kSeed, 9, index).unit_vector();
-        if (index % 6 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
+        SphereCase s = often_straight_case(index);
+        if (index % 6 == 0) {  // goes on from where the other path ends
+            const Vec3 aside = (2.0 * s.radius) * RandomSequence(kSeed, 9, index).unit_vector();
+            s.path = line_path(s.path.end + aside, s.path.c[1], s.path.duration);
+        }
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const auto& [a, b, c] = s.triangle;
         const SphereSweep sweep(s.path, s.radius);

@@ -31,13 +31,18 @@ std::optional<TimedRun> time_run(SimulationSetup setup, const StepHook& go_on) {
     setup.options.verify = false;
     setup.options.record_contacts = false;
     Simulation simulation(std::move(setup));
-    Clock::duration spent{};
-    while (!simulation.finished()) {
+    bool goes_on = true;
+    Clock::duration asked{};
+    const auto ask = [&] {
         const Clock::time_point start = Clock::now();
-        simulation.step();
-        spent += Clock::now() - start;
-        if (!go_on(simulation)) return std::nullopt;
-    }
+        goes_on = go_on(simulation);
+        asked += Clock::now() - start;
+        return goes_on;
+    };
+    const Clock::time_point start = Clock::now();
+    simulation.advance(simulation.step_count(), ask);
+    const Clock::duration spent = Clock::now() - start - asked;
+    if (!goes_on) return std::nullopt;
     return TimedRun{std::chrono::duration<double>(spent).count(), simulation.state_hash()};
 }
 

@@ -13,7 +13,7 @@ namespace ricochet::detail {
 
 /// What a timed run gives.
 struct TimedRun {
-    double seconds = 0.0;  ///< of Simulation::step() alone, all steps together
+    double seconds = 0.0;  ///< of Simulation::advance() alone, over the whole run
     std::uint64_t state_hash = 0;
 };
 

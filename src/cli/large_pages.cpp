@@ -2,6 +2,8 @@
 // small pages most visits also miss the processor's table of pages (measured: about a tenth of a run with a million
 // particles and triangles). Where the system has none to give, nothing changes. Replaces the global operator new, which
 // a program may and a library must not do; sanitizers bring their own.
+#include "cli/large_pages.h"
+
 #include <sys/mman.h>
 
 #include <cstddef>
@@ -16,7 +18,13 @@
 #endif
 #endif
 
-#if defined(__linux__) && !defined(RICOCHET_HAS_OWN_NEW)
+#if !defined(__linux__) || defined(RICOCHET_HAS_OWN_NEW)
+
+bool ricochet::cli::asks_for_large_pages() { return false; }
+
+#else
+
+bool ricochet::cli::asks_for_large_pages() { return true; }
 
 namespace {
 

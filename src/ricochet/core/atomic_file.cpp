@@ -46,6 +46,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
+    if (bytes.empty()) return;  // it may have no address, which fwrite does not take
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(target_, "write");
 }
 

@@ -1,0 +1,66 @@
+#include "ricochet/core/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+
+#include "geometry/temporary_folder.h"
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+using test::TemporaryFolder;
+
+/// Files in the folder of `target`, which counts too.
+std::size_t files_beside(const std::filesystem::path& target) {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(target.parent_path()), {}));
+}
+
+TEST(AtomicFile, NothingStandsUnderItsNameBeforeItIsComplete) {
+    const TemporaryFolder folder;
+    const auto target = folder.path("frame");
+    AtomicFile file(target);
+    file.write("first ");
+    file.write("second");
+    EXPECT_FALSE(std::filesystem::exists(target));
+    file.commit();
+    EXPECT_EQ(folder.read("frame"), "first second");
+    EXPECT_EQ(files_beside(target), 1U);
+}
+
+TEST(AtomicFile, WhatIsGivenUpLeavesTheOlderFileAndNoOther) {
+    const TemporaryFolder folder;
+    const auto target = folder.path("frame");
+    write_file(target, "older");
+    {
+        AtomicFile file(target);
+        file.write("newer");
+    }
+    EXPECT_EQ(folder.read("frame"), "older");
+    EXPECT_EQ(files_beside(target), 1U);
+}
+
+TEST(AtomicFile, TakesPiecesWithoutBytesAndWithoutAnAddress) {
+    const TemporaryFolder folder;
+    const auto target = folder.path("frame");
+    AtomicFile file(target);
+    file.write(std::string_view{});
+    file.write("all");
+    file.write(std::string_view{});
+    file.commit();
+    EXPECT_EQ(folder.read("frame"), "all");
+    write_file(target, {});
+    EXPECT_EQ(std::filesystem::file_size(target), 0U);
+}
+
+TEST(AtomicFile, AFolderIsNoTarget) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(AtomicFile{folder.path("")}, InputError);
+    EXPECT_THROW(AtomicFile{folder.path("missing/frame")}, RunError);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -280,6 +280,27 @@ TEST(Simulation, ReportsParticlesBornOnASurface) {
     EXPECT_GT(simulation.particles().position[1].z, -3.0);
 }
 
+// Particles in free flight may be ahead of what was foreseen then.
+TEST(Simulation, DoesNotGoOnAfterAnErrorInsideAStep) {
+    SimulationSetup setup;
+    setup.options.time_step = 0.1;
+    setup.options.duration = 2.0;
+    bool fails = false;
+    setup.forces.push_back(make_acceleration([&](const ForceInput&) {
+        if (fails) throw std::runtime_error("no force today");
+        return Vec3{};
+    }));
+    setup.particles.emplace_back();
+    Simulation simulation(std::move(setup));
+    simulation.step();
+    fails = true;
+    EXPECT_THROW(simulation.step(), std::runtime_error);
+    fails = false;
+    EXPECT_THROW(simulation.step(), RunError);
+    EXPECT_THROW(simulation.advance(3), RunError);
+    EXPECT_EQ(simulation.step_index(), 1U);
+}
+
 TEST(Simulation, RefusesOptionsThatCannotWork) {
     EXPECT_NE(refusal(empty_setup(0.0, 1.0)).find("time_step"), std::string::npos);
     EXPECT_NE(refusal(empty_setup(std::nan(""), 1.0)).find("time_step"), std::string::npos);

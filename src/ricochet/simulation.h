@@ -127,7 +127,7 @@ public:
 
     /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
     /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
-    /// follow them with this step. The simulation cannot go on then, and its particles are somewhere inside the step.
+    /// follow them with this step; and what forces throw. Particles are inside the step then: calls throw RunError.
     void step();
     /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
     /// after each step, says no; faster, because what flies freely goes its way at once. While go_on is asked, places

@@ -170,6 +170,8 @@ void Simulation::save(const ByteSink& sink) const {
 
 void Simulation::restore(const ByteSource& source) {
     BinaryReader reader(source);
+    impl_->owed.reset();
+    impl_->inside_step = true;  // until all is there
     impl_->archive(reader);
     impl_->forget_searches();
     for (const double radius : impl_->particles.radius) impl_->world.prepare_radius(radius);
@@ -179,6 +181,7 @@ void Simulation::restore(const ByteSource& source) {
         impl_->check = std::make_unique<RunCheck>(impl_->world);
         impl_->check->watch_newborn(impl_->particles);
     }
+    impl_->inside_step = false;
 }
 
 }  // namespace ricochet

@@ -168,6 +168,7 @@ struct Simulation::Impl {
     [[nodiscard]] std::uint32_t next_search(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                             double until) const;
     [[nodiscard]] Awaited awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const;
+    [[nodiscard]] bool last_is_whole() const;
     [[nodiscard]] std::uint32_t end_of_coasting(std::size_t i, double free_until) const;
     void add_hits(const std::vector<SurfaceHit>& hits, BlockCounts& counts);
     void collect_records(const std::vector<BlockCounts>& blocks);
@@ -232,6 +233,7 @@ struct Simulation::Impl {
     std::unique_ptr<RunCheck> check;          ///< with options.verify
     std::vector<Violation> violations;
     std::vector<Violation> last_violations;
+    bool inside_step = false;  ///< a step has begun and not ended, perhaps by an error
     std::uint64_t steps;
     std::uint64_t next_id = 0;
     bool may_sleep;

@@ -36,7 +36,7 @@ void fetch_vector(const Vec3& v) {
 // Between the steps of advance() nothing looks at a particle that coasts. But bounds and checks do in every step.
 void Simulation::Impl::begin_owing() {
     const bool is_watched = check || offspring || bounds || coupled.is_active();
-    if (!is_watched && options.foresight && forces.common_acceleration()) owed.emplace(particles.size());
+    if (!is_watched && !owed && options.foresight && forces.common_acceleration()) owed.emplace(particles.size());
 }
 
 void Simulation::Impl::end_owing() {
@@ -243,19 +243,23 @@ std::uint32_t Simulation::Impl::next_search(std::size_t i, const MovingParticle&
     return 1 + (outcome.free_for > 0.0 ? end_of_coasting(i, until + outcome.free_for) : 0);
 }
 
-// They must be all that is near in the whole step.
+// They must be all that is near in the whole step, which the last one may exceed by rounding.
 Awaited Simulation::Impl::awaited_by(std::uint32_t again, const MoveOutcome& outcome, double until) const {
     if (again == kStill || again == 0 || outcome.awaited_for == 0.0) return {};
     const std::uint64_t end =
         std::max<std::uint64_t>(again, statistics.steps + 2);  // of the step, as a number of steps
+    if (end >= steps && !last_is_whole()) return {};
     return until + outcome.awaited_for >= time_at(end) ? outcome.awaited : Awaited{};
+}
+
+bool Simulation::Impl::last_is_whole() const {
+    return options.duration == static_cast<double>(steps) * options.time_step;
 }
 
 // Not the last step when it is shorter than the others, and not that in which the particle dies.
 std::uint32_t Simulation::Impl::end_of_coasting(std::size_t i, double free_until) const {
     const double until = std::min(free_until, particles.birth_time[i] + particles.lifetime[i]);
-    const bool last_is_whole = options.duration == static_cast<double>(steps) * options.time_step;
-    const std::uint64_t most = std::min<std::uint64_t>(last_is_whole ? steps : steps - 1, kStill - 2);
+    const std::uint64_t most = std::min<std::uint64_t>(last_is_whole() ? steps : steps - 1, kStill - 2);
     auto step = static_cast<std::uint64_t>(std::min(until / options.time_step, static_cast<double>(most)));
     while (step > 0 && time_at(step) >= until) --step;
     return static_cast<std::uint32_t>(step);

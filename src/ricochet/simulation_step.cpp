@@ -38,7 +38,12 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
     impl_->end_owing();
 }
 
+// What is inside a step must not go on: particles in free flight may be a step ahead of what was foreseen.
 void Simulation::Impl::step() {
+    if (inside_step) {
+        throw RunError("a step of this simulation has ended with an error; make it anew or restore a saved state");
+    }
+    inside_step = true;
     const double from = time_at(statistics.steps);
     const double to = time_at(statistics.steps + 1);
     emit(from, to);
@@ -46,6 +51,7 @@ void Simulation::Impl::step() {
     move_all(from, to);
     retire(to);
     ++statistics.steps;
+    inside_step = false;
 }
 
 // Particles that are born of particles inside the step are moved from their births to its end, with their own children

@@ -206,6 +206,30 @@ TEST(Foresight, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
     EXPECT_EQ(std::get<1>(run(true)), 0U);
 }
 
+// Heights over it err by more than the particle is away.
+TEST(Foresight, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
+    const auto run = [](bool foresight) {
+        SimulationSetup setup;
+        setup.options.time_step = 0.1;
+        setup.options.duration = 10.0;
+        setup.options.foresight = foresight;
+        setup.options.verify = true;
+        setup.materials.push_back({"wall", 1.0, 0.0});
+        setup.colliders.push_back({"plane", PlaneShape{{8e8, -6e8, 0}, {0.6, 0.8, 0}}, 0});
+        Particle particle;
+        particle.position = {-7e-8, 0, 0};
+        particle.velocity = {0, -1e-9, 0};
+        setup.particles.push_back(particle);
+        Simulation simulation(std::move(setup));
+        simulation.advance(100);
+        return std::tuple(simulation.state_hash(), simulation.statistics().contacts,
+                          simulation.statistics().violations);
+    };
+    EXPECT_EQ(run(true), run(false));
+    EXPECT_EQ(std::get<1>(run(true)), 1U);
+    EXPECT_EQ(std::get<2>(run(true)), 0U);
+}
+
 void add_fountain(SimulationSetup& setup) {
     EmitterDescription fountain;
     fountain.name = "fountain";
@@ -266,6 +290,18 @@ TEST(Advance, IsAtTheLastStepWhenItsCallerThrows) {
     simulation.advance(1000);
     while (!reference.finished()) reference.step();
     EXPECT_TRUE(simulation.finished());
+    EXPECT_EQ(simulation.state_hash(), reference.state_hash());
+}
+
+TEST(Advance, MayBeCalledByItsOwnCaller) {
+    Simulation simulation(SparseCase(4).setup());
+    Simulation reference(SparseCase(4).setup());
+    simulation.advance(20, [&] {
+        if (simulation.step_index() == 10) simulation.advance(5);
+        return true;
+    });
+    while (reference.step_index() < 25) reference.step();
+    EXPECT_EQ(simulation.step_index(), 25U);
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 

@@ -43,6 +43,13 @@ TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
     }
 }
 
+// The plane's point is so far along it that the height of the start rounds to the wrong side.
+TEST(TimeFreeOfPlane, IsNothingWhereRoundingHidesTheSide) {
+    const Plane plane{{8e8, -6e8, 0}, {0.6, 0.8, 0}};
+    EXPECT_EQ(time_free_of_plane(line_path({-7e-8, 0, 0}, {0, -1e-9, 0}, 100.0), plane, 0.0), 0.0);
+    EXPECT_EQ(time_free_of_plane(line_path({1, 0, 0}, {0, 1e-9, 0}, 100.0), plane, 0.0), 100.0);
+}
+
 TEST(TimeOutside, IsFreeOfTheBoxAndLongWhereTheBoxIsFarAway) {
     RandomSequence random(2, 0, 0);
     int outside = 0;

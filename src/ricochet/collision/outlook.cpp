@@ -25,9 +25,11 @@ Path shortened(const Path& path, double duration) {
 // First root of g0 + g1 t + g2 t^2, the height above the margin on the side of the start, in the form without
 // cancellation (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
 double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
-    const double height = dot(plane.normal, path.c[0] - plane.point);
+    const Vec3 start = path.c[0] - plane.point;
+    const double height = dot(plane.normal, start);
     const double side = height < 0.0 ? -1.0 : 1.0;
-    const double g0 = side * height - margin;
+    // The margin knows the path only; the height errs by the distance along the plane too.
+    const double g0 = side * height - margin - 16.0 * 0x1p-53 * dot(abs(plane.normal), abs(start));
     const double g1 = side * dot(plane.normal, path.c[1]);
     const double g2 = side * dot(plane.normal, path.c[2]);
     if (!(g0 > 0.0)) return 0.0;

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -142,6 +143,34 @@ TEST(SavedSimulation, IsRefusedByAnotherSetupAndWhenItIsCutShort) {
     bytes.pop_back();
     Simulation same(busy_setup());
     EXPECT_THROW(restore(same, bytes), InputError);
+}
+
+TEST(SavedSimulation, GoesOnWhereAnErrorInsideAStepHasEndedTheRun) {
+    bool fails = false;
+    const auto setup = [&fails] {
+        SimulationSetup made;
+        made.options.time_step = 0.1;
+        made.options.duration = 2.0;
+        made.forces.push_back(make_acceleration([&fails](const ForceInput&) {
+            if (fails) throw std::runtime_error("no force today");
+            return Vec3{0, 0, -1};
+        }));
+        made.particles.emplace_back();
+        return made;
+    };
+    Simulation simulation(setup());
+    simulation.step();
+    const std::vector<std::byte> kept = saved(simulation);
+    fails = true;
+    EXPECT_THROW(simulation.step(), std::runtime_error);
+    fails = false;
+    EXPECT_THROW(simulation.step(), RunError);
+    restore(simulation, kept);
+    simulation.advance(simulation.step_count());
+    Simulation reference(setup());
+    reference.advance(reference.step_count());
+    EXPECT_TRUE(simulation.finished());
+    EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
 }  // namespace

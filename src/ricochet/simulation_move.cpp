@@ -31,6 +31,10 @@ void fetch_vector(const Vec3& v) {
     __builtin_prefetch(&v.z, 1);
 }
 
+std::uint32_t saturating_sum(std::uint32_t a, std::uint32_t b) {
+    return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
+}
+
 }  // namespace
 
 // Between the steps of advance() nothing looks at a particle that coasts. But bounds and checks do in every step.
@@ -290,7 +294,7 @@ void Simulation::Impl::store(std::size_t i, const MovingParticle& moving, const 
     particles.velocity[i] = moving.state.velocity;
     if (particles.spin[i] != moving.spin) particles.spin[i] = moving.spin;
     if (particles.draws[i] != moving.draws) particles.draws[i] = moving.draws;
-    if (outcome.bounces > 0) particles.contacts[i] += outcome.bounces;
+    if (outcome.bounces > 0) particles.contacts[i] = saturating_sum(particles.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles.unsimulated_time[i] += outcome.unsimulated_time;
     if (!is_plain(i) || !flies_on(moving, outcome)) store_contact(i, moving, outcome);
 }

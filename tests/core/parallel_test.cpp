@@ -1,6 +1,7 @@
 #include "ricochet/core/parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cmath>
@@ -44,6 +45,30 @@ TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
         });
         ASSERT_EQ(values, std::vector<int>(values.size(), 2 * round));
     }
+}
+
+// More threads than processors, so that waiting threads look for work in each other's lists; an arena of its own, since
+// the one that the library makes has no more places than there are processors.
+TEST(Parallel, ABodyThatWaitsForTasksOfItsOwnIsNotInterruptedByAnotherOne) {
+    const ThreadLimit limit(8);
+    std::atomic<int> interrupted{0};
+    std::atomic<double> sink{0};
+    const auto work = [&](std::size_t piece, std::size_t, std::size_t) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 500 + 500 * (piece % 5); ++k) sum += std::sqrt(static_cast<double>(k));
+        sink = sum;
+    };
+    const auto body = [&](std::size_t, std::size_t, std::size_t) {
+        thread_local bool in_use = false;
+        if (in_use) ++interrupted;
+        in_use = true;
+        parallel_for_blocks(8, 1, work);
+        in_use = false;
+    };
+    tbb::task_arena(8).execute([&] {
+        for (int round = 0; round < 200; ++round) parallel_for_blocks(200, 1, body);
+    });
+    EXPECT_EQ(interrupted.load(), 0);
 }
 
 TEST(Parallel, AnExceptionReachesTheCaller) {

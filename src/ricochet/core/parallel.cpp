@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
 #include <tbb/version.h>
 
 #include <algorithm>
@@ -33,7 +34,10 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
     LoopOrder order;
     const auto run_block = [&](std::size_t block) {
         const LoopOrder::Body in_order(order);
-        body(block, block * block_size, std::min(count, (block + 1) * block_size));
+        // Bodies keep working memory per thread: a body that waits for tasks of its own must not meanwhile be given
+        // another body of this loop or of one around it.
+        tbb::this_task_arena::isolate(
+            [&] { body(block, block * block_size, std::min(count, (block + 1) * block_size)); });
     };
     if (blocks == 1) {
         run_block(0);

@@ -28,7 +28,9 @@ private:
 [[nodiscard]] int thread_count();
 
 /// Calls body(block, begin, end) for [0, count) cut into blocks of block_size, in any order, on any thread.
-/// Runs serially when there is one block. An exception of any body is rethrown here (which one is not fixed).
+/// Runs serially when there is one block. A body that waits for tasks of its own is not interrupted by another body on
+/// the same thread, so that bodies may use thread_local memory. An exception of any body is rethrown here (which one is
+/// not fixed).
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 

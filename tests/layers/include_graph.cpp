@@ -57,7 +57,7 @@ constexpr std::array kDoors = {
     Door{"ricochet/geometry/embree\\.h",
          "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|src/bench/native_rays\\.cpp"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
-    Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp"},
+    Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},

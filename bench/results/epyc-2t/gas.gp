@@ -27,8 +27,8 @@ set offsets 0,0,graph 0.05,0
 set xtics ('gas-20k' 0, 'gas-1300k' 1) rotate by -30 noenhanced
 set xrange [-0.6:1.6]
 $numbers << EOD
-"gas-20k" 2.31423 1.34706 2.67839
-"gas-1300k" 2.30416 0.950731 2.51071
+"gas-20k" 2.67968 1.43097 3.01098
+"gas-1300k" 2.27996 1.00074 2.65707
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -27,7 +27,7 @@ set offsets 0,0,graph 0.05,0
 set xtics ('hail' 0) rotate by -30 noenhanced
 set xrange [-0.6:0.6]
 $numbers << EOD
-"hail" 0.855275 0.339175 1.07662
+"hail" 0.918519 0.335947 1.20681
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -27,7 +27,7 @@ set offsets 0,0,graph 0.05,0
 set xtics ('rain' 0) rotate by -30 noenhanced
 set xrange [-0.6:0.6]
 $numbers << EOD
-"rain" 0.0680958 0.0323021 0.246882
+"rain" 0.0679723 0.0349478 0.248721
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

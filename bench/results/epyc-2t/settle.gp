@@ -27,7 +27,7 @@ set offsets 0,0,graph 0.05,0
 set xtics ('settle' 0) rotate by -30 noenhanced
 set xrange [-0.6:0.6]
 $numbers << EOD
-"settle" 0.469469 0.192832 0.63784
+"settle" 0.345645 0.205857 0.513214
 EOD
 plot $numbers using ($0+(-0.25)):2 with boxes linestyle 1 title 'particle-steps / bare rays', \
      $numbers using ($0+(-0.25)):2:(sprintf('%.2g',column(2))) with labels offset 0,0.6 font ',10' notitle, \

@@ -28,8 +28,10 @@ double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     const Vec3 start = path.c[0] - plane.point;
     const double height = dot(plane.normal, start);
     const double side = height < 0.0 ? -1.0 : 1.0;
-    // The margin knows the path only; the height errs by the distance along the plane too.
-    const double g0 = side * height - margin - 16.0 * 0x1p-53 * dot(abs(plane.normal), abs(start));
+    // The margin knows the path only; the height errs by the distance along the plane too: a difference, a product and
+    // two sums, less than five roundings of each component.
+    constexpr double kHeightError = 16.0 * 0x1p-53;
+    const double g0 = side * height - margin - kHeightError * dot(abs(plane.normal), abs(start));
     const double g1 = side * dot(plane.normal, path.c[1]);
     const double g2 = side * dot(plane.normal, path.c[2]);
     if (!(g0 > 0.0)) return 0.0;

@@ -13,8 +13,8 @@
 
 #include "kinds.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_writer.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace {
 

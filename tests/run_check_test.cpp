@@ -1,5 +1,5 @@
 // Runs that verify themselves: nothing is found, in closed and open meshes, planes, shapes, for points and spheres.
-#include "ricochet/run_check.h"
+#include "ricochet/simulation/run_check.h"
 
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
         particle.position = {1, 1, 1};
         particles.append(particle);
     }
-    check.watch_newborn(particles);
+    check.watch_spawned(particles);
     const std::vector<std::uint8_t> keep{1, 0, 0, 1};
     particles.compact(keep);
     check.compact(keep);
@@ -145,15 +145,15 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
     late.id = 30;
     late.position = {20, 0, 0};
     particles.append(late);
-    check.watch_newborn(particles);
+    check.watch_spawned(particles);
 
     std::vector<Violation> violations;
     const auto move = [&](std::size_t i, const Vec3& to) {
         violations.clear();
-        const std::vector<Leg> legs{{particles.position[i], to, 0.5}};
+        const std::vector<Segment> segments{{particles.position[i], to, 0.5}};
         ForceInput moved;
         moved.position = to;
-        check.look_at(i, particles, moved, 1.0, legs, violations);
+        check.look_at(i, particles, moved, 1.0, segments, violations);
         return violations.size();
     };
     EXPECT_EQ(move(0, {2, 2, 2}), 0U);

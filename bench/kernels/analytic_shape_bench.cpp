@@ -1,7 +1,7 @@
 /// \file
 /// Time of one question to a shape with a formula.
 
-#include "ricochet/geometry/analytic_shape.h"
+#include "ricochet/geometry/shapes/analytic_shape.h"
 
 #include <benchmark/benchmark.h>
 
@@ -71,12 +71,13 @@ void sphere_from_inside(benchmark::State& state) {
 void closest_point(benchmark::State& state) {
     time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.closest_point(path.end); });
 }
-void leg_is_free(benchmark::State& state) {
-    time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.leg_is_free(path.c[0], path.end); });
-}
-void distance_of_leg(benchmark::State& state) {
+void segment_is_free(benchmark::State& state) {
     time_paths(state, +1,
-               [](const AnalyticShape& s, const Path& path) { return s.distance_of_leg(path.c[0], path.end); });
+               [](const AnalyticShape& s, const Path& path) { return s.segment_is_free(path.c[0], path.end); });
+}
+void distance_of_segment(benchmark::State& state) {
+    time_paths(state, +1,
+               [](const AnalyticShape& s, const Path& path) { return s.distance_of_segment(path.c[0], path.end); });
 }
 
 void each_shape_and_degree(benchmark::internal::Benchmark* benchmark) {
@@ -97,8 +98,8 @@ BENCHMARK(point_from_inside)->Apply(each_shape_and_degree);
 BENCHMARK(sphere_from_outside)->Apply(each_shape_and_degree);
 BENCHMARK(sphere_from_inside)->Apply(each_shape_and_degree);
 BENCHMARK(closest_point)->Apply(each_shape);
-BENCHMARK(leg_is_free)->Apply(each_shape);
-BENCHMARK(distance_of_leg)->Apply(each_shape);
+BENCHMARK(segment_is_free)->Apply(each_shape);
+BENCHMARK(distance_of_segment)->Apply(each_shape);
 
 }  // namespace
 }  // namespace ricochet

@@ -11,9 +11,9 @@
 #include "generators/build_near.h"
 #include "generators/rock.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/clearance_grid.h"
-#include "ricochet/geometry/triangle_bvh.h"
-#include "ricochet/geometry/triangle_clusters.h"
+#include "ricochet/geometry/acceleration/distance_field.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/triangle_clusters.h"
 
 namespace ricochet {
 namespace {
@@ -101,7 +101,7 @@ void look_up_clearance(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.include(v);
-    const ClearanceGrid grid(mesh.vertices, mesh.triangles, box);
+    const DistanceField grid(mesh.vertices, mesh.triangles, box);
     RandomSequence random(3, 0, 0);
     std::vector<Vec3> places(4096);
     for (Vec3& place : places) place = 1.5 * random.in_unit_ball();
@@ -115,7 +115,7 @@ void build_clearance(benchmark::State& state) {
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.include(v);
     for ([[maybe_unused]] auto _ : state) {
-        const ClearanceGrid grid(mesh.vertices, mesh.triangles, box);
+        const DistanceField grid(mesh.vertices, mesh.triangles, box);
         benchmark::DoNotOptimize(grid.memory_bytes());
     }
 }

@@ -1,7 +1,7 @@
 /// \file
 /// Time of reading a mesh of 100 thousand triangles that is in memory already, by format.
 
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 
 #include "generators/build_near.h"
 #include "generators/rock.h"
-#include "ricochet/geometry/mesh_writer.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
 
 namespace ricochet {
 namespace {

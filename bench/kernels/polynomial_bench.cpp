@@ -1,7 +1,7 @@
 /// \file
 /// Time of finding a polynomial's roots, by degree: with all of them in the interval, with none, with a double one.
 
-#include "ricochet/geometry/polynomial.h"
+#include "ricochet/geometry/sweep/polynomial.h"
 
 #include <benchmark/benchmark.h>
 

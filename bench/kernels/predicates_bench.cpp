@@ -2,7 +2,7 @@
 /// Time of one call of the exact predicates by the path it takes: decided by the filter, by double-double, by
 /// expansions.
 
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 /// Time of the first contact with one triangle, for points and spheres on lines, parabolas and cubics: paths that hit
 /// it, pass it and graze it.
 
-#include "ricochet/geometry/sweep.h"
+#include "ricochet/geometry/sweep/sweep.h"
 
 #include <benchmark/benchmark.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/sphere_sweep.h"
+#include "ricochet/geometry/sweep/sphere_sweep.h"
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,7 @@
 /// Rotating-drum shape: a barrel with lifters inside.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

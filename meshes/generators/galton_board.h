@@ -2,7 +2,7 @@
 /// Galton board: rows of pegs over bins, in a frame with a hopper.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

@@ -2,7 +2,7 @@
 /// Icospheres: a sphere as a finely divided icosahedron.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

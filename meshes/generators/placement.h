@@ -2,7 +2,7 @@
 /// Small helpers that move, turn and join meshes.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

@@ -2,7 +2,7 @@
 /// Box, plate and wedge: plain shapes at any refinement.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

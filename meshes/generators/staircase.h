@@ -2,7 +2,7 @@
 /// A solid flight of stairs.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

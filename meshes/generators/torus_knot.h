@@ -2,7 +2,7 @@
 /// Torus knots: closed tubes that wind around a torus.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

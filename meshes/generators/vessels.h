@@ -2,7 +2,7 @@
 /// Open vessels with walls of a thickness: bowl and funnel. Both are surfaces of revolution about z.
 #pragma once
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::meshes {
 

@@ -15,7 +15,7 @@
 #include "bench/memory_use.h"
 #include "bench/reference.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet::bench {

@@ -9,7 +9,7 @@
 #include "bench/cases.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet::bench {

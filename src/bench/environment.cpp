@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
 
 namespace ricochet::bench {
 namespace {
@@ -77,8 +77,8 @@ Environment this_environment(std::string_view version) {
     e.compiler = kCompiler;
     e.build_type = RICOCHET_BUILD_TYPE;
     e.build_flags = RICOCHET_BUILD_FLAGS;
-    e.ray_library = ray_library_version();
-    e.thread_library = fmt::format("TBB {}", thread_library_version());
+    e.ray_library = embree_version();
+    e.thread_library = fmt::format("TBB {}", tbb_version());
     e.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
     e.ricochet = version;
     return e;

@@ -1,7 +1,7 @@
 #include "bench/insides.h"
 
-#include "ricochet/geometry/closest_point.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::bench {
 

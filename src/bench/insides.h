@@ -3,8 +3,8 @@
 #pragma once
 
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_bvh.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::bench {
 

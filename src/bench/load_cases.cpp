@@ -9,7 +9,7 @@
 #include "bench/cases.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_writer.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
 
 namespace ricochet::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::bench {
 

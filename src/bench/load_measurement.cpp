@@ -14,7 +14,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 namespace ricochet::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bench/cases.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::bench {
 

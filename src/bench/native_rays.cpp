@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/embree.h"
+#include "ricochet/geometry/acceleration/embree.h"
 
 namespace ricochet::bench {
 namespace {

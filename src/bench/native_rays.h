@@ -9,7 +9,7 @@
 #include <span>
 
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::bench {
 

@@ -82,8 +82,8 @@ public:
 
     // Every change of work is shown, steps not more often than can be read. False when a signal has come in.
     bool operator()(const bench::Progress& progress) {
-        const bool is_due = line_.due();
-        if (is_due || progress.doing != doing_) line_.show(text_of(progress));
+        const bool needs_query = line_.due();
+        if (needs_query || progress.doing != doing_) line_.show(text_of(progress));
         doing_ = progress.doing;
         return InterruptGuard::signal() == 0;
     }

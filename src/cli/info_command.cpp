@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "ricochet/geometry/mesh_report.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
 
 namespace ricochet {
 namespace {

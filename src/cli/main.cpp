@@ -19,8 +19,8 @@
 #include "cli/schema_command.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh_topology.h"
-#include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
@@ -43,8 +43,8 @@ const std::vector<AddCommand>& commands() {
 }
 
 std::string version_text() {
-    return fmt::format("ricochet {}\n{}\nTBB {}\nOpenMesh {}", RICOCHET_VERSION, ray_library_version(),
-                       thread_library_version(), topology_library_version());
+    return fmt::format("ricochet {}\n{}\nTBB {}\nOpenMesh {}", RICOCHET_VERSION, embree_version(), tbb_version(),
+                       openmesh_version());
 }
 
 int report_error(std::string message, int exit_code) {

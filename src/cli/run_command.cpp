@@ -260,7 +260,7 @@ void add_options(CLI::App& command, RunArguments& a) {
     command.add_flag("--quiet", a.quiet, "No progress, no report");
     command.add_flag(
         "--verify", a.verify,
-        "Also check every leg, side and distance by independent exact code; leaks are listed and end with 1");
+        "Also check every segment, side and distance by independent exact code; leaks are listed and end with 1");
     command.add_flag("--resume", a.resume,
                      "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
 }

@@ -10,9 +10,9 @@ namespace {
 const char* text_of(ViolationKind kind) {
     switch (kind) {
         case ViolationKind::crossing:
-            return "a leg meets";
+            return "a segment meets";
         case ViolationKind::gap:
-            return "its legs do not join";
+            return "its segments do not join";
         case ViolationKind::wrong_side:
             return "is on another side than at birth of";
         case ViolationKind::overlap:

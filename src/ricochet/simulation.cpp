@@ -7,8 +7,8 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shape_mesh.h"
-#include "ricochet/simulation_impl.h"
+#include "ricochet/geometry/shapes/shape_mesh.h"
+#include "ricochet/simulation/impl.h"
 
 namespace ricochet {
 
@@ -54,8 +54,8 @@ std::size_t Simulation::triangle_count() const { return impl_->world.triangles()
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->records; }
-CollisionWorld::Place Simulation::contact_place(const ContactRecord& record) const {
-    return impl_->world.place_on(record.surface, record.position);
+CollisionWorld::Place Simulation::contact_point(const ContactRecord& record) const {
+    return impl_->world.closest_point_on(record.surface, record.position);
 }
 SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->world.name_of(surface); }
 

@@ -36,13 +36,13 @@ struct SimulationOptions {
     /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
     double resting_speed = 1e-3;
     bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
-    bool foresight =
+    bool look_ahead =
         true;  ///< particles that certainly meet nothing are not searched for; the result is the same without
     bool spatial_order =
         true;             ///< neighbours in space are searched for one after the other; the result is the same without
     bool culling = true;  ///< false: every triangle is tested for every path; the result is the same without
     bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
-    /// Check every leg, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
+    /// Check every segment, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
     bool verify = false;
     bool triangle_totals = true;                  ///< keep hits and impulse per triangle (56 bytes each)
     std::uint32_t bounce_budget = 1000;           ///< impacts per particle and step, >= 1
@@ -173,7 +173,7 @@ public:
     /// reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
     /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
-    [[nodiscard]] CollisionWorld::Place contact_place(const ContactRecord& record) const;
+    [[nodiscard]] CollisionWorld::Place contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
     /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run

@@ -13,7 +13,7 @@
 #include "bench/insides.h"
 #include "bench/small_cases.h"
 #include "bench/suites.h"
-#include "ricochet/geometry/closest_point.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include "bench/load_cases.h"
 #include "bench/load_measurement.h"
 #include "geometry/temporary_folder.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 namespace ricochet::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet::bench {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "ricochet/collision/contact_search.h"
-#include "ricochet/collision/parking.h"
+#include "ricochet/collision/safe_position.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/exact.h"
 #include "support/exact_oracle.h"
 
@@ -61,11 +61,11 @@ struct Aimed {
             position = travel(search, path, path.duration, path.end).reached;
             return;
         }
-        const Parking parking = park(search, path, *contact);
-        position = parking.position;
+        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        position = safe_position.position;
         triangle = world.name_of(contact->first().surface).triangle;
         ++tally.contacts;
-        tally.stayed += parking.stayed ? 1 : 0;
+        tally.stayed += safe_position.stayed ? 1 : 0;
     }
 };
 
@@ -150,7 +150,7 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     return sum_of(parts);
 }
 
-/// Every leg of the chain that was travelled; a chain that does not join its ends counts as a crossing.
+/// Every segment of the chain that was travelled; a chain that does not join its ends counts as a crossing.
 void Billiard::check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
     tally.crossing_legs += chain.front() == from && chain.back() == to ? 0 : 1;

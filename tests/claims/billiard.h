@@ -18,8 +18,8 @@ struct BilliardTally {
     std::uint64_t contacts = 0;
     std::uint64_t stayed = 0;            ///< contacts after which the particle stood where its path began
     std::uint64_t not_inside = 0;        ///< particles outside, or on the surface, at any check
-    std::uint64_t checked_legs = 0;      ///< legs tested again by the exact oracle
-    std::uint64_t crossing_legs = 0;     ///< of these, legs that meet a triangle
+    std::uint64_t checked_legs = 0;      ///< segments tested again by the exact oracle
+    std::uint64_t crossing_legs = 0;     ///< of these, segments that meet a triangle
     std::uint64_t budget_exhausted = 0;  ///< steps that spent their bounces
 };
 
@@ -37,7 +37,7 @@ public:
                                     std::uint64_t seed) const;
 
     /// Every flight is aimed at a vertex or a point of an edge; after an impact of the triangle just hit (two times in
-    /// three) or of any. Some flights end exactly there. One leg in `check_every` is tested by the oracle.
+    /// three) or of any. Some flights end exactly there. One segment in `check_every` is tested by the oracle.
     [[nodiscard]] BilliardTally aim(int particles, int impacts, int check_every, std::uint64_t seed) const;
 
     [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }

@@ -1,5 +1,5 @@
 // Nothing leaks: particles that start inside a closed mesh end inside it, by an exact parity test that shares nothing
-// with the library; and the legs they travel meet no triangle, by exact rational arithmetic, open meshes included.
+// with the library; and the segments they travel meet no triangle, by exact rational arithmetic, open meshes included.
 //
 // RICOCHET_LONG: the same claims with ten thousand particles and a thousand steps.
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
     EXPECT_GT(tally.contacts, 0U);
 }
 
-// The reference must be able to tell: a leg through a wall is seen, one beside it is not.
+// The reference must be able to tell: a segment through a wall is seen, one beside it is not.
 TEST(LegOracle, TellsALegThroughAWallFromOneBesideIt) {
     const NamedMesh box = made_meshes().front();
     const Billiard billiard(box, {});

@@ -13,7 +13,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/drag.h"
-#include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
@@ -131,12 +131,12 @@ TEST_P(Determinism, TheStateDoesNotDependOnTheInstructionSetOfTheRayLibrary) {
     if (__builtin_cpu_supports("avx512dq") != 0) settings.push_back("isa=avx512");
     std::vector<std::uint64_t> hashes;
     for (const char* setting : settings) {
-        set_ray_library_settings(setting);
+        set_embree_settings(setting);
         Simulation simulation(debris(mesh, GetParam()));
         run(simulation);
         hashes.push_back(simulation.state_hash());
     }
-    set_ray_library_settings("");
+    set_embree_settings("");
     for (std::size_t k = 1; k < hashes.size(); ++k) EXPECT_EQ(hashes[k], hashes[0]) << settings[k];
 }
 

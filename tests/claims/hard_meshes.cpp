@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 

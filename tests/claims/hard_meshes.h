@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ricochet/core/transform.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::testing {
 

@@ -12,7 +12,7 @@
 #include "collision/worlds.h"
 #include "response/course.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/response/exact.h"
 #include "support/counts.h"
 #include "support/parity.h"

@@ -10,8 +10,8 @@
 
 #include "collision/worlds.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/closest_point.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/parity.h"

@@ -9,7 +9,7 @@
 #include "collision/worlds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/placed_mesh.h"
+#include "ricochet/geometry/mesh/placed_mesh.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {

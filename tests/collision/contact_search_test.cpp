@@ -10,7 +10,7 @@
 #include "collision/worlds.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/simple_meshes.h"
@@ -215,8 +215,8 @@ TEST(ContactSearch, MissesNothingAlongAPathThatBendsByLessThanAnyNumberTells) {
     ContactSearch search(world, scratch);
     const Vec3 hardly{0, 0, -1e-170};
     const Path path = parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 1.0);
-    const Outlook outlook{parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 100.0), 10.0, 2.0, 1.0};
-    const auto contact = search.search(path, 0.0, &outlook);
+    const LookAhead look_ahead{parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 100.0), 10.0, 2.0, 1.0};
+    const auto contact = search.search(path, 0.0, &look_ahead);
     ASSERT_TRUE(contact.has_value());
     EXPECT_NEAR(contact->time, 0.45, 1e-12);
 }

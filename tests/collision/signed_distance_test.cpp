@@ -13,8 +13,8 @@
 #include "geometry/allocation_guard.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh_reader.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/parity.h"
 #include "support/shared_meshes.h"
@@ -272,9 +272,9 @@ TEST(SignedDistance, NearListsWhatClosestFindsInTheOrderOfTheColliders) {
 
 TEST(SignedDistance, HasTheSameBitsWithAndWithoutCullingOnAnyInstructionSetAndThread) {
     const auto run = [](bool culls, const char* instructions) {
-        set_ray_library_settings(instructions);
+        set_embree_settings(instructions);
         auto world = mixed_world();
-        set_ray_library_settings("");
+        set_embree_settings("");
         world.set_culling(culls);
         const SignedDistance distance(world);
         std::vector<std::vector<SurfacePoint>> found(200);

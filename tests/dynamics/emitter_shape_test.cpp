@@ -10,7 +10,7 @@
 #include "dynamics/chi_square.h"
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/screen_area.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/verify/parity.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

@@ -11,7 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 
 namespace ricochet {

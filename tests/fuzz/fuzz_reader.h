@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_source.h"
-#include "ricochet/geometry/mesh_topology.h"
-#include "ricochet/geometry/triangulation.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet::fuzz {
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/analytic_shape.h"
+#include "ricochet/geometry/shapes/analytic_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -155,7 +155,7 @@ TEST(AnalyticShape, KnowsPointsThatLieOnIt) {
         EXPECT_EQ(ball.side(p), 0);
         EXPECT_EQ(ball.closest_point(p).distance, 0.0);
         EXPECT_EQ(ball.closest_point(p).point, p);
-        EXPECT_FALSE(ball.leg_is_free(p, p));
+        EXPECT_FALSE(ball.segment_is_free(p, p));
     }
     const AnalyticShape can = AnalyticShape::cylinder(world_from_local({.position = {5, 6, 7}, .scale = {2, 2, 0.25}}));
     for (const Vec3& p : {Vec3{7, 6, 7}, Vec3{5, 6, 7.25}, Vec3{5, 8, 6.75}}) EXPECT_EQ(can.side(p), 0);
@@ -248,7 +248,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
     }
 }
 
-// ---- legs
+// ---- segments
 // ------------------------------------------------------------------------------------------------------------
 
 TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
@@ -259,7 +259,7 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
         Draws draws(5, i);
         const Case c = random_case(draws);
         const Vec3 p = random_point(draws, c);
-        // Also legs that graze: towards a point beside the surface point straight below.
+        // Also segments that graze: towards a point beside the surface point straight below.
         const ShapePoint below = c.shape.closest_point(p);
         const Vec3 aside = cross(below.normal, draws.direction());
         Vec3 q = random_point(draws, c);
@@ -267,10 +267,10 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
             q = p - below.distance * (1.0 - draws.power_of_ten(-15, -1)) * below.normal +
                 c.smallest * draws.power_of_ten(-8, 1) * aside;
         }
-        const bool is_free = c.shape.leg_is_free(p, q);
+        const bool is_free = c.shape.segment_is_free(p, q);
         const bool meets = c.oracle.meets(real(p), real(q));
         EXPECT_FALSE(is_free && meets);
-        // Refused without need only where the leg passes within rounding, which random legs do not.
+        // Refused without need only where the segment passes within rounding, which random segments do not.
         EXPECT_TRUE(is_free || meets || c.shape.side(p) == 0 || c.shape.side(q) == 0);
         ++(is_free ? freed : refused);
     }
@@ -285,12 +285,12 @@ TEST(AnalyticShape, BoundsTheDistanceOfALegFromBelowTightly) {
         const Case c = random_case(draws);
         const Vec3 p = random_point(draws, c);
         const Vec3 q = random_point(draws, c);
-        const double bound = c.shape.distance_of_leg(p, q);
-        if (!c.shape.leg_is_free(p, q)) {
+        const double bound = c.shape.distance_of_segment(p, q);
+        if (!c.shape.segment_is_free(p, q)) {
             EXPECT_EQ(bound, 0.0);
             continue;
         }
-        // The distance from a convex body is convex along the leg, the depth in it is concave.
+        // The distance from a convex body is convex along the segment, the depth in it is concave.
         const RealVector step = testing::sum(real(q), Real(-1), real(p));
         const auto nearest_at = [&](const Real& t) { return c.oracle.nearest(testing::sum(real(p), t, step)); };
         Real low = 0;
@@ -572,7 +572,7 @@ struct Bouncer {
         const double distance = std::fabs(shape.closest_point(place).distance);
         const bool is_past = radius == 0.0 && dot(place - contact->point, contact->normal) < 0.0;
         const double lift = radius - (is_past ? -distance : distance);
-        p = place + (std::max(lift, 0.0) + parking_gap(place)) * contact->normal;
+        p = place + (std::max(lift, 0.0) + contact_offset(place)) * contact->normal;
         v = path.velocity(contact->time);
         v -= (2.0 * dot(v, contact->normal)) * contact->normal;
         return true;
@@ -583,12 +583,13 @@ TEST(AnalyticShape, KeepsAngleAndChordInsideASphereForAHundredThousandBounces) {
     const AnalyticShape ball = unit_ball();
     const int bounces = test::scaled(100000);
     Bouncer particle{ball, 0.0, {0.3, -0.2, 0.1}, normalized({0.4, 0.5, -0.7})};
-    // The sine of the incidence angle is |p x v|; each parking step shortens p by parking_gap, at most 16 ulp of 1.
+    // The sine of the incidence angle is |p x v|; each safe_position step shortens p by contact_offset, at most 16 ulp
+    // of 1.
     const double sine = length(cross(particle.p, particle.v));
     const double chord = 2.0 * std::sqrt(1.0 - sine * sine);
     Vec3 last;
     for (int k = 0; k <= bounces; ++k) {
-        const double drift = (k + 1) * (kParkingGapUlps + 2.0) * 0x1p-52;
+        const double drift = (k + 1) * (kContactOffsetUlps + 2.0) * 0x1p-52;
         ASSERT_TRUE(particle.follow(line_path(particle.p, particle.v, 3.0)));
         ASSERT_NEAR(length(cross(particle.p, particle.v)), sine, drift) << k;
         if (k > 0) {
@@ -614,11 +615,11 @@ TEST(AnalyticShape, LeadsFromFocusToFocusInsideAnEllipsoid) {
         Bouncer particle{ellipsoid, 0.0, placement.position - to_focus, draws.direction()};
         ASSERT_TRUE(particle.follow(line_path(particle.p, particle.v, 20.0)));
         const Vec3 aside = cross(placement.position + to_focus - particle.p, particle.v);
-        ASSERT_LE(length(aside), 40 * parking_gap(placement.position)) << i;
+        ASSERT_LE(length(aside), 40 * contact_offset(placement.position)) << i;
     }
 }
 
-/// 100 shapes with 1000 legs each, aimed anywhere and again and again at the wall just met, fast and slow.
+/// 100 shapes with 1000 segments each, aimed anywhere and again and again at the wall just met, fast and slow.
 void bounce_about(std::uint32_t stream, bool with_radius) {
     for (int i = 0; i < cases(100); ++i) {
         SCOPED_TRACE(i);
@@ -630,18 +631,18 @@ void bounce_about(std::uint32_t stream, bool with_radius) {
         Bouncer particle{c.shape, radius, c.placement.position, {}};
         if (!is_inside) particle.p += 5.0 * c.largest * draws.direction();
         int bounces = 0;
-        for (int leg = 0; leg < 1000; ++leg) {
+        for (int segment = 0; segment < 1000; ++segment) {
             const Vec3 before = particle.p;
             const Vec3 target = c.map.point(draws.uniform(0, 3) * draws.direction());
             const Path path = draws.one_of(2) == 0
                                   ? line_path(before, target - before, 1.0)
                                   : parabola_path(before, target - before, c.largest * draws.direction(), 1.0);
             bounces += static_cast<int>(particle.follow(path));
-            ASSERT_EQ(c.shape.side(particle.p), is_inside ? -1 : 1) << leg;
+            ASSERT_EQ(c.shape.side(particle.p), is_inside ? -1 : 1) << segment;
             if (path.degree == 1) {
-                ASSERT_TRUE(c.shape.leg_is_free(before, particle.p)) << leg;
+                ASSERT_TRUE(c.shape.segment_is_free(before, particle.p)) << segment;
             }
-            ASSERT_GE(std::fabs(c.shape.closest_point(particle.p).distance), radius - tolerance) << leg;
+            ASSERT_GE(std::fabs(c.shape.closest_point(particle.p).distance), radius - tolerance) << segment;
             if (length(particle.p - c.placement.position) > 10.0 * c.largest) {
                 particle.p = c.placement.position + 5.0 * c.largest * draws.direction();
             }

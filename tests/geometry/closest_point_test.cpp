@@ -1,4 +1,4 @@
-#include "ricochet/geometry/closest_point.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "geometry/mesh_files.h"
 #include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 namespace ricochet {
 namespace {

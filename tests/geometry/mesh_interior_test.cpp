@@ -1,11 +1,11 @@
-#include "ricochet/geometry/mesh_interior.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/verify/parity.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh_report.h"
-#include "ricochet/geometry/mesh_writer.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
 #include "support/counts.h"
 
 namespace ricochet {

@@ -1,11 +1,11 @@
-#include "ricochet/geometry/mesh_report.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/shared_meshes.h"
 
 namespace ricochet {

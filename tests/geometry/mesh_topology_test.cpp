@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh_topology.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh_writer.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
 
 #include <gtest/gtest.h>
 

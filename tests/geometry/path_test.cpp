@@ -1,4 +1,4 @@
-#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep/path.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/polynomial.h"
+#include "ricochet/geometry/sweep/polynomial.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/pseudonormals.h"
+#include "ricochet/geometry/mesh/pseudonormals.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

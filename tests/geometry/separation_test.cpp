@@ -1,4 +1,4 @@
-#include "ricochet/geometry/separation.h"
+#include "ricochet/geometry/sweep/separation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sphere_sweep.h"
+#include "ricochet/geometry/sweep/sphere_sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/sphere_oracle.h"
 
@@ -586,7 +586,7 @@ TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
         }
         const double least = static_cast<double>(std::min({distance_at(low), distance_at(0.0), distance_at(1.0)}));
         const bool is_clear =
-            sphere_leg_is_clear(p, q, s.radius, tolerance, s.triangle[0], s.triangle[1], s.triangle[2]);
+            sphere_segment_is_clear(p, q, s.radius, tolerance, s.triangle[0], s.triangle[1], s.triangle[2]);
         if (least > s.radius - 0.9 * tolerance) {
             EXPECT_TRUE(is_clear) << least - s.radius;
         }
@@ -600,7 +600,7 @@ TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
 }
 
 TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
-    int legs = 0;
+    int segments = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
         if (s.path.degree != 1 || !starts_clear(s)) continue;
@@ -608,11 +608,11 @@ TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
         if (!found) continue;
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
         const double tolerance = sphere_tolerance(s.radius, largest_coordinate(s));
-        EXPECT_TRUE(sphere_leg_is_clear(s.path.c[0], s.path.position(found->time), s.radius, tolerance, s.triangle[0],
-                                        s.triangle[1], s.triangle[2]));
-        ++legs;
+        EXPECT_TRUE(sphere_segment_is_clear(s.path.c[0], s.path.position(found->time), s.radius, tolerance,
+                                            s.triangle[0], s.triangle[1], s.triangle[2]));
+        ++segments;
     }
-    EXPECT_GT(legs, 500);
+    EXPECT_GT(segments, 500);
 }
 
 /// Every second path is straight.

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sweep.h"
+#include "ricochet/geometry/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/segment_triangle_cases.h"
@@ -308,7 +308,7 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
             continue;
         const Path path = i % 2 == 0 ? line_between(s.p, s.q, 1.0)
                                      : parabola_path(s.p, s.q - s.p, length(s.q - s.p) * random.unit_vector(), 1.0);
-        // As the search has it; the second part is for coordinates that parking places replace by zero.
+        // As the search has it; the second part is for coordinates that safe_position places replace by zero.
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
         if (!clears_plane_of(path, s.a, s.b, s.c, slack)) continue;
         ++cleared;

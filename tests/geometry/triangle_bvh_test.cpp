@@ -1,4 +1,4 @@
-#include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/closest_point.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 
@@ -344,7 +344,7 @@ TEST(TriangleBvh, NothingIsNearWithoutTriangles) {
     EXPECT_TRUE(visited_near(empty, {0, 0, 0}, HUGE_VAL).empty());
 }
 
-TEST(TriangleBvh, NamesTheRayLibrary) { EXPECT_EQ(ray_library_version().rfind("Embree ", 0), 0U); }
+TEST(TriangleBvh, NamesTheRayLibrary) { EXPECT_EQ(embree_version().rfind("Embree ", 0), 0U); }
 
 }  // namespace
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/triangle_clusters.h"
+#include "ricochet/geometry/acceleration/triangle_clusters.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/closest_point.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/triangle_plane.h"
+#include "ricochet/geometry/sweep/triangle_plane.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/sweep.h"
+#include "ricochet/geometry/sweep/sweep.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/segment_triangle_cases.h"

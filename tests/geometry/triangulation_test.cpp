@@ -1,4 +1,4 @@
-#include "ricochet/geometry/triangulation.h"
+#include "ricochet/geometry/mesh/triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_topology.h"
-#include "ricochet/geometry/orient2d.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/predicates/orient2d.h"
 #include "support/counts.h"
 
 namespace ricochet {

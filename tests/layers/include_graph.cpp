@@ -40,7 +40,8 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
 /// The verifier checks the sweep, so it must not compute with the sweep's code: plain data only.
 bool may_verify(const std::string& header) {
     static const std::set<std::string> plain = {
-        "core/box3.h", "core/leg.h", "core/tolerances.h", "core/transform.h", "core/vec3.h", "geometry/triangle_mesh.h",
+        "core/box3.h",      "core/segment.h", "core/tolerances.h",
+        "core/transform.h", "core/vec3.h",    "geometry/mesh/triangle_mesh.h",
     };
     return plain.contains(header.substr(kLibrary.size()));
 }
@@ -53,10 +54,11 @@ struct Door {
 
 /// Everything that is not ours and not the C++ standard library.
 constexpr std::array kDoors = {
-    Door{"embree[34]/", "src/ricochet/geometry/embree\\.h"},
-    Door{"ricochet/geometry/embree\\.h",
-         "src/ricochet/geometry/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|src/bench/native_rays\\.cpp"},
-    Door{"OpenMesh/", "src/ricochet/geometry/mesh_topology\\.cpp"},
+    Door{"embree[34]/", "src/ricochet/geometry/acceleration/embree\\.h"},
+    Door{"ricochet/geometry/acceleration/embree\\.h",
+         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|src/bench/"
+         "native_rays\\.cpp"},
+    Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},

@@ -17,8 +17,9 @@ SourceTree planted(const std::string& path, const std::string& name) {
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
-    tree.private_headers = {"src/ricochet/geometry/embree.h"};
-    if (name != "ricochet/geometry/embree.h") tree.files.push_back({"src/ricochet/geometry/embree.h", {}});
+    tree.private_headers = {"src/ricochet/geometry/acceleration/embree.h"};
+    if (name != "ricochet/geometry/acceleration/embree.h")
+        tree.files.push_back({"src/ricochet/geometry/acceleration/embree.h", {}});
     return tree;
 }
 
@@ -40,41 +41,43 @@ TEST(IncludeGraph, OfThisRepositoryHasEveryPublicHeaderInTheUmbrella) {
 
 TEST(IncludeGraph, FindsAPlantedViolation) {
     const std::vector<Case> cases = {
-        {"src/ricochet/core/vec3.h", "ricochet/geometry/path.h"},           // upward
-        {"src/ricochet/geometry/path.cpp", "ricochet/dynamics/force.h"},    // upward
-        {"src/ricochet/collision/x.cpp", "ricochet/dynamics/particles.h"},  // siblings
-        {"src/ricochet/dynamics/x.h", "ricochet/collision/collider.h"},     // siblings, the other way
-        {"src/ricochet/io/x.cpp", "ricochet/render/image.h"},               // siblings
-        {"src/ricochet/response/x.cpp", "ricochet/simulation.h"},           // upward to the library's top
-        {"src/ricochet/simulation.cpp", "ricochet/io/scene.h"},             // upward
-        {"src/ricochet/simulation.cpp", "cli/run.h"},                       // the library knows no tool
-        {"src/ricochet/core/error.cpp", "ricochet/ricochet.h"},             // the umbrella is for users
-        {"src/ricochet/core/error.cpp", "support/counts.h"},                // the library knows no test
-        {"src/ricochet/geometry/path.cpp", "OpenMesh/Core/IO/MeshIO.hh"},   // outside the door
-        {"src/ricochet/geometry/triangle_bvh.cpp", "embree4/rtcore.h"},     // the door is embree.h
-        {"src/ricochet/geometry/path.cpp", "ricochet/geometry/embree.h"},   // and only two files open it
-        {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},              // outside the door
-        {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},       // by its other name
-        {"src/ricochet/verify/x.cpp", "ricochet/geometry/predicates.h"},    // the sweep's own arithmetic
-        {"src/ricochet/verify/x.cpp", "ricochet/geometry/triangle_bvh.h"},  // and its tree
-        {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},     // and its numbers
-        {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},         // upward
+        {"src/ricochet/core/vec3.h", "ricochet/geometry/sweep/path.h"},               // upward
+        {"src/ricochet/geometry/sweep/path.cpp", "ricochet/dynamics/force.h"},        // upward
+        {"src/ricochet/collision/x.cpp", "ricochet/dynamics/particles.h"},            // siblings
+        {"src/ricochet/dynamics/x.h", "ricochet/collision/collider.h"},               // siblings, the other way
+        {"src/ricochet/io/x.cpp", "ricochet/render/image.h"},                         // siblings
+        {"src/ricochet/response/x.cpp", "ricochet/simulation.h"},                     // upward to the library's top
+        {"src/ricochet/simulation.cpp", "ricochet/io/scene.h"},                       // upward
+        {"src/ricochet/simulation.cpp", "cli/run.h"},                                 // the library knows no tool
+        {"src/ricochet/core/error.cpp", "ricochet/ricochet.h"},                       // the umbrella is for users
+        {"src/ricochet/core/error.cpp", "support/counts.h"},                          // the library knows no test
+        {"src/ricochet/geometry/sweep/path.cpp", "OpenMesh/Core/IO/MeshIO.hh"},       // outside the door
+        {"src/ricochet/geometry/acceleration/triangle_bvh.cpp", "embree4/rtcore.h"},  // the door is embree.h
+        {"src/ricochet/geometry/sweep/path.cpp",
+         "ricochet/geometry/acceleration/embree.h"},                                     // and only two files open it
+        {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},                           // outside the door
+        {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},                    // by its other name
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/predicates/predicates.h"},      // the sweep's own arithmetic
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/acceleration/triangle_bvh.h"},  // and its tree
+        {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},                  // and its numbers
+        {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},                      // upward
         {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
         {"src/ricochet/verify/verifier.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
-        {"src/ricochet/geometry/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
-        {"src/ricochet/compare/comparison.cpp", "bench/cases.h"},  // the library knows no benchmark
-        {"src/bench/cases.cpp", "ricochet/io/scene.h"},            // whose cases are no scene files
-        {"src/bench/cases.cpp", "cli/run.h"},                      // and which knows no tool
-        {"src/bench/cases.cpp", "ricochet/geometry/embree.h"},     // only the reference rays open it
-        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},          // in a public header
-        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},    // in a public header, of the right layer
-        {"src/ricochet/geometry/triangle_bvh.h", "ricochet/geometry/embree.h"},  // public includes private
-        {"src/ricochet/io/scene.h", "ricochet/io/detail/json_node.h"},           // the same, by its folder
-        {"src/ricochet/core/error.h", "fmt/core.h"},                             // in a public header
-        {"src/ricochet/core/error.cpp", "Eigen/Core"},                           // a library nobody has declared
-        {"src/ricochet/core/error.cpp", "core/missing.h"},                       // names no file
-        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},                   // a folder that is no layer
-        {"src/cli/main.cpp", "gtest/gtest.h"},                                   // tests only
+        {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
+        {"src/ricochet/compare/comparison.cpp", "bench/cases.h"},            // the library knows no benchmark
+        {"src/bench/cases.cpp", "ricochet/io/scene.h"},                      // whose cases are no scene files
+        {"src/bench/cases.cpp", "cli/run.h"},                                // and which knows no tool
+        {"src/bench/cases.cpp", "ricochet/geometry/acceleration/embree.h"},  // only the reference rays open it
+        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                    // in a public header
+        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},              // in a public header, of the right layer
+        {"src/ricochet/geometry/acceleration/triangle_bvh.h",
+         "ricochet/geometry/acceleration/embree.h"},                    // public includes private
+        {"src/ricochet/io/scene.h", "ricochet/io/detail/json_node.h"},  // the same, by its folder
+        {"src/ricochet/core/error.h", "fmt/core.h"},                    // in a public header
+        {"src/ricochet/core/error.cpp", "Eigen/Core"},                  // a library nobody has declared
+        {"src/ricochet/core/error.cpp", "core/missing.h"},              // names no file
+        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},          // a folder that is no layer
+        {"src/cli/main.cpp", "gtest/gtest.h"},                          // tests only
     };
     for (const Case& c : cases) {
         SCOPED_TRACE(fmt::format("{} includes {}", c.file, c.include));
@@ -87,18 +90,18 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
 TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
     const std::vector<Case> cases = {
         {"src/ricochet/core/vec3.h", "cmath"},
-        {"src/ricochet/geometry/path.h", "ricochet/core/vec3.h"},
-        {"src/ricochet/dynamics/emitter.h", "ricochet/geometry/triangle_mesh.h"},
+        {"src/ricochet/geometry/sweep/path.h", "ricochet/core/vec3.h"},
+        {"src/ricochet/dynamics/emitter.h", "ricochet/geometry/mesh/triangle_mesh.h"},
         {"src/ricochet/response/bounce.cpp", "ricochet/collision/collider.h"},
         {"src/ricochet/response/bounce.cpp", "ricochet/dynamics/particles.h"},
         {"src/ricochet/io/scene.cpp", "ricochet/simulation.h"},
         {"src/ricochet/io/scene.cpp", "nlohmann/json.hpp"},
-        {"src/ricochet/geometry/triangle_bvh.cpp", "ricochet/geometry/embree.h"},
-        {"src/ricochet/geometry/embree.h", "embree4/rtcore.h"},
-        {"src/ricochet/geometry/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
+        {"src/ricochet/geometry/acceleration/triangle_bvh.cpp", "ricochet/geometry/acceleration/embree.h"},
+        {"src/ricochet/geometry/acceleration/embree.h", "embree4/rtcore.h"},
+        {"src/ricochet/geometry/mesh/mesh_topology.cpp", "OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh"},
         {"src/ricochet/core/parallel.cpp", "tbb/parallel_for.h"},
         {"src/ricochet/core/error.cpp", "fmt/core.h"},
-        {"src/ricochet/verify/verifier.h", "ricochet/geometry/triangle_mesh.h"},
+        {"src/ricochet/verify/verifier.h", "ricochet/geometry/mesh/triangle_mesh.h"},
         {"src/ricochet/verify/detail/signs.cpp", "boost/multiprecision/cpp_int.hpp"},
         {"src/ricochet/simulation.cpp", "ricochet/verify/verifier.h"},
         {"src/cli/main.cpp", "CLI/CLI.hpp"},
@@ -106,7 +109,7 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
         {"src/cli/main.cpp", "bench/cases.h"},
         {"src/bench/cases.cpp", "generators/rock.h"},
         {"src/bench/measurement.cpp", "ricochet/simulation.h"},
-        {"src/bench/native_rays.cpp", "ricochet/geometry/embree.h"},
+        {"src/bench/native_rays.cpp", "ricochet/geometry/acceleration/embree.h"},
         {"tests/core/vec3_test.cpp", "support/counts.h"},
         {"tests/core/vec3_test.cpp", "ricochet/simulation.h"},
     };

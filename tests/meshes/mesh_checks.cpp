@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet::meshes {
 namespace {

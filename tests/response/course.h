@@ -56,7 +56,7 @@ struct Course {
     MoveOutcome move(MovingParticle& particle, double duration) {
         scratch.hits.clear();
         scratch.records.clear();
-        scratch.legs.clear();
+        scratch.segments.clear();
         scratch.record_contacts = true;
         world.prepare_radius(particle.state.radius);
         if (particle.sides.empty()) enrol(particle);

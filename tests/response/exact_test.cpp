@@ -371,7 +371,7 @@ TEST(ExactResponse, AParticleLeftOnASurfaceWithoutForcesStaysThere) {
     EXPECT_NEAR(state.position.z, 0.0, 1e-14);
 }
 
-// The parking gap depends on the contact point alone, so the mesh's resolution changes no bit.
+// The safe_position gap depends on the contact point alone, so the mesh's resolution changes no bit.
 TEST(ExactResponse, BouncesAlikeOnTwoTrianglesManyTrianglesAndAPlane) {
     for (const double restitution : {1.0, 0.8}) {
         for (const IntegratorKind kind : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {

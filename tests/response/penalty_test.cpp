@@ -140,16 +140,16 @@ TEST_P(Penalty, KeepsTheEnergyOfAnUndampedBounceToTheSecondOrderOfSubsteps) {
 TEST_P(Penalty, HoldsAnUndampedContactForHalfAPeriod) {
     const double substep = 0.05 / kOmega;
     Course course = course_of({}, {}, settings_with(GetParam(), substep));
-    course.scratch.record_legs = true;
+    course.scratch.record_segments = true;
     MovingParticle ball = particle_at({0, 0, 0.4 * substep}, {0, 0, -1});
     double begin = 0.0;
     double end = 0.0;
     while (end == 0.0) {
         (void)course.move(ball, substep);
-        for (const Leg& leg : course.scratch.legs) {
-            const double at = leg.time + substep * leg.from.z / (leg.from.z - leg.to.z);
-            if (leg.from.z > 0.0 && leg.to.z <= 0.0) begin = at;
-            if (leg.from.z <= 0.0 && leg.to.z > 0.0) end = at;
+        for (const Segment& segment : course.scratch.segments) {
+            const double at = segment.time + substep * segment.from.z / (segment.from.z - segment.to.z);
+            if (segment.from.z > 0.0 && segment.to.z <= 0.0) begin = at;
+            if (segment.from.z <= 0.0 && segment.to.z > 0.0) end = at;
         }
     }
     EXPECT_NEAR((end - begin) * kOmega, kPi, 0.05 * 0.05);
@@ -163,12 +163,12 @@ TEST_P(Penalty, HoldsAContactWithoutAStiffnessForTheGivenNumberOfSubsteps) {
             settings.penalty.stiffness.reset();
             settings.penalty.contact_steps = contact_steps;
             Course course = course_of({}, {}, settings);
-            course.scratch.record_legs = true;
+            course.scratch.record_segments = true;
             MovingParticle ball = particle_at({0, 0, 0.3 * time_step}, {0, 0, -1}, 0.0, 3.0);
             int inside = 0;
             for (int k = 0; k < 20; ++k) {
                 (void)course.move(ball, time_step);
-                for (const Leg& leg : course.scratch.legs) inside += leg.to.z < 0.0 ? 1 : 0;
+                for (const Segment& segment : course.scratch.segments) inside += segment.to.z < 0.0 ? 1 : 0;
             }
             EXPECT_GT(ball.state.velocity.z, 0.9);
             EXPECT_NEAR(inside, contact_steps, 1.0);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {

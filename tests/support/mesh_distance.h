@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/geometry/closest_point.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::testing {
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "ricochet/core/transform.h"
-#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet::testing {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::testing {
 

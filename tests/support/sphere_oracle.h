@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet::testing {
 

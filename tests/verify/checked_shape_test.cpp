@@ -81,7 +81,7 @@ TEST(CheckedShape, LetsALegLeaveTheSurfaceButNotPassThrough) {
     EXPECT_FALSE(cylinder.meets_after_start({0, 0, 1}, {5, 0, 2}));
     EXPECT_TRUE(cylinder.meets_after_start({0, 0, 1}, {5, 0, 0.5}));
     EXPECT_FALSE(cylinder.meets_after_start({0, 0, 1}, {0, 0, 0}));
-    // The tip of a leg that only just dips in.
+    // The tip of a segment that only just dips in.
     EXPECT_TRUE(ball.meets({-1, 1 - 0x1p-40, 0}, {1, 1 - 0x1p-40, 0}));
     EXPECT_FALSE(ball.meets({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));
 }

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/shared_meshes.h"

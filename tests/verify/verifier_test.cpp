@@ -19,10 +19,10 @@ Verifier box_verifier() { return Verifier({box_mesh({0, 0, 0}, {4, 4, 4})}); }
 /// One step of a particle along the places given, from the first to the last.
 std::vector<Violation> travel(const Verifier& verifier, VerifiedParticle& particle, const std::vector<Vec3>& places,
                               double radius = 0.0) {
-    std::vector<Leg> legs;
-    for (std::size_t k = 1; k < places.size(); ++k) legs.push_back({places[k - 1], places[k], 7.0});
+    std::vector<Segment> segments;
+    for (std::size_t k = 1; k < places.size(); ++k) segments.push_back({places[k - 1], places[k], 7.0});
     std::vector<Violation> violations;
-    verifier.check({42, places.front(), places.back(), radius, 8.0, legs}, particle, violations);
+    verifier.check({42, places.front(), places.back(), radius, 8.0, segments}, particle, violations);
     return violations;
 }
 
@@ -96,10 +96,11 @@ TEST(Verifier, CatchesGapsInTheChain) {
     const Verifier verifier = box_verifier();
     const Vec3 a{1, 1, 1}, b{2, 2, 2}, c{3, 3, 3};
     const Vec3 a_little_off{1, 1, std::nextafter(1.0, 2.0)};
-    const auto gaps = [&](const Vec3& remembered, const Vec3& from, const std::vector<Leg>& legs, const Vec3& to) {
+    const auto gaps = [&](const Vec3& remembered, const Vec3& from, const std::vector<Segment>& segments,
+                          const Vec3& to) {
         VerifiedParticle particle = verifier.watch(remembered, 0.0);
         std::vector<Violation> violations;
-        verifier.check({1, from, to, 0.0, 8.0, legs}, particle, violations);
+        verifier.check({1, from, to, 0.0, 8.0, segments}, particle, violations);
         EXPECT_EQ(count(violations, ViolationKind::gap), violations.size());
         return violations.size();
     };
@@ -109,7 +110,7 @@ TEST(Verifier, CatchesGapsInTheChain) {
     EXPECT_EQ(gaps(a, a, {{a_little_off, b}}, b), 1U);          // at the start
     EXPECT_EQ(gaps(a, a, {{a, a_little_off}, {b, c}}, c), 1U);  // between
     EXPECT_EQ(gaps(a, a, {{a, b}}, c), 1U);                     // at the end
-    EXPECT_EQ(gaps(a, a, {}, a_little_off), 1U);                // moved without a leg
+    EXPECT_EQ(gaps(a, a, {}, a_little_off), 1U);                // moved without a segment
     EXPECT_EQ(gaps({0, 1, 1}, {-0.0, 1, 1}, {}, {-0.0, 1, 1}), 1U);
 }
 

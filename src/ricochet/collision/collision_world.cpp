@@ -8,8 +8,8 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
-#include "ricochet/geometry/shape_mesh.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/shapes/shape_mesh.h"
 
 namespace ricochet {
 namespace {
@@ -68,7 +68,7 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, doubl
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
     bulge_ = room * mean_box();
     prepare_radius(0.0);
-    clearance_ = ClearanceGrid(vertices_, triangles_, triangle_bounds_);
+    distance_field_ = DistanceField(vertices_, triangles_, triangle_bounds_);
 }
 
 void CollisionWorld::add(ColliderDescription& collider) {
@@ -267,7 +267,7 @@ CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, c
     return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false};
 }
 
-CollisionWorld::Place CollisionWorld::place_on(SurfaceId surface, const Vec3& p) const {
+CollisionWorld::Place CollisionWorld::closest_point_on(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind != Kind::mesh) {
         const Nearest to = nearest(surface, p);
@@ -316,7 +316,7 @@ double CollisionWorld::time_over(SurfaceId surface, const Path& path, double sla
 
 bool CollisionWorld::segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.kind == Kind::shape) return !shapes_[range.index].shape.leg_is_free(p, q);
+    if (range.kind == Kind::shape) return !shapes_[range.index].shape.segment_is_free(p, q);
     if (range.kind == Kind::plane) {
         const Plane& plane = planes_[range.index].plane;
         return side_of(plane, p) * side_of(plane, q) <= 0;
@@ -349,8 +349,8 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
 
 std::size_t CollisionWorld::memory_bytes() const {
     const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    std::size_t bytes = clearance_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) + held(triangles_) +
-                        held(degenerate_) + held(shapes_) + held(triangle_materials_);
+    std::size_t bytes = distance_field_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) +
+                        held(triangles_) + held(degenerate_) + held(shapes_) + held(triangle_materials_);
     if (clusters_) bytes += held(*clusters_);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
     return bytes;

@@ -10,11 +10,11 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/analytic_shape.h"
-#include "ricochet/geometry/clearance_grid.h"
-#include "ricochet/geometry/closest_point.h"
-#include "ricochet/geometry/sweep.h"
-#include "ricochet/geometry/triangle_bvh.h"
+#include "ricochet/geometry/acceleration/distance_field.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/shapes/analytic_shape.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/sweep.h"
 
 namespace ricochet {
 
@@ -35,7 +35,7 @@ public:
     /// collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
     /// room: by how much paths may leave the chords that the broad phase is asked about, in parts of the mean
     /// triangle's box. Results do not depend on it.
-    explicit CollisionWorld(std::vector<ColliderDescription> colliders, double room = kChordRoom);
+    explicit CollisionWorld(std::vector<ColliderDescription> colliders, double room = kChordMargin);
     CollisionWorld(const CollisionWorld&) = delete;  // the broad phase refers to the arrays
     CollisionWorld& operator=(const CollisionWorld&) = delete;
 
@@ -110,7 +110,7 @@ public:
         Vec3 barycentric;  ///< for the triangle's corners in the order of mesh_of(); zero for planes and shapes
     };
     /// The place of a surface nearest to p.
-    [[nodiscard]] Place place_on(SurfaceId surface, const Vec3& p) const;
+    [[nodiscard]] Place closest_point_on(SurfaceId surface, const Vec3& p) const;
 
     /// Unit normal of a surface at p: the plane's own, the triangle's by the counter-clockwise rule, a shape's outward
     /// one.
@@ -142,7 +142,7 @@ public:
     /// Box of all triangles.
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
     /// How far it is to the triangles.
-    [[nodiscard]] const ClearanceGrid& clearance() const { return clearance_; }
+    [[nodiscard]] const DistanceField& distance_field() const { return distance_field_; }
     /// What all of this takes without the colliders' own meshes, bytes: also what the ray library maps by itself.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// Triangles that take no part in collisions.
@@ -191,7 +191,7 @@ private:
         double largest_radius;
         TriangleBvh bvh;
     };
-    ClearanceGrid clearance_;
+    DistanceField distance_field_;
     std::vector<RadiusClass> classes_;  ///< ascending in radius; the first serves points
     bool culls_ = true;
 };

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
-#include "ricochet/geometry/separation.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/separation.h"
 
 namespace ricochet {
 namespace {
@@ -55,15 +55,15 @@ Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, con
     return facing(world.unit_normal_of(surface, p), side, v);
 }
 
-std::optional<Contact> ContactSearch::search(const Path& path, double radius, const Outlook* outlook,
-                                             const Awaited& awaited) {
+std::optional<Contact> ContactSearch::search(const Path& path, double radius, const LookAhead* look_ahead,
+                                             const ContactCandidates& candidates) {
     begin(path, radius);
     search_planes(path);
     search_shapes(path);
-    if (awaited.is_known()) look_at_awaited(path, awaited);
-    if (!awaited.is_known() || scratch_.found.empty()) search_triangles_of(path, outlook);
+    if (candidates.is_known()) look_at_awaited(path, candidates);
+    if (!candidates.is_known() || scratch_.found.empty()) search_triangles_of(path, look_ahead);
     if (scratch_.found.empty()) return std::nullopt;
-    free_until_ = awaited_until_ = 0.0;
+    free_until_ = candidates_until_ = 0.0;
     return first_of_found(path);
 }
 
@@ -78,7 +78,7 @@ void ContactSearch::begin(const Path& path, double radius) {
     const double largest = largest_coordinate(path);
     radius_ = radius;
     tolerance_ = radius > 0.0 ? sphere_tolerance(radius, largest) : 0.0;
-    slack_ = kCandidateSlack * (largest + radius) + kLongestParkingUlps * kSmallestParkingGap;
+    slack_ = kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset;
     first_time_ = std::numeric_limits<double>::infinity();
     start_ = path.c[0];
     sphere_.reset();
@@ -87,21 +87,21 @@ void ContactSearch::begin(const Path& path, double radius) {
     bulge_ = bvh_->reach() - radius;
     largest_ = largest;
     all_triangles_ = false;
-    free_until_ = awaited_until_ = 0.0;
+    free_until_ = candidates_until_ = 0.0;
 }
 
 // Where none of them is met the particle has passed them by, and what comes then is not known: the boxes are asked.
-void ContactSearch::look_at_awaited(const Path& path, const Awaited& awaited) {
-    for (const std::uint32_t triangle : awaited.triangles()) (void)look_at_triangle(path, triangle);
+void ContactSearch::look_at_awaited(const Path& path, const ContactCandidates& candidates) {
+    for (const std::uint32_t triangle : candidates.triangles()) (void)look_at_triangle(path, triangle);
     if (scratch_.found.empty()) scratch_.triangles.clear();
 }
 
-void ContactSearch::search_triangles_of(const Path& path, const Outlook* outlook) {
-    if (outlook != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*outlook);
+void ContactSearch::search_triangles_of(const Path& path, const LookAhead* look_ahead) {
+    if (look_ahead != nullptr && scratch_.found.empty()) look_past_planes_and_shapes(*look_ahead);
     if (world_.triangles().empty()) return;
     const bool can_look = free_until_ > 0.0 && world_.culls();
-    const bool looks_ahead =
-        can_look && (outlook->path.degree > 1 ? look_along_parabola(path, *outlook) : look_along_line(path, *outlook));
+    const bool looks_ahead = can_look && (look_ahead->path.degree > 1 ? look_along_parabola(path, *look_ahead)
+                                                                      : look_along_line(path, *look_ahead));
     if (looks_ahead) return;
     free_until_ = 0.0;
     search_meshes(path);
@@ -117,23 +117,23 @@ void ContactSearch::search_meshes(const Path& path) {
 }
 
 // For shapes there is no time, only a yes or no: durations are tried, each half of the one before.
-void ContactSearch::look_past_planes_and_shapes(const Outlook& outlook) {
-    free_until_ = outlook.path.duration;
-    const double margin = radius_ + outlook.margin;
+void ContactSearch::look_past_planes_and_shapes(const LookAhead& look_ahead) {
+    free_until_ = look_ahead.path.duration;
+    const double margin = radius_ + look_ahead.margin;
     for (const auto& [plane, surface] : world_.planes()) {
-        free_until_ = std::min(free_until_, time_free_of_plane(outlook.path, plane, margin));
+        free_until_ = std::min(free_until_, time_free_of_plane(look_ahead.path, plane, margin));
     }
     for (const auto& [shape, surface] : world_.shapes()) {
-        while (free_until_ >= outlook.least && !shape.clears(shortened(outlook.path, free_until_), margin)) {
+        while (free_until_ >= look_ahead.least && !shape.clears(shortened(look_ahead.path, free_until_), margin)) {
             free_until_ *= 0.5;
         }
     }
-    if (free_until_ < outlook.least) free_until_ = 0.0;
+    if (free_until_ < look_ahead.least) free_until_ = 0.0;
 }
 
 /// Where paths may come near triangles.
-Box3 ContactSearch::box_of_interest(const Outlook& outlook) const {
-    const double margin = 2.0 * (radius_ + outlook.margin + bulge_);
+Box3 ContactSearch::box_of_interest(const LookAhead& look_ahead) const {
+    const double margin = 2.0 * (radius_ + look_ahead.margin + bulge_);
     const Vec3 by{margin, margin, margin};
     return {world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
 }
@@ -143,12 +143,12 @@ bool ContactSearch::boxes_hold(const Path& path, double duration) const {
 }
 
 /// False when the path has still to be searched. A straight way that leaves all triangles behind is free for good.
-bool ContactSearch::look_along_line(const Path& path, const Outlook& outlook) {
-    const double end = std::min(end_of_look(outlook), time_of_leaving(outlook.path, box_of_interest(outlook)));
-    if (!(outlook.margin < bulge_) || !boxes_hold(outlook.path, end)) return false;
+bool ContactSearch::look_along_line(const Path& path, const LookAhead& look_ahead) {
+    const double end = std::min(end_of_look(look_ahead), time_of_leaving(look_ahead.path, box_of_interest(look_ahead)));
+    if (!(look_ahead.margin < bulge_) || !boxes_hold(look_ahead.path, end)) return false;
     if (end == 0.0) return true;  // it does not come near the triangles
-    look_along_stretch(path, outlook, 0.0, end);
-    await(std::min(end, end_of_interest(path, outlook)));
+    look_along_stretch(path, look_ahead, 0.0, end);
+    keep_candidates(std::min(end, end_of_interest(path, look_ahead)));
     return true;
 }
 
@@ -156,72 +156,73 @@ bool ContactSearch::look_along_line(const Path& path, const Outlook& outlook) {
 /// in strides. Where triangles are near, the boxes are asked about stretch by stretch: over one, the path, the foreseen
 /// one and all their chords of a step stay within what the boxes leave beside the segment that is asked about. Where
 /// that is not even a step, only the free space beyond the path's end is looked through.
-bool ContactSearch::look_along_parabola(const Path& path, const Outlook& outlook) {
-    const double outside = time_outside(outlook.path, box_of_interest(outlook));
-    if (outside >= outlook.least) {
+bool ContactSearch::look_along_parabola(const Path& path, const LookAhead& look_ahead) {
+    const double outside = time_outside(look_ahead.path, box_of_interest(look_ahead));
+    if (outside >= look_ahead.least) {
         free_until_ = std::min(free_until_, outside);
         return true;
     }
-    const double end = end_of_look(outlook);
-    if (!boxes_hold(outlook.path, end)) return false;
-    const double margin = margin_of(outlook, end);
-    const double bend = length(outlook.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
-    const double stretch = std::sqrt(2.0 * std::max(0.0, bulge_ - outlook.margin) / bend);
-    if (!(stretch >= outlook.least)) {
+    const double end = end_of_look(look_ahead);
+    if (!boxes_hold(look_ahead.path, end)) return false;
+    const double margin = margin_of(look_ahead, end);
+    const double bend = length(look_ahead.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
+    const double stretch = std::sqrt(2.0 * std::max(0.0, bulge_ - look_ahead.margin) / bend);
+    if (!(stretch >= look_ahead.least)) {
         search_meshes(path);
-        free_until_ = std::min(free_until_, time_clear_of(outlook.path, world_.clearance(), margin, path.duration));
+        free_until_ =
+            std::min(free_until_, time_clear_of_field(look_ahead.path, world_.distance_field(), margin, path.duration));
         return true;
     }
     double seen = 0.0;
     while (seen < end && scratch_.ahead.empty() && scratch_.found.empty()) {
-        seen = std::min(end, time_clear_of(outlook.path, world_.clearance(), margin, seen));
+        seen = std::min(end, time_clear_of_field(look_ahead.path, world_.distance_field(), margin, seen));
         const double next = std::min(seen + stretch, end);
-        if (seen < end) look_along_stretch(path, outlook, seen, next);
+        if (seen < end) look_along_stretch(path, look_ahead, seen, next);
         seen = next;
     }
-    await(std::min(seen, end_of_interest(path, outlook)));
+    keep_candidates(std::min(seen, end_of_interest(path, look_ahead)));
     return true;
 }
 
 // A triangle that is near the way only after the path's end is no candidate for the path, and one that is near it only
 // before that end, or is left behind, does not matter to what comes after.
-void ContactSearch::look_along_stretch(const Path& path, const Outlook& outlook, double from, double to) {
+void ContactSearch::look_along_stretch(const Path& path, const LookAhead& look_ahead, double from, double to) {
     const double span = to - from;
-    const Tube tube(outlook.path.position(from), outlook.path.position(to), margin_of(outlook, to),
-                    span * span * outlook.path.c[2]);
+    const Tube tube(look_ahead.path.position(from), look_ahead.path.position(to), margin_of(look_ahead, to),
+                    span * span * look_ahead.path.c[2]);
     bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
             const bool is_near = from + enter * span <= path.duration;
             const double speed = is_near ? look_at_triangle(path, triangle) : 0.0;
-            const bool is_ahead = from + leave * span >= path.duration && !leaves_for_good(speed, outlook);
+            const bool is_ahead = from + leave * span >= path.duration && !leaves_for_good(speed, look_ahead);
             if (is_ahead && scratch_.found.empty()) {
-                const double last = std::min(from + leave * span, end_of_interest(path, outlook));
-                note_ahead(triangle, outlook, from + enter * span, last);
+                const double last = std::min(from + leave * span, end_of_interest(path, look_ahead));
+                note_ahead(triangle, look_ahead, from + enter * span, last);
             }
         }
-        const double until = std::min(first_time_, end_of_interest(path, outlook));
+        const double until = std::min(first_time_, end_of_interest(path, look_ahead));
         return until < to ? std::max(0.0, (until - from) / span) : 1.0;
     });
 }
 
-/// m, how near to the outlook's path until some time triangles are of interest.
-double ContactSearch::margin_of(const Outlook& outlook, double until) const {
+/// m, how near to the look_ahead's path until some time triangles are of interest.
+double ContactSearch::margin_of(const LookAhead& look_ahead, double until) const {
     const Box3& box = world_.triangle_bounds();
     const double largest =
-        std::max({largest_coordinate(shortened(outlook.path, until)), max_abs(box.lower), max_abs(box.upper)});
-    return radius_ + outlook.margin + kForesightSlack * largest;
+        std::max({largest_coordinate(shortened(look_ahead.path, until)), max_abs(box.lower), max_abs(box.upper)});
+    return radius_ + look_ahead.margin + kLookAheadSlack * largest;
 }
 
-double ContactSearch::end_of_look(const Outlook& outlook) const {
-    return std::min(free_until_ + outlook.beyond, outlook.path.duration);
+double ContactSearch::end_of_look(const LookAhead& look_ahead) const {
+    return std::min(free_until_ + look_ahead.beyond, look_ahead.path.duration);
 }
 
-double ContactSearch::end_of_interest(const Path& path, const Outlook& outlook) const {
-    return std::max(free_until_, path.duration) + outlook.beyond;
+double ContactSearch::end_of_interest(const Path& path, const LookAhead& look_ahead) const {
+    return std::max(free_until_, path.duration) + look_ahead.beyond;
 }
 
-void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double last) {
-    const double begin = sphere_ ? time_of_approach(triangle, outlook, enter, last) : enter;
+void ContactSearch::note_ahead(std::uint32_t triangle, const LookAhead& look_ahead, double enter, double last) {
+    const double begin = sphere_ ? time_of_approach(triangle, look_ahead, enter, last) : enter;
     if (begin > last) return;
     free_until_ = std::min(free_until_, begin);
     scratch_.ahead.push_back({triangle, begin});
@@ -231,13 +232,13 @@ void ContactSearch::note_ahead(std::uint32_t triangle, const Outlook& outlook, d
 // Along a direction in which the triangle is behind, the distance shrinks no faster than the sphere goes against it
 // (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley
 // 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
-/// A time before which the sphere certainly does not come near the triangle, s along the outlook's path; later than
+/// A time before which the sphere certainly does not come near the triangle, s along the look_ahead's path; later than
 /// `last` when it does not until then.
-double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& outlook, double enter,
+double ContactSearch::time_of_approach(std::uint32_t triangle, const LookAhead& look_ahead, double enter,
                                        double last) const {
-    const Path& path = outlook.path;
+    const Path& path = look_ahead.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    const double near = margin_of(outlook, last);
+    const double near = margin_of(look_ahead, last);
     const Vec3 last_velocity = path.velocity(last);
     double time = enter;
     for (int look = 0; look < kLooksAtDistance && time <= last; ++look) {
@@ -249,19 +250,19 @@ double ContactSearch::time_of_approach(std::uint32_t triangle, const Outlook& ou
         if (!(approach > 0.0)) return std::numeric_limits<double>::infinity();
         const double gain = (distance - near) / approach;
         time += gain;
-        if (gain < kLittleOfAStep * outlook.least) break;
+        if (gain < kLittleOfAStep * look_ahead.least) break;
     }
     return time;
 }
 
-void ContactSearch::await(double until) {
-    awaited_until_ = until;
-    awaited_ = Awaited::none();
+void ContactSearch::keep_candidates(double until) {
+    candidates_until_ = until;
+    candidates_ = ContactCandidates::none();
     // What is met first makes short work of the others.
     std::sort(scratch_.ahead.begin(), scratch_.ahead.end(),
               [](const auto& x, const auto& y) { return x.enter < y.enter; });
     for (const auto& [triangle, enter] : scratch_.ahead) {
-        if (enter <= until && awaited_.is_known()) awaited_.add(triangle);
+        if (enter <= until && candidates_.is_known()) candidates_.add(triangle);
     }
 }
 
@@ -336,7 +337,7 @@ void ContactSearch::search_all_triangles(const Path& path) {
 void ContactSearch::search_triangles(const Path& path, double from, double to, int depth) {
     if (from > first_time_ || all_triangles_) return;
     if (path.degree == 2) {
-        const double clear = time_clear_of(path, world_.clearance(), margin_of(path), from);
+        const double clear = time_clear_of_field(path, world_.distance_field(), margin_of(path), from);
         if (clear > from && clear >= to) return;
         from = clear;
     }
@@ -407,9 +408,9 @@ double ContactSearch::look_with_sphere(std::uint32_t triangle) {
 // The steps to come are rounded. Each must lead away from the triangle by more than that, else they may lead back
 // through it; and what is parked elsewhere on the way must not be moved through it.
 /// May a triangle be forgotten that a sphere leaves behind at some speed, m/s?
-bool ContactSearch::leaves_for_good(double speed, const Outlook& outlook) const {
-    if (speed == 0.0 || outlook.path.degree > 1 || !(radius_ > outlook.margin)) return false;
-    return speed * outlook.least > kPathRounding * largest_coordinate(outlook.path);
+bool ContactSearch::leaves_for_good(double speed, const LookAhead& look_ahead) const {
+    if (speed == 0.0 || look_ahead.path.degree > 1 || !(radius_ > look_ahead.margin)) return false;
+    return speed * look_ahead.least > kPathRounding * largest_coordinate(look_ahead.path);
 }
 
 Vec3 ContactSearch::unit_normal_of(SurfaceId surface, const Vec3& p) const {
@@ -470,16 +471,16 @@ bool ContactSearch::plane_blocks(const CollisionWorld::PlaneSurface& plane, cons
 }
 
 bool ContactSearch::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
-    if (!shape.shape.leg_is_free(p, q)) return true;
+    if (!shape.shape.segment_is_free(p, q)) return true;
     if (radius_ == 0.0 || is_overlapped(shape.surface)) return false;
-    return shape.shape.distance_of_leg(p, q) < radius_ - tolerance_;
+    return shape.shape.distance_of_segment(p, q) < radius_ - tolerance_;
 }
 
 bool ContactSearch::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
     if (radius_ == 0.0) return plane_of(triangle).is_met_by(p, q);
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
     if (segment_meets_triangle(p, q, a, b, c)) return true;
-    if (sphere_leg_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
+    if (sphere_segment_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
     return !is_overlapped(world_.surface_of_triangle(triangle));
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// First contact of a path with the world, and the certificate of the legs that are really travelled.
+/// First contact of a path with the world, and the certificate of the segments that are really travelled.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/collision/awaited.h"
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/outlook.h"
+#include "ricochet/collision/contact_candidates.h"
+#include "ricochet/collision/look_ahead.h"
 #include "ricochet/collision/triangle_planes.h"
-#include "ricochet/geometry/path.h"
-#include "ricochet/geometry/sphere_sweep.h"
+#include "ricochet/geometry/sweep/path.h"
+#include "ricochet/geometry/sweep/sphere_sweep.h"
 
 namespace ricochet {
 
@@ -59,11 +59,11 @@ struct ContactScratch {
     std::vector<Found> found;
     struct Ahead {
         std::uint32_t triangle;
-        double enter;  ///< s along the outlook's path
+        double enter;  ///< s along the look_ahead's path
     };
     std::vector<Ahead> ahead;  ///< triangles that come near after the path's end
     TrianglePlanes planes_of_triangles;
-    std::vector<Vec3> chain;  ///< ends of the certified legs of the last travel, its start first
+    std::vector<Vec3> chain;  ///< ends of the certified segments of the last travel, its start first
 };
 
 /// Answers for one path at a time: search() gathers the surfaces near the path and finds the first contact; the other
@@ -75,26 +75,26 @@ public:
     }
 
     /// First contact of a point (radius 0) or a sphere whose centre follows `path`, under the order (time, collider,
-    /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius). With an outlook, whose
-    /// path begins with this one, the same search also finds out free_until() and awaited(); the contact is the same.
-    /// `awaited` may hold all triangles that an earlier search with an outlook has seen near this path.
-    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const Outlook* outlook = nullptr,
-                                                const Awaited& awaited = {});
+    /// triangle). The path must be finite, the radius prepared (CollisionWorld::prepare_radius). With an look_ahead,
+    /// whose path begins with this one, the same search also finds out free_until() and candidates(); the contact is
+    /// the same. `candidates` may hold all triangles that an earlier search with an look_ahead has seen near this path.
+    [[nodiscard]] std::optional<Contact> search(const Path& path, double radius, const LookAhead* look_ahead = nullptr,
+                                                const ContactCandidates& candidates = {});
 
-    /// s along the outlook's path: until then no surface is nearer to it than the radius plus its margin, but for those
-    /// that a sphere leaves behind for good. Where the path meets something, or looking ahead is not worth the while:
-    /// no more than the path's duration.
+    /// s along the look_ahead's path: until then no surface is nearer to it than the radius plus its margin, but for
+    /// those that a sphere leaves behind for good. Where the path meets something, or looking ahead is not worth the
+    /// while: no more than the path's duration.
     [[nodiscard]] double free_until() const { return free_until_; }
 
-    /// The triangles, other than those left behind, that come near the outlook's path between the searched path's end
-    /// and awaited_until(), s along it: at most its `beyond` after free_until().
-    [[nodiscard]] const Awaited& awaited() const { return awaited_; }
-    [[nodiscard]] double awaited_until() const { return awaited_until_; }
+    /// The triangles, other than those left behind, that come near the look_ahead's path between the searched path's
+    /// end and candidates_until(), s along it: at most its `beyond` after free_until().
+    [[nodiscard]] const ContactCandidates& candidates() const { return candidates_; }
+    [[nodiscard]] double candidates_until() const { return candidates_until_; }
 
-    /// The smallest numbered surface that stands in the way of the closed leg [p, q] of the centre: one that the
+    /// The smallest numbered surface that stands in the way of the closed segment [p, q] of the centre: one that the
     /// segment itself meets (decided exactly for planes and triangles), or one that comes nearer to it than the radius
     /// less sphere_tolerance(). Surfaces overlapped from the start only block the segment itself. p and q lie on the
-    /// searched path, or within the parking distance of it.
+    /// searched path, or within the safe_position distance of it.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
     /// The same for a segment that starts on surfaces: true when it leaves all of them and meets no other.
@@ -114,8 +114,8 @@ public:
     /// True when the sphere overlaps a surface by more than the tolerance (a point: lies on one) at the path's start.
     [[nodiscard]] bool starts_in_overlap() const;
 
-    /// The certified places of the last travel() or park(), in order; kept here so that nothing is allocated on the
-    /// way.
+    /// The certified places of the last travel() or find_safe_position(), in order; kept here so that nothing is
+    /// allocated on the way.
     [[nodiscard]] std::vector<Vec3>& chain() const { return scratch_.chain; }
     [[nodiscard]] const CollisionWorld& world() const { return world_; }
     [[nodiscard]] double radius() const { return radius_; }
@@ -125,23 +125,23 @@ public:
 private:
     void search_planes(const Path& path);
     void begin(const Path& path, double radius);
-    void look_at_awaited(const Path& path, const Awaited& awaited);
-    void search_triangles_of(const Path& path, const Outlook* outlook);
+    void look_at_awaited(const Path& path, const ContactCandidates& candidates);
+    void search_triangles_of(const Path& path, const LookAhead* look_ahead);
     void search_meshes(const Path& path);
-    void look_past_planes_and_shapes(const Outlook& outlook);
-    [[nodiscard]] Box3 box_of_interest(const Outlook& outlook) const;
+    void look_past_planes_and_shapes(const LookAhead& look_ahead);
+    [[nodiscard]] Box3 box_of_interest(const LookAhead& look_ahead) const;
     [[nodiscard]] bool boxes_hold(const Path& path, double duration) const;
-    bool look_along_line(const Path& path, const Outlook& outlook);
-    bool look_along_parabola(const Path& path, const Outlook& outlook);
-    void look_along_stretch(const Path& path, const Outlook& outlook, double from, double to);
-    [[nodiscard]] double margin_of(const Outlook& outlook, double until) const;
+    bool look_along_line(const Path& path, const LookAhead& look_ahead);
+    bool look_along_parabola(const Path& path, const LookAhead& look_ahead);
+    void look_along_stretch(const Path& path, const LookAhead& look_ahead, double from, double to);
+    [[nodiscard]] double margin_of(const LookAhead& look_ahead, double until) const;
     [[nodiscard]] double margin_of(const Path& path) const;
-    [[nodiscard]] double end_of_look(const Outlook& outlook) const;
-    [[nodiscard]] double end_of_interest(const Path& path, const Outlook& outlook) const;
-    void note_ahead(std::uint32_t triangle, const Outlook& outlook, double enter, double last);
-    [[nodiscard]] double time_of_approach(std::uint32_t triangle, const Outlook& outlook, double enter,
+    [[nodiscard]] double end_of_look(const LookAhead& look_ahead) const;
+    [[nodiscard]] double end_of_interest(const Path& path, const LookAhead& look_ahead) const;
+    void note_ahead(std::uint32_t triangle, const LookAhead& look_ahead, double enter, double last);
+    [[nodiscard]] double time_of_approach(std::uint32_t triangle, const LookAhead& look_ahead, double enter,
                                           double last) const;
-    void await(double until);
+    void keep_candidates(double until);
     void search_shapes(const Path& path);
     void search_triangles(const Path& path, double from, double to, int depth);
     void search_all_triangles(const Path& path);
@@ -150,7 +150,7 @@ private:
     double look_at_triangle(const Path& path, std::uint32_t triangle);
     void look_with_point(const Path& path, std::uint32_t triangle);
     double look_with_sphere(std::uint32_t triangle);
-    [[nodiscard]] bool leaves_for_good(double speed, const Outlook& outlook) const;
+    [[nodiscard]] bool leaves_for_good(double speed, const LookAhead& look_ahead) const;
     void note(const ContactScratch::Found& found);
     void note_overlap(SurfaceId surface, double distance);
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
@@ -173,9 +173,9 @@ private:
     double bulge_ = 0.0;          ///< what the boxes leave for the path's curvature, m
     bool all_triangles_ = false;  ///< every triangle is a candidate
     double first_time_ = 0.0;
-    double free_until_ = 0.0;     ///< s along the outlook's path
-    double awaited_until_ = 0.0;  ///< the same
-    Awaited awaited_;
+    double free_until_ = 0.0;        ///< s along the look_ahead's path
+    double candidates_until_ = 0.0;  ///< the same
+    ContactCandidates candidates_;
     Vec3 start_;
 };
 

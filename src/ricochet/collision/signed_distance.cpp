@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {

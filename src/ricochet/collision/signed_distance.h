@@ -2,8 +2,8 @@
 /// Where is a point with respect to the colliders of a scene: on which side, how far, and where is the nearest place?
 ///
 /// Planes, balls and cylinders answer by their formula. Meshes answer by the nearest triangle, whose side is judged by
-/// pseudonormals (geometry/pseudonormals.h): right for meshes that bound a solid and are wound outward; everywhere else
-/// it is the side of the nearest sheet, and at open edges it means nothing.
+/// pseudonormals (geometry/mesh/pseudonormals.h): right for meshes that bound a solid and are wound outward; everywhere
+/// else it is the side of the nearest sheet, and at open edges it means nothing.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/geometry/pseudonormals.h"
+#include "ricochet/geometry/mesh/pseudonormals.h"
 
 namespace ricochet {
 

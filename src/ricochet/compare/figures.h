@@ -22,9 +22,9 @@ struct TunnelCounts {
     /// On the other side of a closed collider than at birth, or with an odd number of crossings of an open mesh.
     std::uint64_t wrong_side = 0;
     std::uint64_t penetrating = 0;  ///< of those on the wrong side: the response knows and is pushing them back
-    std::uint64_t jumped = 0;       ///< went right through a closed collider within one leg
+    std::uint64_t jumped = 0;       ///< went right through a closed collider within one segment
     /// Went into a closed collider and came out of it where the surface faces the other way: through it in several
-    /// legs.
+    /// segments.
     std::uint64_t passed = 0;
 };
 

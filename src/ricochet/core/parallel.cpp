@@ -66,6 +66,6 @@ void parallel_sort(std::vector<std::uint64_t>& values) {
 #endif
 }
 
-const char* thread_library_version() { return TBB_runtime_version(); }
+const char* tbb_version() { return TBB_runtime_version(); }
 
 }  // namespace ricochet

@@ -42,6 +42,6 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 void parallel_sort(std::vector<std::uint64_t>& values);
 
 /// The thread library's version, for `--version` and reports.
-[[nodiscard]] const char* thread_library_version();
+[[nodiscard]] const char* tbb_version();
 
 }  // namespace ricochet

@@ -14,26 +14,27 @@ namespace ricochet {
 
 /// Gap between a parked particle and the surface it has just hit, in ulp of the contact point's largest coordinate.
 /// Reason: large enough that rounding of the parked point cannot put it on the surface, small enough to be invisible.
-/// Smaller: parking fails more often and falls back to the path. Larger: each impact adds g * gap to an elastic ball's
-/// energy per mass.
-inline constexpr double kParkingGapUlps = 16.0;
+/// Smaller: safe_position fails more often and falls back to the path. Larger: each impact adds g * gap to an elastic
+/// ball's energy per mass.
+inline constexpr double kContactOffsetUlps = 16.0;
 
-/// Smallest parking gap, m; only matters for contacts at the very origin. Must stay above kSmallestExactCoordinate.
-inline constexpr double kSmallestParkingGap = 0x1p-240;
+/// Smallest safe_position gap, m; only matters for contacts at the very origin. Must stay above
+/// kSmallestExactCoordinate.
+inline constexpr double kSmallestContactOffset = 0x1p-240;
 
-/// How often a parking gap that fails its certificate is widened, and the factor.
-inline constexpr int kParkingAttempts = 4;
-inline constexpr double kParkingWidening = 4.0;
+/// How often a safe_position gap that fails its certificate is widened, and the factor.
+inline constexpr int kSafePositionAttempts = 4;
+inline constexpr double kContactOffsetWidening = 4.0;
 
-/// Longest way from a contact point to a parking place that is tried, in ulp of the point's largest coordinate: 2^-40
-/// of it at most, inside kCandidateSlack, so that the candidates already gathered cover every place. Smaller: sharp
-/// wedges, where the way out of two walls is longer than the gap, are parked in less often.
-inline constexpr double kLongestParkingUlps = 4096.0;
+/// Longest way from a contact point to a safe_position place that is tried, in ulp of the point's largest coordinate:
+/// 2^-40 of it at most, inside kCandidateSlack, so that the candidates already gathered cover every place. Smaller:
+/// sharp wedges, where the way out of two walls is longer than the gap, are parked in less often.
+inline constexpr double kLargestContactOffsetUlps = 4096.0;
 
-/// A surface counts as touched while the particle is within this many parking gaps of its plane, and sliding goes on
-/// until the particle is as far beyond the triangle's rim. Smaller: sliding is cut into more, shorter stretches.
+/// A surface counts as touched while the particle is within this many safe_position gaps of its plane, and sliding goes
+/// on until the particle is as far beyond the triangle's rim. Smaller: sliding is cut into more, shorter stretches.
 /// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
-inline constexpr double kTouchingGaps = 8.0;
+inline constexpr double kTouchingOffsets = 8.0;
 
 /// Times that a particle is projected out of what it is behind in one step; after that it goes back to where it came
 /// from. Reason: in a corner of several colliders one projection leads behind the next. Smaller: corners stop particles
@@ -73,9 +74,9 @@ inline constexpr double kSlipRounding = 0x1p-40;
 /// motion is lost.
 inline constexpr double kStopRounding = 0x1p-40;
 
-/// Fraction by which a sphere's distance at a contact may fall short of its radius and still be put right by parking;
-/// beyond it the sphere started in overlap and stays where it is. Smaller: grazing contacts are not put right. Larger:
-/// a sphere born in a slight overlap is pushed out.
+/// Fraction by which a sphere's distance at a contact may fall short of its radius and still be put right by
+/// safe_position; beyond it the sphere started in overlap and stays where it is. Smaller: grazing contacts are not put
+/// right. Larger: a sphere born in a slight overlap is pushed out.
 inline constexpr double kContactMismatch = 1e-9;
 
 /// Angle, rad, by which the direction of sliding or of slip may turn in one stretch: friction keeps its direction
@@ -88,38 +89,38 @@ inline constexpr double kHeadingTurn = 0.05;
 inline constexpr double kStretchAngle = 0.01;
 
 /// Distance, relative to the largest coordinate involved, that is left beside a way that is foreseen for many steps.
-/// Reason: it covers kCandidateSlack and the rounding of kMostForeseenSteps steps, each of some 2^-52 for the place and
-/// as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken past
-/// a surface that the search would have found. Larger: particles near surfaces are searched for more often.
-inline constexpr double kForesightSlack = 0x1p-36;
+/// Reason: it covers kCandidateSlack and the rounding of kMostLookAheadSteps steps, each of some 2^-52 for the place
+/// and as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken
+/// past a surface that the search would have found. Larger: particles near surfaces are searched for more often.
+inline constexpr double kLookAheadSlack = 0x1p-36;
 
-/// Steps that a particle may go on without a new search, straight on and along a parabola. Larger: kForesightSlack must
+/// Steps that a particle may go on without a new search, straight on and along a parabola. Larger: kLookAheadSlack must
 /// grow with the first; with the second the slack is taken of a longer way than boxes let one look along.
-inline constexpr int kMostForeseenSteps = 4096;
-inline constexpr int kMostForeseenBentSteps = 256;
+inline constexpr int kMostLookAheadSteps = 4096;
+inline constexpr int kMostLookAheadStepsCurved = 256;
 
 /// By how much paths may leave the chords that the broad phase is asked about, in parts of the mean triangle's box: as
 /// a rule, and where particles look ahead along parabolas, for which it decides how far. Smaller: more chords for a
 /// path next to surfaces, more queries along a way. Larger: boxes overlap more (measured: 1/16 and 1/8 are alike in
 /// hail, 1/16 is a tenth faster where debris slides, 1/4 slower in both; 1/8 costs gas 10 %). No result depends on
 /// them.
-inline constexpr double kChordRoom = 1.0 / 32;
-inline constexpr double kForesightRoom = 1.0 / 16;
+inline constexpr double kChordMargin = 1.0 / 32;
+inline constexpr double kLookAheadMargin = 1.0 / 16;
 
 /// What rounding may do to places in a clearance grid, in cells. Reason: places are rounded to some 2^-50 of the
-/// largest coordinate, of which a cell is kSmallestClearanceCell at least, and to as much of the grid's thousand cells.
+/// largest coordinate, of which a cell is kSmallestDistanceCell at least, and to as much of the grid's thousand cells.
 /// Smaller than some 2^-18: a triangle could be nearer than the grid says. Larger: clearances are that much smaller.
-inline constexpr double kClearanceRounding = 0x1p-10;
+inline constexpr double kDistanceFieldRounding = 0x1p-10;
 
 /// Smallest edge of a clearance grid's cell, relative to the largest coordinate. Smaller than some 2^-36: see
-/// kClearanceRounding. Larger: small meshes far from the origin get no grid, and bent paths near them are searched
+/// kDistanceFieldRounding. Larger: small meshes far from the origin get no grid, and bent paths near them are searched
 /// piece by piece.
-inline constexpr double kSmallestClearanceCell = 0x1p-30;
+inline constexpr double kSmallestDistanceCell = 0x1p-30;
 
 /// Distance, relative to the largest coordinate involved, by which a candidate triangle, its box or its plane must
 /// clear the path before the triangle is dropped; also the sine of the angle at which a path leads away from one.
-/// Reason: covers the parking displacement (2^-40) and the rounding of points on the path. Smaller: a certificate could
-/// miss a triangle near the parked point. Larger: more triangles reach the exact tests.
+/// Reason: covers the safe_position displacement (2^-40) and the rounding of points on the path. Smaller: a certificate
+/// could miss a triangle near the parked point. Larger: more triangles reach the exact tests.
 inline constexpr double kCandidateSlack = 0x1p-39;
 
 /// Rounding of a point on a path, relative to the largest coordinate that the path's terms reach: some ten roundings of
@@ -132,9 +133,10 @@ inline constexpr double kPathRounding = 0x1p-48;
 /// Smaller than about 8: a touched triangle might not be presented, and particles could leak.
 inline constexpr double kBoxPaddingUnits = 16.0;
 
-/// Boxes grow further, by this part of the half extent and kCandidateSlack of the largest world coordinate: parking
-/// places and rounded points of a path lie beside the segments that are asked about. Smaller: paths that reach far
-/// beyond the mesh need every triangle as a candidate sooner (at kBoxSlack / kPathRounding half extents, 2^28).
+/// Boxes grow further, by this part of the half extent and kCandidateSlack of the largest world coordinate:
+/// safe_position places and rounded points of a path lie beside the segments that are asked about. Smaller: paths that
+/// reach far beyond the mesh need every triangle as a candidate sooner (at kBoxSlack / kPathRounding half extents,
+/// 2^28).
 inline constexpr double kBoxSlack = 0x1p-20;
 
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
@@ -146,10 +148,10 @@ inline constexpr double kSimultaneousUlps = 4.0;
 /// grazing sphere is nudged by flat inner edges. Larger: blunt real edges answer as faces.
 inline constexpr double kSeamTurn = 1e-11;
 
-/// Distance by which a sphere may overlap a surface before its leg is refused, relative to radius plus coordinates.
+/// Distance by which a sphere may overlap a surface before its segment is refused, relative to radius plus coordinates.
 /// Reason: distances and parked centres are rounded to a few 1e-16 of the coordinates, and a parked sphere must pass.
 /// Smaller (below some 1e-15): parked spheres fail their own certificate. Larger: spheres may sink in by that much. It
-/// never lets a centre through: that is decided by the exact certificate of the centre's leg.
+/// never lets a centre through: that is decided by the exact certificate of the centre's segment.
 inline constexpr double kSphereTolerance = 1e-12;
 
 /// Lateral distance, relative to the largest coordinate involved, up to which a sphere that touches an edge or a vertex
@@ -173,10 +175,10 @@ inline constexpr double kPseudonormalRounding = 0x1p-44;
 /// points; a chord that still meets a triangle there is taken as an impact at that place.
 inline constexpr int kCertificateDepth = 52;
 
-/// Places at which one leg meets neighbouring triangles are one crossing when they are nearer to each other than this
-/// part of their largest coordinate. Reason: through an edge a leg meets two triangles at places that differ by
-/// rounding only. Smaller: such a crossing counts twice, and an open surface that was crossed looks as if it was not.
-/// Larger: the two faces of a thinner plate count as one.
+/// Places at which one segment meets neighbouring triangles are one crossing when they are nearer to each other than
+/// this part of their largest coordinate. Reason: through an edge a segment meets two triangles at places that differ
+/// by rounding only. Smaller: such a crossing counts twice, and an open surface that was crossed looks as if it was
+/// not. Larger: the two faces of a thinner plate count as one.
 inline constexpr double kSameCrossing = 1e-9;
 
 /// Correction of a velocity, relative to the largest speed in the system, with which Newton's method for the implicit
@@ -199,11 +201,11 @@ inline constexpr double kNegligibleStretch = 1e-6;
 /// so are wrong or the step is too long for them; the run stops. Particles that start faster are let be.
 inline constexpr double kFastestSpeed = 299792458.0;
 
-/// Parking gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a gap
-/// above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then hold.
-/// Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond convex
-/// edges by that distance (some 1e-12 of the coordinates).
-inline constexpr double kRimGaps = 256.0;
+/// SafePosition gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a
+/// gap above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then
+/// hold. Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond
+/// convex edges by that distance (some 1e-12 of the coordinates).
+inline constexpr double kRimOffsets = 256.0;
 
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
@@ -227,13 +229,13 @@ inline constexpr double kImpulseUnit = 0x1p-100;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) + 1) - magnitude;
 }
 
-/// The parking gap at a contact point, m: depends on the point's own coordinates only, so that a wall of two or two
-/// million triangles gives the same bits.
-[[nodiscard]] inline double parking_gap(const Vec3& contact) {
-    return std::max(kParkingGapUlps * ulp(max_abs(contact)), kSmallestParkingGap);
+/// The safe_position gap at a contact point, m: depends on the point's own coordinates only, so that a wall of two or
+/// two million triangles gives the same bits.
+[[nodiscard]] inline double contact_offset(const Vec3& contact) {
+    return std::max(kContactOffsetUlps * ulp(max_abs(contact)), kSmallestContactOffset);
 }
 
-/// The overlap that a certified leg of a sphere may show, m: radius and the largest coordinate involved in m.
+/// The overlap that a certified segment of a sphere may show, m: radius and the largest coordinate involved in m.
 [[nodiscard]] inline double sphere_tolerance(double radius, double largest_coordinate) {
     return kSphereTolerance * (radius + largest_coordinate);
 }

@@ -6,8 +6,8 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh_topology.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -205,7 +205,7 @@ LaunchPlace ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, Rando
         v = 1.0 - v;
     }
     const Vec3 normal = unit_normal(a, b, c);
-    const double gap = parking_gap(max(max(abs(a), abs(b)), abs(c)));
+    const double gap = contact_offset(max(max(abs(a), abs(b)), abs(c)));
     return {a + u * (b - a) + v * (c - a) + (radius + gap) * normal, normal};
 }
 

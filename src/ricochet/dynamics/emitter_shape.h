@@ -10,8 +10,8 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/mesh_interior.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 

@@ -5,7 +5,7 @@
 
 #include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/integrator.h"
-#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 

@@ -179,7 +179,7 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
 }
 
 // Kicking first is to fly the parabola with half a kick more at its start, kicking last with half a kick less.
-Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
+Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
     const Vec3& a = flight.acceleration;
     const double h = flight.path.duration;
     const double kicks = kicks_first(integrator.kind)                       ? 0.5

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ricochet/dynamics/force.h"
-#include "ricochet/geometry/path.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
@@ -108,7 +108,8 @@ struct Flight {
 /// For an acceleration that depends on neither position, velocity nor time: the parabola on which the ends of all
 /// further steps of `time_step` seconds lie, up to rounding, if nothing stands in the way. It begins with the flight,
 /// which and whose successors lie within |acceleration| time_step^2 / 8 of it. duration >= that of the flight, s.
-[[nodiscard]] Path foreseen_path(const Integrator& integrator, const Flight& flight, double time_step, double duration);
+[[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step,
+                                   double duration);
 
 /// Position and velocity at flight time s: midpoint, rk4 and dormand_prince step from the flight's start again, the
 /// others are on the flight's path.

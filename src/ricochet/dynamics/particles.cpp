@@ -55,7 +55,7 @@ void Particles::append(const Particle& particle) {
     support.push_back({kNoSupport, kNoSupport, kNoSupport});
     cascade_left.push_back(0.0);
     pinned.push_back(particle.pinned ? 1 : 0);
-    booked_until.push_back(0.0);
+    accounted_until.push_back(0.0);
     attributes.append(particle.attributes);
     if (keeps_origin) origin.push_back(particle.origin);
 }
@@ -79,7 +79,7 @@ void Particles::reserve(std::size_t more) {
     reserve_more(support, more);
     reserve_more(cascade_left, more);
     reserve_more(pinned, more);
-    reserve_more(booked_until, more);
+    reserve_more(accounted_until, more);
     attributes.reserve(more);
     if (keeps_origin) reserve_more(origin, more);
 }
@@ -111,7 +111,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
     compact_array(support, keep);
     compact_array(cascade_left, keep);
     compact_array(pinned, keep);
-    compact_array(booked_until, keep);
+    compact_array(accounted_until, keep);
     attributes.compact(keep);
     if (keeps_origin) compact_array(origin, keep);
 }

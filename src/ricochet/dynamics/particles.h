@@ -67,12 +67,12 @@ public:
     std::vector<std::uint32_t> draws;  ///< random numbers drawn by impacts so far
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.
     std::vector<std::array<std::uint32_t, 3>> support;
-    std::vector<double> cascade_left;  ///< s of a bounce cascade that the end of the step has cut in two
-    std::vector<std::uint8_t> pinned;  ///< 1 when it never moves
-    std::vector<double> booked_until;  ///< s, simulation time up to which surfaces have carried a sleeping particle
-    AttributeTable attributes;         ///< set its columns before the first particle is appended
-    std::vector<Origin> origin;        ///< empty unless keeps_origin
-    bool keeps_origin = false;         ///< set before the first particle is appended
+    std::vector<double> cascade_left;     ///< s of a bounce cascade that the end of the step has cut in two
+    std::vector<std::uint8_t> pinned;     ///< 1 when it never moves
+    std::vector<double> accounted_until;  ///< s, simulation time up to which surfaces have carried a sleeping particle
+    AttributeTable attributes;            ///< set its columns before the first particle is appended
+    std::vector<Origin> origin;           ///< empty unless keeps_origin
+    bool keeps_origin = false;            ///< set before the first particle is appended
 
     [[nodiscard]] std::size_t size() const { return id.size(); }
     [[nodiscard]] bool empty() const { return id.empty(); }

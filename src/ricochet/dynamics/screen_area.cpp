@@ -6,7 +6,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
-#include "ricochet/geometry/orient2d.h"
+#include "ricochet/geometry/predicates/orient2d.h"
 
 namespace ricochet {
 namespace {

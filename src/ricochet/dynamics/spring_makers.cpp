@@ -8,7 +8,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/detail/catenary.h"
 #include "ricochet/dynamics/detail/checks.h"
-#include "ricochet/geometry/mesh_topology.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {
 namespace {

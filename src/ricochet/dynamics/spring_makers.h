@@ -12,7 +12,7 @@
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/spring_network.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 

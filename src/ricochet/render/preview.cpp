@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "ricochet/geometry/embree.h"
+#include "ricochet/geometry/acceleration/embree.h"
 #include "ricochet/render/corner_normals.h"
 
 namespace ricochet {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ricochet/collision/parking.h"
+#include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/advector.h"
 
@@ -120,9 +120,9 @@ std::optional<Contact> Advector::follow(const Path& path) {
         return std::nullopt;
     }
     if (contact) {
-        const Parking parking = park(search_, path, *contact);
-        outcome_.stayed += parking.stayed ? 1 : 0;
-        state_.position = parking.position;
+        const SafePosition safe_position = find_safe_position(search_, path, *contact);
+        outcome_.stayed += safe_position.stayed ? 1 : 0;
+        state_.position = safe_position.position;
     } else {
         const Travel travelled = travel(search_, path, path.duration, path.end);
         state_.position = travelled.reached;
@@ -139,7 +139,7 @@ std::optional<Contact> Advector::follow(const Path& path) {
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
 void Advector::leave_surface() {
     if (const auto place = step_off(search_, state_.position)) {
-        if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
+        if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
         state_.position = *place;
         return;
     }
@@ -148,9 +148,9 @@ void Advector::leave_surface() {
 }
 
 void Advector::accept_chain() {
-    if (!scratch_.record_legs) return;
+    if (!scratch_.record_segments) return;
     const std::vector<Vec3>& chain = search_.chain();
-    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.legs.push_back({chain[k - 1], chain[k], state_.time});
+    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.segments.push_back({chain[k - 1], chain[k], state_.time});
 }
 
 /// Counts an impact; the surfaces met come first among those touched.

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/advector.h"
 
 namespace ricochet {
@@ -26,12 +26,12 @@ Path Advector::stretch_on(const ContactSurface& support, Path path) const {
     return support.flat ? stretch_on_flat(support, path) : stretch_on_curved(support, path);
 }
 
-/// Up to the surface's rim; the end keeps the parking gap.
+/// Up to the surface's rim; the end keeps the safe_position gap.
 Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     const CollisionWorld& world = rules_.world;
     Path of_contact_point = path;
     of_contact_point.c[0] -= state_.radius * support.normal;
-    const double reach = kRimGaps * parking_gap(state_.position);
+    const double reach = kRimOffsets * contact_offset(state_.position);
     const double on = world.time_over(support.surface, of_contact_point, reach);
     if (on < path.duration) {
         path.end = path.position(on);
@@ -40,11 +40,11 @@ Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     if (!(path.duration > 0.0)) return path;
     const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
     const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
-    const double lift = parking_gap(path.end) - height;
+    const double lift = contact_offset(path.end) - height;
     // Where the flow has turned away the particle is above the surface by more than rounding. Next to the origin a
     // height above a large triangle can be all rounding.
     const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) &&
-                             height <= 2.0 * kTouchingGaps * parking_gap(path.end);
+                             height <= 2.0 * kTouchingOffsets * contact_offset(path.end);
     if (is_rounding) {
         path.end = flush_tiny(path.end + lift * support.normal);
         path.c[1] += (lift / path.duration) * support.normal;  // a start nearer than the gap must not meet the surface
@@ -69,12 +69,12 @@ Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const
     if (!(duration > 0.0)) return path;
     const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
     const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
-    const double gap = parking_gap(path.end);
+    const double gap = contact_offset(path.end);
     const double lift = state_.radius + gap - side * there.distance;
     if (!(lift > 0.0)) return path;
     const Vec3 end = flush_tiny(path.end + (side * lift) * there.normal);
     // Over the seam of a flat surface the height differs by rounding only.
-    if (lift > kTouchingGaps * gap) path = line_path(state_.position, (end - state_.position) / duration, duration);
+    if (lift > kTouchingOffsets * gap) path = line_path(state_.position, (end - state_.position) / duration, duration);
     path.end = end;
     return path;
 }
@@ -82,17 +82,18 @@ Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const
 /// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
 double Advector::seam_turn() const {
     if (state_.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingGaps * parking_gap(state_.position) / state_.radius;
+    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(state_.position) / state_.radius;
 }
 
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
     const CollisionWorld& world = rules_.world;
-    const double reach = kTouchingGaps * parking_gap(state_.position);
+    const double reach = kTouchingOffsets * contact_offset(state_.position);
     const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
     // Half of what a stretch goes beyond the rim, so that at its end the surface is surely left.
     const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
-    if (std::fabs(nearest.distance - state_.radius) > (beside_rim ? 0.5 * kRimGaps / kTouchingGaps : 1.0) * reach) {
+    if (std::fabs(nearest.distance - state_.radius) >
+        (beside_rim ? 0.5 * kRimOffsets / kTouchingOffsets : 1.0) * reach) {
         return std::nullopt;
     }
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/collision/parking.h"
+#include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/mover.h"
 
@@ -31,13 +31,14 @@ MoveOutcome Mover::run() {
     std::optional<Contact> contact = go_on_in_contact();
     Flight flight;
     for (bool first = true; contact || remaining_ > 0.0; first = false) {
-        outcome_.free_for = outcome_.awaited_for = 0.0;
+        outcome_.free_for = outcome_.candidates_for = 0.0;
         if (!contact) {
             flight = first ? first_flight(rules_, particle_, remaining_)
                            : resume_flight(integrator, rules_.forces, state_, flight, remaining_);
-            const auto outlook = outlook_of(flight);
-            contact = follow(flight, outlook ? &*outlook : nullptr, first ? particle_.awaited : Awaited{});
-            if (outlook && !contact && state_.position == flight.path.end) look_beyond(flight);
+            const auto look_ahead = look_ahead_of(flight);
+            contact =
+                follow(flight, look_ahead ? &*look_ahead : nullptr, first ? particle_.candidates : ContactCandidates{});
+            if (look_ahead && !contact && state_.position == flight.path.end) look_beyond(flight);
         }
         while (contact && has_budget() && !outcome_.absorbed) contact = answer(flight, *contact);
         if (outcome_.absorbed) break;
@@ -53,41 +54,42 @@ MoveOutcome Mover::run() {
 void Mover::look_beyond(const Flight& flight) {
     const auto after_end = [&](double time) { return std::max(0.0, time - flight.path.duration); };
     outcome_.free_for = after_end(search_.free_until());
-    outcome_.awaited_for = after_end(search_.awaited_until());
-    outcome_.awaited = search_.awaited();
+    outcome_.candidates_for = after_end(search_.candidates_until());
+    outcome_.candidates = search_.candidates();
 }
 
 /// How far ahead the last flight of a step may look: as far as its way is known, which it is where the acceleration is
 /// uniform and the steps are those of the run.
-std::optional<Outlook> Mover::outlook_of(const Flight& flight) const {
+std::optional<LookAhead> Mover::look_ahead_of(const Flight& flight) const {
     const double time_step = rules_.settings.time_step;
-    const bool is_foreseen = rules_.settings.foresight && rules_.forces.is_uniform() && particle_.planned == nullptr &&
+    const bool is_foreseen = rules_.settings.look_ahead && rules_.forces.is_uniform() && particle_.planned == nullptr &&
                              state_.coupling == Vec3{} && flight.path.duration == remaining_ &&
                              remaining_ <= kWholeStep * time_step;
     if (!is_foreseen) return std::nullopt;
     const double acceleration = length(flight.acceleration);
-    const int steps = acceleration == 0.0 ? kMostForeseenSteps : kMostForeseenBentSteps;
+    const int steps = acceleration == 0.0 ? kMostLookAheadSteps : kMostLookAheadStepsCurved;
     const double left = rules_.settings.end - (state_.time + remaining_);  // of the run, after this step
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining_ + std::min(steps * time_step, left + time_step);
-    Outlook outlook{foreseen_path(rules_.settings.integrator, flight, time_step, duration), 0.0, remaining_ + time_step,
-                    kWholeStep * time_step};
+    LookAhead look_ahead{look_ahead_path(rules_.settings.integrator, flight, time_step, duration), 0.0,
+                         remaining_ + time_step, kWholeStep * time_step};
     const double speed = length(flight.end_velocity) + acceleration * duration;
     const double largest = max_abs(flight.path.end) + speed * duration + state_.radius;
     if (!(largest < kLargestCoordinate) || !(speed < kFastestSpeed)) return std::nullopt;
     const double clocks = 4.0 * ulp(state_.time + duration) * speed;  // steps are as long as the clock's times say
-    outlook.margin = kForesightSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
-    return outlook;
+    look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
+    return look_ahead;
 }
 
 /// Moves the particle along the flight: to its end, or to the contact that is returned.
-std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outlook, const Awaited& awaited) {
+std::optional<Contact> Mover::follow(const Flight& flight, const LookAhead* look_ahead,
+                                     const ContactCandidates& candidates) {
     const Path& path = flight.path;
     if (!can_be_followed(path)) {
         freeze();
         return std::nullopt;
     }
-    std::optional<Contact> contact = search_.search(path, state_.radius, outlook, awaited);
+    std::optional<Contact> contact = search_.search(path, state_.radius, look_ahead, candidates);
     if (contact && contact->time == 0.0 && !search_.surfaces_at(path.c[0]).empty()) {
         leave_surface(flight);
         return std::nullopt;
@@ -97,9 +99,9 @@ std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outloo
         return std::nullopt;
     }
     if (contact) {
-        const Parking parking = park(search_, path, *contact);
-        outcome_.stayed += parking.stayed ? 1 : 0;
-        state_.position = parking.position;
+        const SafePosition safe_position = find_safe_position(search_, path, *contact);
+        outcome_.stayed += safe_position.stayed ? 1 : 0;
+        state_.position = safe_position.position;
     } else {
         const Travel travelled = travel(search_, path, path.duration, path.end);
         state_.position = travelled.reached;
@@ -117,8 +119,8 @@ std::optional<Contact> Mover::follow(const Flight& flight, const Outlook* outloo
 void Mover::leave_surface(const Flight& flight) {
     state_.velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, 0.0);
     if (const auto place = step_off(search_, state_.position)) {
-        if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
-        first_leg_ = scratch_.legs.size();
+        if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
+        first_segment_ = scratch_.segments.size();
         start_ = *place;
         state_.position = *place;
         return;
@@ -128,9 +130,9 @@ void Mover::leave_surface(const Flight& flight) {
 }
 
 void Mover::accept_chain() {
-    if (!scratch_.record_legs) return;
+    if (!scratch_.record_segments) return;
     const std::vector<Vec3>& chain = search_.chain();
-    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.legs.push_back({chain[k - 1], chain[k], state_.time});
+    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.segments.push_back({chain[k - 1], chain[k], state_.time});
 }
 
 void Mover::freeze() {

@@ -23,7 +23,7 @@ public:
           start_(particle.state.position),
           began_(particle.support),
           began_still_(particle.state.velocity == Vec3{} && particle.spin == Vec3{}),
-          first_leg_(scratch.legs.size()),
+          first_segment_(scratch.segments.size()),
           remaining_(duration),
           shortest_stretch_(duration / kShortestStretches) {}
 
@@ -33,9 +33,10 @@ public:
 
 private:
     // Flying (exact.cpp).
-    std::optional<Contact> follow(const Flight& flight, const Outlook* outlook = nullptr, const Awaited& awaited = {});
+    std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead = nullptr,
+                                  const ContactCandidates& candidates = {});
     void look_beyond(const Flight& flight);
-    [[nodiscard]] std::optional<Outlook> outlook_of(const Flight& flight) const;
+    [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight) const;
     void accept_chain();
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
     void leave_surface(const Flight& flight);
@@ -95,7 +96,7 @@ private:
     Vec3 start_;        // where the step began
     Support began_;     // what it touched then
     bool began_still_;  // and that nothing moved
-    std::size_t first_leg_;
+    std::size_t first_segment_;
     double remaining_;
     Support touched_;  // cascade_left unused
     std::array<Vec3, 3> touched_normals_;

@@ -147,7 +147,7 @@ Stretch Mover::plan(const ContactSurface& support, const Vec3& pull, double pres
     grip.rolling_friction = impact_.material_of(support.surface).rolling_friction;
     grip.pressure = pressure;
     grip.shortest = shortest_stretch_;
-    grip.negligible_way = kTouchingGaps * parking_gap(state_.position);
+    grip.negligible_way = kTouchingOffsets * contact_offset(state_.position);
     const Motion motion{state_.velocity, particle_.spin};
     return plan_stretch(motion, state_.radius, pull, touched_normals(), grip, duration);
 }
@@ -203,13 +203,13 @@ void Mover::land(const Motion& arriving, double friction) {
 /// Rests for what is left of the step. held: until the forces change.
 void Mover::rest(const Vec3& a, bool held) {
     // Landing again from one gap above, step after step, it would creep downhill: it goes back the way it came.
-    if (state_.position != start_ && length(state_.position - start_) <= kTouchingGaps * parking_gap(start_)) {
+    if (state_.position != start_ && length(state_.position - start_) <= kTouchingOffsets * contact_offset(start_)) {
         state_.position = start_;
-        for (std::size_t k = scratch_.legs.size(); k-- > first_leg_;) {
-            Leg back = scratch_.legs[k];
+        for (std::size_t k = scratch_.segments.size(); k-- > first_segment_;) {
+            Segment back = scratch_.segments[k];
             std::swap(back.from, back.to);
             back.time = state_.time;
-            scratch_.legs.push_back(back);
+            scratch_.segments.push_back(back);
         }
     }
     particle_.spin = Vec3{};

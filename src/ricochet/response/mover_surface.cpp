@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/mover.h"
 
 namespace ricochet {
@@ -54,7 +54,8 @@ double Mover::time_on(const ContactSurface& support, const Path& path, double be
     if (support.flat) {
         Path of_contact_point = path;
         of_contact_point.c[0] -= state_.radius * support.normal;
-        return rules_.world.time_over(support.surface, of_contact_point, kTouchingGaps * parking_gap(state_.position));
+        return rules_.world.time_over(support.surface, of_contact_point,
+                                      kTouchingOffsets * contact_offset(state_.position));
     }
     const double way = bend != 0.0 ? kStretchAngle / std::fabs(bend) : INFINITY;
     const double speed = length(path.c[1]);
@@ -64,8 +65,8 @@ double Mover::time_on(const ContactSurface& support, const Path& path, double be
     return std::min({path.duration, by_speed, by_acceleration});
 }
 
-/// The path of a stretch, up to where the supporting surface ends (then `ends` is set); its end keeps the parking gap.
-/// On a surface that bends away it is a tangent, at whose end the particle is let go to fall the little that the
+/// The path of a stretch, up to where the supporting surface ends (then `ends` is set); its end keeps the safe_position
+/// gap. On a surface that bends away it is a tangent, at whose end the particle is let go to fall the little that the
 /// surface has bent; on one that bends towards it, a chord.
 Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, bool& ends) const {
     Vec3 v = stretch.motion.velocity;
@@ -82,7 +83,7 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
         // Of the plane, also where the end lies a little beyond the rim.
         const double side = dot(search_.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * search_.signed_distance_from(support.surface, path.end) - state_.radius;
-        const double lift = parking_gap(path.end) - height;
+        const double lift = contact_offset(path.end) - height;
         // Next to the origin a height above a large triangle can be all rounding.
         if (std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end)) {
             path.end = flush_tiny(path.end + lift * support.normal);
@@ -90,7 +91,7 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
     } else if (bend < 0.0) {
         const CollisionWorld::Nearest there = search_.nearest(support.surface, path.end);
         const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
-        const Vec3 lift = (side * (state_.radius + parking_gap(path.end)) - there.distance) * there.normal;
+        const Vec3 lift = (side * (state_.radius + contact_offset(path.end)) - there.distance) * there.normal;
         const Vec3 end = flush_tiny(path.end + lift);
         v += lift / path.duration;
         path = parabola_path(state_.position, v, a, path.duration);
@@ -144,7 +145,7 @@ void Mover::remember(const ContactSurface& surface) {
 /// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
 double Mover::seam_turn() const {
     if (state_.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingGaps * parking_gap(state_.position) / state_.radius;
+    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(state_.position) / state_.radius;
 }
 
 void Mover::set_touched(std::size_t k, const ContactSurface& surface) {
@@ -178,7 +179,7 @@ void Mover::note_recent(SurfaceId surface) {
 
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<ContactSurface> Mover::touching(SurfaceId surface) const {
-    const double reach = kTouchingGaps * parking_gap(state_.position);
+    const double reach = kTouchingOffsets * contact_offset(state_.position);
     const CollisionWorld::Nearest nearest = search_.nearest(surface, state_.position);
     if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact.h"
 #include "ricochet/response/penalty_contact.h"
 
@@ -102,7 +102,7 @@ bool PenaltyMover::substep(double h) {
     state_.position = next->position;
     state_.velocity = next->motion.velocity;
     particle_.spin = next->motion.spin;
-    if (scratch_.record_legs) scratch_.legs.push_back({from, state_.position, state_.time});
+    if (scratch_.record_segments) scratch_.segments.push_back({from, state_.position, state_.time});
     state_.time += h;
     begin_contacts();
     watch_.settle(seen_);

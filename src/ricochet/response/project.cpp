@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact.h"
 #include "ricochet/response/side_watch.h"
 
@@ -35,7 +35,7 @@ public:
             return outcome_;
         }
         state_.position = put_back(flush_tiny(state_.position));
-        if (scratch_.record_legs) scratch_.legs.push_back({from_, state_.position, state_.time - duration});
+        if (scratch_.record_segments) scratch_.segments.push_back({from_, state_.position, state_.time - duration});
         if (!contacts_.empty()) answer(duration);
         return outcome_;
     }
@@ -61,7 +61,7 @@ private:
     }
 
     [[nodiscard]] double offset() const {
-        return std::max(rules_.settings.project.offset, parking_gap(state_.position));
+        return std::max(rules_.settings.project.offset, contact_offset(state_.position));
     }
 
     /// Out of what the place is behind, the deepest first, again and again; where that does not end, back to the start.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_search.h"
-#include "ricochet/core/leg.h"
+#include "ricochet/core/segment.h"
 #include "ricochet/dynamics/flow_field.h"
 #include "ricochet/dynamics/force.h"
 #include "ricochet/dynamics/integrator.h"
@@ -72,7 +72,7 @@ struct ResponseSettings {
     PenaltySettings penalty = {};
     FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
     WallRule walls = WallRule::slide;                      ///< only with a flow
-    bool foresight = true;                                 ///< find out MoveOutcome::free_for
+    bool look_ahead = true;                                ///< find out MoveOutcome::free_for
     double end = std::numeric_limits<double>::infinity();  ///< s, when the run ends: what comes later is of no interest
 };
 
@@ -103,9 +103,9 @@ struct MoveScratch {
     ContactScratch contacts;
     std::vector<SurfaceHit> hits;
     std::vector<ContactRecord> records;  ///< filled when record_contacts
-    std::vector<Leg> legs;               ///< filled when record_legs
+    std::vector<Segment> segments;       ///< filled when record_segments
     bool record_contacts = false;
-    bool record_legs = false;
+    bool record_segments = false;
 };
 
 /// The surfaces that a particle slides, rolls or rests on.
@@ -136,7 +136,7 @@ struct MovingParticle {
     /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
     /// own integrator says it. It must outlive the move.
     const Flight* planned = nullptr;
-    Awaited awaited = {};  ///< by this step (MoveOutcome::awaited of the last one)
+    ContactCandidates candidates = {};  ///< by this step (MoveOutcome::candidates of the last one)
 };
 
 /// What happened to one particle in one step.
@@ -154,9 +154,9 @@ struct MoveOutcome {
     /// s after the end of the move for which the particle, stepped on by coast() in steps of the run, certainly meets
     /// nothing; 0 where that was not found out.
     double free_for = 0.0;
-    /// s after the end of the move until which no triangles but `awaited` come near its way.
-    double awaited_for = 0.0;
-    Awaited awaited = {};
+    /// s after the end of the move until which no triangles but `candidates` come near its way.
+    double candidates_for = 0.0;
+    ContactCandidates candidates = {};
 };
 
 /// Key of the random numbers that impacts draw; emitters use the numbers below.

@@ -44,9 +44,9 @@ private:
             for (std::size_t i = begin; i < end; ++i) {
                 SystemParticle& p = particles_[i];
                 MoveScratch& scratch = blocks_[block];
-                scratch.legs.clear();
+                scratch.segments.clear();
                 body(p, events_[i], scratch);
-                p.legs.insert(p.legs.end(), scratch.legs.begin(), scratch.legs.end());
+                p.segments.insert(p.segments.end(), scratch.segments.begin(), scratch.segments.end());
             }
         });
     }
@@ -78,10 +78,10 @@ private:
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double end = std::min(next, p.stop);
         // What is due is done again as it was tried out, also when it takes less time than the clock can tell.
-        bool is_due = event.time <= next + (event.collides ? rules_.settings.rollback.time_tolerance : 0.0);
-        for (double at = begin_of(p, now); !is_out(p) && (is_due || at < end); is_due = false) {
+        bool needs_query = event.time <= next + (event.collides ? rules_.settings.rollback.time_tolerance : 0.0);
+        for (double at = begin_of(p, now); !is_out(p) && (needs_query || at < end); needs_query = false) {
             RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
-            if (!mover.begin(is_due ? p.stop - at : end - at)) return;
+            if (!mover.begin(needs_query ? p.stop - at : end - at)) return;
             const CollisionBracket found = mover.bracket();
             mover.advance(found.free);
             at += found.free;

@@ -38,9 +38,9 @@ struct SystemParticle {
     double start = 0.0;  ///< s, where its part of the step begins
     double stop = 0.0;   ///< s, and ends
     MoveOutcome outcome = {};
-    std::vector<Leg> legs = {};  ///< filled when the scratch records legs
-    bool is_out = false;         ///< it is done with the step: its budget is spent, or it rests in a pit
-    int idle = 0;                ///< pieces of contact in a row without progress
+    std::vector<Segment> segments = {};  ///< filled when the scratch records segments
+    bool is_out = false;                 ///< it is done with the step: its budget is spent, or it rests in a pit
+    int idle = 0;                        ///< pieces of contact in a row without progress
 };
 
 /// The global variant, as the lectures teach it for the whole system's state vector: when any particle collides within

@@ -17,7 +17,7 @@ std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
     if (kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight) {
         speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
     }
-    const double reach = kTouchingGaps * parking_gap(state_.position) +
+    const double reach = kTouchingOffsets * contact_offset(state_.position) +
                          kBracketsOfTouch * rules_.settings.rollback.time_tolerance * speed;
     if (nearest.distance - state_.radius > reach) return std::nullopt;
     if (dot(state_.velocity, nearest.normal) > rules_.settings.resting_speed) return std::nullopt;
@@ -68,7 +68,7 @@ void RollbackMover::plan_contact(double duration) {
     grip.rolling_friction = impact_.material_of(touched_[0].surface).rolling_friction;
     grip.pressure = kicked ? 0.0 : 1.0;
     grip.shortest = duration / kShortestStretches;
-    grip.negligible_way = kTouchingGaps * parking_gap(state_.position);
+    grip.negligible_way = kTouchingOffsets * contact_offset(state_.position);
     stretch_ = plan_stretch({state_.velocity, particle_.spin}, state_.radius, pull_, normals(), grip, duration);
     limit_stretch();
 }
@@ -96,7 +96,7 @@ double RollbackMover::time_on_support() const {
     const ContactSurface& support = touched_[0];
     if (support.flat) {
         const Path way = parabola_path(state_.position - state_.radius * support.normal, v, a, duration);
-        const double slack = kTouchingGaps * parking_gap(state_.position);
+        const double slack = kTouchingOffsets * contact_offset(state_.position);
         return is_finite(way.end) ? rules_.world.time_over(support.surface, way, slack) : duration;
     }
     const double longest = kStretchAngle * 0.25 * rules_.world.size_of(support.surface);

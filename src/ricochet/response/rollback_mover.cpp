@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "ricochet/collision/parking.h"
+#include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 
@@ -112,8 +112,8 @@ CollisionBracket RollbackMover::bracket() {
 
 void RollbackMover::advance(double elapsed) {
     stretch_ ? follow_stretch(elapsed) : fly(elapsed);
-    if (scratch_.record_legs && state_.position != from_) {
-        scratch_.legs.push_back({from_, state_.position, state_.time});
+    if (scratch_.record_segments && state_.position != from_) {
+        scratch_.segments.push_back({from_, state_.position, state_.time});
     }
     state_.time += elapsed;
 }
@@ -175,7 +175,7 @@ void RollbackMover::leave_surface() {
         ++outcome_.stayed;
         return;
     }
-    if (scratch_.record_legs) scratch_.legs.push_back({state_.position, *place, state_.time});
+    if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
     state_.position = *place;
 }
 

@@ -15,7 +15,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 

@@ -61,7 +61,7 @@ struct Verifier::Impl {
     explicit Impl(const std::vector<VerifiedSurface>& surfaces);
 
     void check_chain(const Judged& judged, const Vec3& before) const;
-    void check_leg(const Judged& judged, const Leg& leg, bool starts_on_surface) const;
+    void check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const;
     void check_sides(const Judged& judged, VerifiedParticle& particle) const;
     void check_distance(const Judged& judged, VerifiedParticle& particle) const;
     [[nodiscard]] std::vector<Side> sides_of(const Vec3& p) const;
@@ -133,20 +133,20 @@ void Verifier::Impl::check_chain(const Judged& judged, const Vec3& before) const
     };
     expect(before, step.from);
     Vec3 at = step.from;
-    for (const Leg& leg : step.legs) {
-        expect(at, leg.from);
-        at = leg.to;
+    for (const Segment& segment : step.segments) {
+        expect(at, segment.from);
+        at = segment.to;
     }
     expect(at, step.to);
 }
 
-/// A particle that stands on surfaces at the leg's start may leave them to either side.
-void Verifier::Impl::check_leg(const Judged& judged, const Leg& leg, bool starts_on_surface) const {
-    const Vec3& p = leg.from;
-    const Vec3& q = leg.to;
-    if (same_bits(p, q)) return;  // its place belongs to the leg before
+/// A particle that stands on surfaces at the segment's start may leave them to either side.
+void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const {
+    const Vec3& p = segment.from;
+    const Vec3& q = segment.to;
+    if (same_bits(p, q)) return;  // its place belongs to the segment before
     if (!is_finite(p) || !is_finite(q)) {
-        judged.report(ViolationKind::gap, q, leg.time, std::nullopt);
+        judged.report(ViolationKind::gap, q, segment.time, std::nullopt);
         return;
     }
     const std::size_t first = judged.violations.size();
@@ -154,17 +154,17 @@ void Verifier::Impl::check_leg(const Judged& judged, const Leg& leg, bool starts
         const int of_p = verify::height_sign(plane.normal, plane.point, p);
         const int of_q = verify::height_sign(plane.normal, plane.point, q);
         const bool leaves = starts_on_surface && of_p == 0 && of_q != 0;
-        if (of_p * of_q <= 0 && !leaves) judged.report(ViolationKind::crossing, q, leg.time, collider);
+        if (of_p * of_q <= 0 && !leaves) judged.report(ViolationKind::crossing, q, segment.time, collider);
     }
     for (const auto& [collider, shape] : shapes) {
         if (!shape.meets(p, q)) continue;
         const bool leaves = starts_on_surface && shape.side(p) == 0 && !shape.meets_after_start(p, q);
-        if (!leaves) judged.report(ViolationKind::crossing, q, leg.time, collider);
+        if (!leaves) judged.report(ViolationKind::crossing, q, segment.time, collider);
     }
     triangles.near_segment(p, q, [&](const NamedTriangle& t) {
         if (!verify::meets(p, q, t.corners)) return;
         if (starts_on_surface && !verify::meets_after_start(p, q, t.corners)) return;
-        judged.report(ViolationKind::crossing, verify::place_of_meeting(p, q, t.corners), leg.time, t.collider,
+        judged.report(ViolationKind::crossing, verify::place_of_meeting(p, q, t.corners), segment.time, t.collider,
                       t.triangle);
     });
     std::sort(judged.violations.begin() + static_cast<std::ptrdiff_t>(first), judged.violations.end(),
@@ -194,7 +194,8 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     const VerifiedStep& step = judged.step;
     if (!(step.radius > 0.0) || !is_finite(step.to)) return;
     double largest = std::max(max_abs(step.from), max_abs(step.to));
-    for (const Leg& leg : step.legs) largest = std::max({largest, max_abs(leg.from), max_abs(leg.to)});
+    for (const Segment& segment : step.segments)
+        largest = std::max({largest, max_abs(segment.from), max_abs(segment.to)});
     const double least = step.radius - sphere_tolerance(step.radius, largest);
     if (!(least > 0.0)) return;
     std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> first;
@@ -230,13 +231,14 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius) const {
 }
 
 void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const {
-    if (step.legs.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position)) return;
+    if (step.segments.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position))
+        return;
     const Impl::Judged judged{step, violations};
     impl_->check_chain(judged, particle.position);
     bool starts_on_surface = particle.is_on_surface;
-    for (const Leg& leg : step.legs) {
-        impl_->check_leg(judged, leg, starts_on_surface);
-        starts_on_surface = starts_on_surface && same_bits(leg.from, leg.to);
+    for (const Segment& segment : step.segments) {
+        impl_->check_segment(judged, segment, starts_on_surface);
+        starts_on_surface = starts_on_surface && same_bits(segment.from, segment.to);
     }
     impl_->check_sides(judged, particle);
     impl_->check_distance(judged, particle);

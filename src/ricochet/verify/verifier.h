@@ -1,5 +1,5 @@
 /// \file
-/// Checks what particles did, independently of the code that moved them: every leg that was travelled against the
+/// Checks what particles did, independently of the code that moved them: every segment that was travelled against the
 /// surfaces near it, and after every step the side of every closed surface and the distance of spheres.
 ///
 /// Independent: this folder includes none of the sweep's predicates, trees or distance code (tests/layers checks that).
@@ -14,10 +14,10 @@
 #include <variant>
 #include <vector>
 
-#include "ricochet/core/leg.h"
+#include "ricochet/core/segment.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/verify/parity.h"
 #include "ricochet/verify/violation.h"
 
@@ -51,12 +51,12 @@ struct VerifiedParticle {
 
 /// What a particle did in a step.
 struct VerifiedStep {
-    std::uint64_t particle = 0;  ///< id
-    Vec3 from;                   ///< where it stood before, m
-    Vec3 to;                     ///< where it stands now, m
-    double radius = 0.0;         ///< m
-    double time = 0.0;           ///< s, at the end of the step
-    std::span<const Leg> legs;   ///< in the order of time
+    std::uint64_t particle = 0;         ///< id
+    Vec3 from;                          ///< where it stood before, m
+    Vec3 to;                            ///< where it stands now, m
+    double radius = 0.0;                ///< m
+    double time = 0.0;                  ///< s, at the end of the step
+    std::span<const Segment> segments;  ///< in the order of time
 };
 
 /// Immutable; safe from any number of threads.
@@ -71,7 +71,7 @@ public:
     /// Looks at a particle at its birth. A place that is not finite has no side and is not judged.
     [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
 
-    /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the legs, then
+    /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then
     /// sides, then overlaps, each in the order of colliders and triangles. Updates what is remembered.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
 

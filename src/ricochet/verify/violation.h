@@ -11,8 +11,8 @@ namespace ricochet {
 
 /// What is wrong.
 enum class ViolationKind : std::uint8_t {
-    crossing,    ///< a leg that was travelled meets a surface
-    gap,         ///< the legs do not join the place where the particle was last seen to that where it is now
+    crossing,    ///< a segment that was travelled meets a surface
+    gap,         ///< the segments do not join the place where the particle was last seen to that where it is now
     wrong_side,  ///< the particle is on another side of a closed surface than at birth
     overlap,     ///< a sphere is nearer to a surface than its radius, by more than sphere_tolerance()
 };

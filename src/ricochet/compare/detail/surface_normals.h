@@ -17,7 +17,7 @@ class SurfaceNormals {
 public:
     explicit SurfaceNormals(const Simulation& simulation);
     /// Of any length, for a crossing. Of a triangle by the counter-clockwise rule; of a ball or cylinder outward, for
-    /// the place where the leg ended, since that is what is reported. Zero where there is none: planes.
+    /// the place where the segment ended, since that is what is reported. Zero where there is none: planes.
     [[nodiscard]] Vec3 at(const Violation& crossing) const;
 
 private:

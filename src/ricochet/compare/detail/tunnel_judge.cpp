@@ -14,7 +14,7 @@ bool same_place(const Vec3& a, const Vec3& b) {
     return max_abs(a - b) <= kSameCrossing * std::max(max_abs(a), max_abs(b));
 }
 
-/// Neighbouring triangles that a leg meets in their common edge are one crossing.
+/// Neighbouring triangles that a segment meets in their common edge are one crossing.
 std::size_t count_crossings(const std::vector<const Violation*>& meetings) {
     std::vector<Vec3> different;
     for (const Violation* meeting : meetings) {
@@ -48,7 +48,7 @@ std::vector<ColliderKind> collider_kinds(const Simulation& simulation) {
 }
 
 void TunnelJudge::add_step(std::span<const Violation> violations) {
-    std::map<Pair, Legs> meetings;
+    std::map<Pair, Segments> meetings;
     std::set<Pair> flipped;
     for (const Violation& violation : violations) {
         if (!violation.collider) continue;
@@ -56,30 +56,30 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
         if (violation.kind == ViolationKind::crossing) meetings[pair][violation.time].push_back(&violation);
         if (violation.kind == ViolationKind::wrong_side) toggle(flipped, pair);
     }
-    for (const auto& [pair, legs] : meetings) {
+    for (const auto& [pair, segments] : meetings) {
         const ColliderKind kind = colliders_[pair.second];
-        if (kind == ColliderKind::shape) judge_shape(pair, legs, flipped.contains(pair));
-        if (kind == ColliderKind::closed_mesh || kind == ColliderKind::open_mesh) judge_mesh(pair, kind, legs);
+        if (kind == ColliderKind::shape) judge_shape(pair, segments, flipped.contains(pair));
+        if (kind == ColliderKind::closed_mesh || kind == ColliderKind::open_mesh) judge_mesh(pair, kind, segments);
     }
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-// A leg that met a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the number
-// of legs and the change of side do not agree, one has passed through.
-void TunnelJudge::judge_shape(const Pair& pair, const Legs& legs, bool flipped) {
+// A segment that met a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the
+// number of segments and the change of side do not agree, one has passed through.
+void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
     std::size_t met = 0;
-    for (const auto& [time, crossings] : legs) met += crossings.size();
+    for (const auto& [time, crossings] : segments) met += crossings.size();
     const bool agrees = (met % 2 == 1) == flipped;
     if (!agrees) jumped_.insert(pair.first);
-    if (!agrees && flipped) change_side(pair, *legs.rbegin()->second.back());
+    if (!agrees && flipped) change_side(pair, *segments.rbegin()->second.back());
     if (!agrees) return;
-    for (const auto& [time, crossings] : legs) {
+    for (const auto& [time, crossings] : segments) {
         for (const Violation* crossing : crossings) change_side(pair, *crossing);
     }
 }
 
-void TunnelJudge::judge_mesh(const Pair& pair, ColliderKind kind, const Legs& legs) {
-    for (const auto& [time, meetings] : legs) {
+void TunnelJudge::judge_mesh(const Pair& pair, ColliderKind kind, const Segments& segments) {
+    for (const auto& [time, meetings] : segments) {
         const bool is_odd = count_crossings(meetings) % 2 == 1;
         if (kind == ColliderKind::open_mesh) {
             if (is_odd) toggle(odd_, pair);

@@ -19,10 +19,10 @@ namespace ricochet::detail {
 
 /// What the verifier can say of a collider.
 enum class ColliderKind : std::uint8_t {
-    plane,        ///< sides; a leg meets it once at most
-    shape,        ///< ball or cylinder: sides; a leg that meets it is reported once, however often it does
-    closed_mesh,  ///< sides, and every triangle that a leg meets
-    open_mesh,    ///< every triangle that a leg meets
+    plane,        ///< sides; a segment meets it once at most
+    shape,        ///< ball or cylinder: sides; a segment that meets it is reported once, however often it does
+    closed_mesh,  ///< sides, and every triangle that a segment meets
+    open_mesh,    ///< every triangle that a segment meets
 };
 
 [[nodiscard]] std::vector<ColliderKind> collider_kinds(const Simulation& simulation);
@@ -42,11 +42,11 @@ public:
     [[nodiscard]] TunnelCounts verdict(const std::function<bool(std::uint64_t)>& is_penetrating) const;
 
 private:
-    using Pair = std::pair<std::uint64_t, std::uint32_t>;          // particle, collider
-    using Legs = std::map<double, std::vector<const Violation*>>;  // by the time of the leg's beginning
+    using Pair = std::pair<std::uint64_t, std::uint32_t>;              // particle, collider
+    using Segments = std::map<double, std::vector<const Violation*>>;  // by the time of the segment's beginning
 
-    void judge_shape(const Pair& pair, const Legs& legs, bool flipped);
-    void judge_mesh(const Pair& pair, ColliderKind kind, const Legs& legs);
+    void judge_shape(const Pair& pair, const Segments& segments, bool flipped);
+    void judge_mesh(const Pair& pair, ColliderKind kind, const Segments& segments);
     void change_side(const Pair& pair, const Violation& crossing);
 
     std::vector<ColliderKind> colliders_;

@@ -28,7 +28,7 @@ constexpr int kMostDefiniteSteps = 24;
 constexpr double kNear = 0.02;
 
 /// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
-constexpr double kRoundingOfPlaces = 0x1p-49;
+constexpr double kPositionRounding = 0x1p-49;
 
 /// A 3 x 3 matrix by rows.
 using Block = std::array<std::array<double, 3>, 3>;
@@ -145,7 +145,7 @@ private:
             const double place = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
             largest = std::max(largest, system_.spring_of(bond).stiffness * place);
         }
-        return kRoundingOfPlaces * h_ * largest;
+        return kPositionRounding * h_ * largest;
     }
 
     [[nodiscard]] Matrix jacobian(Slope slope) const {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ricochet/geometry/mesh_reader.h"
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::detail {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/detail/suggestion.h"
 
 namespace ricochet::detail {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "ricochet/geometry/triangle_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/detail/mesh_groups.h"
 
 namespace ricochet::detail {

@@ -10,7 +10,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/spring_makers.h"
-#include "ricochet/geometry/placed_mesh.h"
+#include "ricochet/geometry/mesh/placed_mesh.h"
 #include "ricochet/io/detail/scene_context.h"
 
 namespace ricochet::detail {

@@ -27,8 +27,8 @@ constexpr double kBoxSlack = 1e-12;
 constexpr int kHalvings = 120;
 
 /// Values (1 is the size of the shape) below which a place counts as on the surface: far above the errors of fifty
-/// digits, far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than that: legs that are
-/// free would be reported. Smaller than 1e-45: rounding would decide.
+/// digits, far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than that: segments that
+/// are free would be reported. Smaller than 1e-45: rounding would decide.
 const Digits kOnSurface("1e-36");
 
 template <class Real>

@@ -1,9 +1,9 @@
 /// \file
 /// A ball (or ellipsoid) or a capped cylinder as the verifier sees it: fifty digits where doubles leave doubt.
 ///
-/// The shape is the documented one (geometry/analytic_shape.h): its axes are the directions of the map's columns, made
-/// orthonormal one after the other, its half axes the columns' lengths, rounded to doubles; half axes that agree to
-/// rounding (2^-49) are equal. A place counts as on the surface when its value there is below kOnSurface.
+/// The shape is the documented one (geometry/shapes/analytic_shape.h): its axes are the directions of the map's
+/// columns, made orthonormal one after the other, its half axes the columns' lengths, rounded to doubles; half axes
+/// that agree to rounding (2^-49) are equal. A place counts as on the surface when its value there is below kOnSurface.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 /// \file
-/// Does a leg meet a surface? Exact, with the verifier's own signs.
+/// Does a segment meet a surface? Exact, with the verifier's own signs.
 #pragma once
 
 #include "ricochet/core/vec3.h"

@@ -1,0 +1,16 @@
+/// \file
+/// A straight piece of way.
+#pragma once
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// A straight piece of way that a particle's centre has travelled.
+struct Segment {
+    Vec3 from;
+    Vec3 to;
+    double time = 0.0;  ///< s, simulation time at which the flight (or slide) that it belongs to began
+};
+
+}  // namespace ricochet

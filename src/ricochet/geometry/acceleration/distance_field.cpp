@@ -1,0 +1,190 @@
+#include "ricochet/geometry/acceleration/distance_field.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kTrianglesPerBlock = 1 << 12;
+constexpr std::size_t kFewestCells = 1 << 15;
+constexpr std::size_t kCellsPerTriangle = 2;
+
+/// Cells along the longest axis. Distances beyond what a byte holds are told as that: less than they are.
+constexpr double kMostAlongAxis = 1024.0;
+
+constexpr std::uint8_t kFar = 255;
+
+/// Marks that are afforded for each triangle, and for a million more in every grid.
+constexpr double kMostMarks = 16.0;
+
+double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }
+
+/// The cell, of `count` along an axis, that a coordinate in units of cells lies in; the nearest one outside of them.
+std::size_t cell_of(double coordinate, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(coordinate, 0.0, static_cast<double>(count - 1)));
+}
+
+/// Extents of triangles, to tell how much work there is for cells of some size.
+struct Extents {
+    double count = 0.0;
+    double sum = 0.0;      ///< m
+    double squares = 0.0;  ///< m^2
+
+    /// Marks for cells of an edge: no triangle needs more than the square of its cells along an axis.
+    [[nodiscard]] double marks(double cell) const { return count + 2.0 * sum / cell + squares / (cell * cell); }
+};
+
+Extents extents_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    const auto extent = [&](std::size_t t) {
+        Box3 box;
+        for (const std::uint32_t v : triangles[t]) box.include(vertices[v]);
+        return max_abs(box.size());
+    };
+    const auto sum_of = [&](const auto& term) {
+        return ordered_sum(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+            double sum = 0.0;
+            for (std::size_t t = begin; t < end; ++t) sum += term(extent(t));
+            return sum;
+        });
+    };
+    return {static_cast<double>(triangles.size()), sum_of([](double e) { return e; }),
+            sum_of([](double e) { return e * e; })};
+}
+
+std::array<Vec3, 3> with_longest_edge_first(const std::array<Vec3, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const double ab = length_squared(b - a);
+    const double bc = length_squared(c - b);
+    const double ca = length_squared(a - c);
+    if (ab >= bc && ab >= ca) return corners;
+    return bc >= ca ? std::array{b, c, a} : std::array{c, a, b};
+}
+
+}  // namespace
+
+DistanceField::DistanceField(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box)
+    : box_(box) {
+    if (triangles.empty()) return;
+    const Extents extents = extents_of(vertices, triangles);
+    const std::size_t most = std::clamp(kCellsPerTriangle * triangles.size(), kFewestCells, kMostCells);
+    choose_cells(most, [&](double cell) { return extents.marks(cell) <= kMostMarks * (extents.count + 1.0e6); });
+    if (cell_ == 0.0) return;
+    cells_.assign(count_[0] * count_[1] * count_[2], kFar);
+    parallel_for_blocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto in_cells = [&](std::uint32_t v) { return per_cell_ * (vertices[v] - box_.lower); };
+            mark({in_cells(triangles[t][0]), in_cells(triangles[t][1]), in_cells(triangles[t][2])});
+        }
+    });
+    spread();
+}
+
+// Next to their coordinates' rounding there are no cells.
+void DistanceField::choose_cells(std::size_t most, const std::function<bool(double cell)>& is_cheap) {
+    const Vec3 extent = box_.size();
+    const double smallest = kSmallestDistanceCell * max_abs(max(abs(box_.lower), abs(box_.upper)));
+    double cell = max_abs(extent) / kMostAlongAxis;
+    if (!(cell > 0.0)) return;
+    const auto cells = [&] {
+        return cells_along(extent.x, cell) * cells_along(extent.y, cell) * cells_along(extent.z, cell);
+    };
+    while (cells() > static_cast<double>(most) || !is_cheap(cell)) cell *= 1.0625;
+    if (!(cell > smallest)) return;
+    cell_ = cell;
+    per_cell_ = 1.0 / cell;
+    for (int axis = 0; axis < 3; ++axis) {
+        count_[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(cells_along(extent[axis], cell));
+    }
+}
+
+/// Marks the cells that a triangle, with corners in units of cells, may lie in: large ones in halves.
+void DistanceField::mark(const std::array<Vec3, 3>& corners) {
+    Box3 box;
+    for (const Vec3& corner : corners) box.include(corner);
+    if (max_abs(box.size()) <= 1.0) {
+        mark_cells_of(box);
+        return;
+    }
+    const auto [a, b, c] = with_longest_edge_first(corners);
+    const Vec3 middle = 0.5 * (a + b);
+    mark({a, middle, c});
+    mark({middle, b, c});
+}
+
+void DistanceField::mark_cells_of(const Box3& box) {
+    std::array<std::size_t, 3> first{};
+    std::array<std::size_t, 3> last{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<std::size_t>(axis);
+        first[k] = cell_of(box.lower[axis] - kDistanceFieldRounding, count_[k]);
+        last[k] = cell_of(box.upper[axis] + kDistanceFieldRounding, count_[k]);
+    }
+    for (std::size_t z = first[2]; z <= last[2]; ++z) {
+        for (std::size_t y = first[1]; y <= last[1]; ++y) {
+            for (std::size_t x = first[0]; x <= last[0]; ++x) {
+                const std::atomic_ref cell(cells_[index(x, y, z)]);
+                if (cell.load(std::memory_order_relaxed) != 0) cell.store(0, std::memory_order_relaxed);
+            }
+        }
+    }
+}
+
+// Two passes over the cells, each of which takes one more than the least of the neighbours that the pass has been to:
+// those of the rows before it, then the one before it in its own row.
+void DistanceField::spread() {
+    for (std::size_t z = 0; z < count_[2]; ++z) {
+        for (std::size_t y = 0; y < count_[1]; ++y) spread_rows(z, y, 1);
+    }
+    for (std::size_t z = count_[2]; z-- > 0;) {
+        for (std::size_t y = count_[1]; y-- > 0;) spread_rows(z, y, -1);
+    }
+}
+
+/// back: 1 when the rows of smaller numbers have been passed, -1 when those of larger ones.
+void DistanceField::spread_rows(std::size_t z, std::size_t y, int back) {
+    const std::size_t columns = count_[0];
+    std::uint8_t* row = &cells_[index(0, y, z)];
+    const auto one_more = [](std::uint8_t distance) {
+        return distance == kFar ? kFar : static_cast<std::uint8_t>(distance + 1);
+    };
+    const auto take = [&](std::size_t x, std::uint8_t distance) { row[x] = std::min(row[x], one_more(distance)); };
+    constexpr std::array<std::array<int, 2>, 4> kPassed{{{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}}};  // z, y
+    for (const auto& [dz, dy] : kPassed) {
+        const auto other_z = static_cast<std::ptrdiff_t>(z) + back * dz;
+        const auto other_y = static_cast<std::ptrdiff_t>(y) + back * dy;
+        if (other_z < 0 || other_y < 0 || other_z >= static_cast<std::ptrdiff_t>(count_[2]) ||
+            other_y >= static_cast<std::ptrdiff_t>(count_[1])) {
+            continue;
+        }
+        const std::uint8_t* other =
+            &cells_[index(0, static_cast<std::size_t>(other_y), static_cast<std::size_t>(other_z))];
+        for (std::size_t x = 0; x < columns; ++x) take(x, other[x]);
+        for (std::size_t x = 1; x < columns; ++x) take(x, other[x - 1]);
+        for (std::size_t x = 1; x < columns; ++x) take(x - 1, other[x]);
+    }
+    if (back > 0) {
+        for (std::size_t x = 1; x < columns; ++x) take(x, row[x - 1]);
+    } else {
+        for (std::size_t x = columns; x-- > 1;) take(x - 1, row[x]);
+    }
+}
+
+// Distances are largest differences of coordinates, which are at most the distance. A point outside the box is as far
+// from what is in it, along each axis, as the nearest point of the box, or further.
+double DistanceField::at(const Vec3& p) const {
+    if (cell_ == 0.0) return 0.0;
+    const Vec3 outside = max(box_.lower - p, p - box_.upper);
+    const double gap = std::max({outside.x, outside.y, outside.z}) * (1.0 - kDistanceFieldRounding);
+    const Vec3 place = per_cell_ * (p - box_.lower);
+    const std::size_t distance =
+        cells_[index(cell_of(place.x, count_[0]), cell_of(place.y, count_[1]), cell_of(place.z, count_[2]))];
+    const double cells = static_cast<double>(distance) - (1.0 + kDistanceFieldRounding);
+    return std::max({0.0, gap, cells * cell_});
+}
+
+}  // namespace ricochet

@@ -1,0 +1,366 @@
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "ricochet/core/hand_over.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/acceleration/embree.h"
+
+namespace ricochet {
+namespace {
+
+std::string& ray_library_settings() {
+    static std::string settings;
+    return settings;
+}
+
+/// Maps world doubles to the floats that the ray library sees: centred, and scaled by a power of two to about 1.
+struct FloatFrame {
+    Vec3 center;
+    double scale = 1.0;
+
+    [[nodiscard]] Vec3 apply(const Vec3& p) const { return scale * (p - center); }
+};
+
+/// Segments that reach further out than this (in units of the float frame, about the scene's half extent) are not
+/// clipped: the clipped point's own rounding could exceed the boxes' padding. Every triangle is proposed instead; that
+/// is rare, since such a segment must also point at the collider.
+constexpr double kFarAway = 0x1p20;
+
+/// Rays shorter than this have no direction in single precision.
+constexpr double kShortestRay = 0x1p-120;
+
+float round_down(double value) {
+    const auto f = static_cast<float>(value);
+    return static_cast<double>(f) <= value ? f : std::nextafterf(f, -std::numeric_limits<float>::infinity());
+}
+
+float round_up(double value) { return -round_down(-value); }
+
+FloatFrame frame_of(const Box3& box) {
+    FloatFrame frame;
+    if (box.empty()) return frame;
+    frame.center = box.center();
+    const double half_extent = 0.5 * max_abs(box.size());
+    if (half_extent > 0.0) frame.scale = std::ldexp(1.0, -std::ilogb(half_extent));
+    return frame;
+}
+
+Box3 grown(const Box3& box, double margin) {
+    const Vec3 by{margin, margin, margin};
+    return {box.lower - by, box.upper + by};
+}
+
+/// The part of a segment inside a box, as fractions; nothing when it misses the box.
+struct ClippedRange {
+    double begin;
+    double end;
+};
+
+std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const Box3& box) {
+    double begin = 0.0;
+    double end = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double delta = to[axis] - from[axis];
+        if (delta == 0.0) {
+            if (from[axis] < box.lower[axis] || from[axis] > box.upper[axis]) return std::nullopt;
+            continue;
+        }
+        const double t0 = (box.lower[axis] - from[axis]) / delta;
+        const double t1 = (box.upper[axis] - from[axis]) / delta;
+        begin = std::max(begin, std::min(t0, t1));
+        end = std::min(end, std::max(t0, t1));
+    }
+    if (begin > end) return std::nullopt;
+    return ClippedRange{begin, end};
+}
+
+/// One query on its way through the callbacks.
+struct Query {
+    void* context;
+    const std::vector<TriangleCluster>* clusters;
+    TriangleBvh::Visit visit = nullptr;           ///< this one or the next
+    TriangleBvh::VisitTube visit_tube = nullptr;  ///< triangles that the tube may touch
+    Tube tube = {};
+    double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
+    double ray_per_fraction = 0.0;  ///< ray length of the whole segment
+    double fraction_limit = 1.0;
+
+    /// Visits the triangles of a cluster; returns the narrowed fraction.
+    double look_at(const TriangleCluster& cluster);
+};
+
+double Query::look_at(const TriangleCluster& cluster) {
+    double limit = fraction_limit;
+    if (visit != nullptr) {
+        for (const std::uint32_t triangle : cluster.triangle) {
+            if (triangle != kNoTriangle) limit = std::min(limit, visit(context, triangle));
+        }
+        return limit;
+    }
+    TubeStretches stretches;
+    unsigned bits = cluster.near(tube, stretches);
+    for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        limit =
+            std::min(limit, visit_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
+    }
+    return limit;
+}
+
+/// A query for what is near a point, on its way through the callback.
+struct NearQuery {
+    void* context;
+    TriangleBvh::VisitNear visit;
+    const std::vector<TriangleCluster>* clusters;
+    double within;  ///< m, narrowed so far
+    double scale;   ///< of the float frame
+
+    [[nodiscard]] float radius() const;
+};
+
+/// Distances are compared as squares in single precision: some 8 roundings. The point itself is rounded to 2^-23 of its
+/// largest coordinate, which is within the boxes' padding plus as much of the distance. 2^-20 is plenty for both. An
+/// infinite radius would also reach the empty boxes that the ray library keeps; from a point that is not far away,
+/// everything is nearer than the largest one.
+float NearQuery::radius() const {
+    constexpr double kEverything = 4.0 * kFarAway;
+    return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
+}
+
+bool visit_near_cluster(RTCPointQueryFunctionArguments* args) {
+    auto& query = *static_cast<NearQuery*>(args->userPtr);
+    double limit = query.within;
+    for (const std::uint32_t triangle : (*query.clusters)[args->primID].triangle) {
+        if (triangle != kNoTriangle) limit = std::min(limit, std::max(query.visit(query.context, triangle), 0.0));
+    }
+    if (!(limit < query.within)) return false;
+    query.within = limit;
+    args->query->radius = std::min(args->query->radius, query.radius());
+    return true;
+}
+
+/// Largest distance of a point from a box along an axis, 0 inside: no more than its distance from the box.
+double gap_from(const Box3& box, const Vec3& p) {
+    const Vec3 outside = max(box.lower - p, p - box.upper);
+    return std::max({outside.x, outside.y, outside.z, 0.0});
+}
+
+/// Bytes that the ray library holds; its own threads count too.
+struct MemoryCount {
+    std::atomic<std::ptrdiff_t> bytes{0};
+    HandOver begun;
+    HandOver counted;
+
+    MemoryCount() { begun.give(); }
+    ~MemoryCount() { counted.take(); }
+    MemoryCount(const MemoryCount&) = delete;
+    MemoryCount& operator=(const MemoryCount&) = delete;
+};
+
+bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
+    auto& count = *static_cast<MemoryCount*>(user);
+    count.begun.take();
+    count.bytes.fetch_add(bytes, std::memory_order_relaxed);
+    count.counted.give();
+    return true;
+}
+
+}  // namespace
+
+struct TriangleBvh::Impl {
+    Clusters clusters;
+    double reach = 0.0;
+    double slack = 0.0;
+    FloatFrame frame;
+    double padding = 0.0;  ///< in the float frame: rounding, slack and reach
+    Box3 clip_box;         ///< world; generously larger than the padded boxes
+    MemoryCount memory;
+    embree::Device device;
+    embree::Scene scene;
+
+    /// What the ray library's threads are given while they build.
+    struct Build {
+        const Impl* impl;
+        LoopOrder order;  // after impl: it tells that impl was set before the loop
+    };
+
+    void build();
+    void set_frame();
+    void write_bounds(std::uint32_t number, RTCBounds& bounds) const;
+    void visit_all(Query& query) const;
+    void visit_segment(const Vec3& from, const Vec3& to, Query& query) const;
+    void ask_near(NearQuery& query, const Vec3& point) const;
+    void cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const;
+};
+
+void TriangleBvh::Impl::set_frame() {
+    Box3 box;
+    for (const TriangleCluster& cluster : *clusters) box.include(cluster.box());
+    frame = frame_of(box);
+    // Half extent H and a clipped segment of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
+    const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
+    slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
+    const double beside = frame.scale * (reach + slack);
+    padding = kBoxPaddingUnits * 0x1p-24 * (4.5 * half_extent + beside) + beside;
+    clip_box = grown(box, 2.0 * padding / frame.scale);
+}
+
+void TriangleBvh::Impl::write_bounds(std::uint32_t number, RTCBounds& bounds) const {
+    const Box3 world = (*clusters)[number].box();
+    const Box3 box{frame.apply(world.lower), frame.apply(world.upper)};
+    bounds.lower_x = round_down(box.lower.x - padding);
+    bounds.lower_y = round_down(box.lower.y - padding);
+    bounds.lower_z = round_down(box.lower.z - padding);
+    bounds.upper_x = round_up(box.upper.x + padding);
+    bounds.upper_y = round_up(box.upper.y + padding);
+    bounds.upper_z = round_up(box.upper.z + padding);
+}
+
+void TriangleBvh::Impl::build() {
+    set_frame();
+    device = embree::make_device(ray_library_settings());
+    rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
+    scene = embree::Scene(rtcNewScene(device.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters->size()));
+    rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* args) {
+            auto& build = *static_cast<Build*>(args->geometryUserPtr);
+            const LoopOrder::Body in_order(build.order);
+            build.impl->write_bounds(args->primID, *args->bounds_o);
+        },
+        nullptr);
+    rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
+        if (args->valid[0] == 0) return;
+        auto& query = *static_cast<Query*>(embree::user_of(args));
+        const double limit = query.look_at((*query.clusters)[args->primID]);
+        if (limit >= query.fraction_limit) return;
+        query.fraction_limit = limit;
+        // Rounded up generously: a shorter ray must still reach everything up to the limit.
+        const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
+        float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
+        tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
+    });
+    {
+        Build build{this, {}};
+        rtcSetGeometryUserData(geometry, &build);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene.get());
+    }
+    embree::check_device(device.get(), "building the hierarchy of a collider");
+}
+
+TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach)
+    : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), reach) {}
+
+TriangleBvh::TriangleBvh(Clusters clusters, double reach) : impl_(std::make_unique<Impl>()) {
+    impl_->clusters = std::move(clusters);
+    impl_->reach = reach;
+    if (!impl_->clusters->empty()) impl_->build();
+}
+TriangleBvh::~TriangleBvh() = default;
+TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
+TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
+
+double TriangleBvh::reach() const { return impl_->reach; }
+double TriangleBvh::slack() const { return impl_->slack; }
+std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.bytes.load()); }
+
+void TriangleBvh::Impl::visit_all(Query& query) const {
+    for (const TriangleCluster& cluster : *clusters) (void)query.look_at(cluster);
+}
+
+void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const {
+    embree::QueryContext context;
+    embree::init_context(context, &query);
+    RTCRayHit ray{};
+    ray.ray.org_x = static_cast<float>(begin.x);
+    ray.ray.org_y = static_cast<float>(begin.y);
+    ray.ray.org_z = static_cast<float>(begin.z);
+    ray.ray.dir_x = static_cast<float>(direction.x);
+    ray.ray.dir_y = static_cast<float>(direction.y);
+    ray.ray.dir_z = static_cast<float>(direction.z);
+    ray.ray.tnear = 0.0F;
+    ray.ray.tfar = round_up(ray_length * (1.0 + 0x1p-20)) + 0x1p-24F;
+    ray.ray.mask = 0xFFFFFFFFU;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect1(scene.get(), context, ray);
+}
+
+void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
+    Query query{context, impl_->clusters.get(), visitor};
+    impl_->visit_segment(from, to, query);
+}
+
+void TriangleBvh::visit_tube(const Tube& tube, void* context, VisitTube visitor) const {
+    Query query{context, impl_->clusters.get(), nullptr, visitor, tube};
+    impl_->visit_segment(tube.from, tube.from + tube.along, query);
+}
+
+void TriangleBvh::Impl::visit_segment(const Vec3& from, const Vec3& to, Query& query) const {
+    if (clusters->empty()) return;
+    const double far = std::max(max_abs(from - frame.center), max_abs(to - frame.center));
+    if (far * frame.scale > kFarAway) {
+        if (clip_to_box(from, to, grown(clip_box, far * 0x1p-45))) visit_all(query);
+        return;
+    }
+    const auto range = clip_to_box(from, to, clip_box);
+    if (!range) return;
+    const Vec3 delta = to - from;
+    const Vec3 along = frame.scale * delta;
+    query.clip_begin = range->begin;
+    query.ray_per_fraction = length(along);
+    // A segment too short for single precision is a point as far as boxes go.
+    const bool is_point = query.ray_per_fraction <= kShortestRay;
+    const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
+    const double ray_length = (range->end - range->begin) * query.ray_per_fraction;
+    cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
+}
+
+void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
+    RTCPointQuery around{};
+    around.x = static_cast<float>(point.x);
+    around.y = static_cast<float>(point.y);
+    around.z = static_cast<float>(point.z);
+    around.radius = query.radius();
+    embree::point_query1(scene.get(), around, visit_near_cluster, &query);
+}
+
+void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitNear visitor) const {
+    // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
+    // covered by the factor.
+    if (impl_->clusters->empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
+    const FloatFrame& frame = impl_->frame;
+    if (max_abs(p - frame.center) * frame.scale > kFarAway) {
+        for (const TriangleCluster& cluster : *impl_->clusters) {
+            for (const std::uint32_t triangle : cluster.triangle) {
+                if (triangle != kNoTriangle) (void)visitor(context, triangle);
+            }
+        }
+        return;
+    }
+    NearQuery query{context, visitor, impl_->clusters.get(), within, frame.scale};
+    impl_->ask_near(query, frame.apply(p));
+}
+
+void set_embree_settings(std::string settings) { ray_library_settings() = std::move(settings); }
+
+std::string embree_version() {
+    const embree::Device device = embree::make_device();
+    const auto version = rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_VERSION);
+    return "Embree " + std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+           std::to_string(version % 100);
+}
+
+}  // namespace ricochet

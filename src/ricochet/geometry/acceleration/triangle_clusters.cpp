@@ -1,0 +1,418 @@
+#include "ricochet/geometry/acceleration/triangle_clusters.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/core/morton.h"
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kBlock = 1 << 12;
+
+/// Half the largest extent of a cluster in its units, at most.
+constexpr float kExtent = 0x1p15F;
+
+/// Units by which a corner may lie beside where its whole numbers say: half of one along each axis, and one at the
+/// largest number, which is no power of two.
+constexpr double kCornerRounding = 2.0;
+
+/// Of the height of a point above a triangle's plane, times the length of its normal, in single precision: some sixty
+/// roundings of 2^-24 of edges that are no longer than two extents.
+constexpr float kRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
+
+/// Of twice the area that two points and a place span as seen along a way, in squares of what all of them are within:
+/// some thirty roundings of 2^-24.
+constexpr float kViewRounding = 0x1p-18F;
+
+/// A shorter direction is none: its reciprocal would leave the range of doubles.
+constexpr double kShortestDirection = 1e-290;
+
+/// Of a fraction that is a quotient of such numbers.
+constexpr float kFractionRounding = 0x1p-20F;
+
+/// 1/m: the square of a shorter segment's length would leave the range of doubles. It counts as a point, all of which
+/// is looked at.
+constexpr double kMostPerLength = 1e140;
+
+/// What a cluster costs in memory and time beside what its box's surface costs, in surfaces of the mean triangle's box.
+/// Next to each other along the curve need not be next to each other in space, so full clusters are not the best ones.
+constexpr double kCostOfCluster = 2.0;
+
+// Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
+using Quad = float __attribute__((vector_size(16)));
+using Mask = int __attribute__((vector_size(16)));
+
+struct QuadVec {
+    Quad x;
+    Quad y;
+    Quad z;
+};
+
+// Each number into the upper half of a wider one and down again with its sign: what all 64-bit processors do in three
+// instructions.
+Quad loaded(const TriangleCluster::Lanes& lanes) {
+    using Numbers = std::int16_t __attribute__((vector_size(16)));
+    const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
+    const Numbers doubled = __builtin_shufflevector(numbers, numbers, 0, 0, 1, 1, 2, 2, 3, 3);
+    return __builtin_convertvector(std::bit_cast<Mask>(doubled) >> 16, Quad);
+}
+
+QuadVec operator-(const QuadVec& a, const QuadVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+QuadVec cross(const QuadVec& a, const QuadVec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Quad dot(const QuadVec& a, const QuadVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+Quad dot(const QuadVec& a, const std::array<float, 3>& b) { return a.x * b[0] + a.y * b[1] + a.z * b[2]; }
+
+Quad abs(const Quad& a) { return std::bit_cast<Quad>(std::bit_cast<Mask>(a) & 0x7FFFFFFF); }
+
+Quad min(const Quad& a, const Quad& b) { return a < b ? a : b; }
+
+Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
+
+/// |x| + |y| + |z|, at least the length and at most sqrt(3) of it.
+Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+
+/// The chord of the part of a way that passes by a cluster, in the cluster's units.
+struct LocalSegment {
+    double begin;  ///< fractions of the whole way
+    double end;
+    Vec3 place;  ///< of the beginning, from the centre
+    Vec3 chord;
+    double width;               ///< margin
+    std::array<float, 3> from;  ///< the same in single precision
+    std::array<float, 3> along;
+    float margin;
+    float reach;  ///< at least the size of all numbers here and of differences to the corners
+};
+
+/// What else rounding does to the margin here is far below the bounds' own.
+constexpr double kMarginRounding = 1.0 + 0x1p-20;
+
+/// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part
+/// is empty (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square
+/// of its share.
+LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
+    LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
+    const Vec3 offset = cluster.center - tube.from;
+    if (tube.per_length < kMostPerLength) {
+        const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
+        const double margin = (tube.margin + tube.sagitta) * kMarginRounding;
+        const double half = (2.0 * kExtent / cluster.per_unit + margin) * tube.per_length;
+        local.begin = std::max(0.0, middle - half);
+        local.end = std::min(1.0, middle + half);
+    }
+    const double share = local.end - local.begin;
+    const Vec3 begin = tube.offset(local.begin);
+    const Vec3 from = local.place = cluster.per_unit * (begin - offset);
+    const Vec3 along = local.chord = cluster.per_unit * (tube.offset(local.end) - begin);
+    const double margin = tube.margin + share * share * tube.sagitta;
+    local.width = kCornerRounding + cluster.per_unit * margin * kMarginRounding;
+    local.margin = static_cast<float>(local.width);
+    local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
+    local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
+    local.reach = 2.0F * kExtent + static_cast<float>(max_abs(from) + max_abs(along));
+    return local;
+}
+
+/// The other axes, as seen along a shear whose axis is kAhead.
+template <int kAhead>
+struct Seen {
+    static constexpr int kRight = (kAhead + 1) % 3;
+    static constexpr int kUp = (kAhead + 2) % 3;
+};
+
+/// A way as it looks along itself from a cluster's centre, in the cluster's units: a place.
+struct View {
+    float right;  ///< of the shear
+    float up;
+    float x;  ///< to the right
+    float y;  ///< up
+    float margin;
+    float reach;  ///< at least the size of all numbers here and of differences to the corners
+};
+
+/// Along the shear, through a place relative to the cluster's centre and up to `extent` beyond.
+template <int kAhead>
+View view_through(const Vec3& place, const Shear& shear, double margin, float extent) {
+    using Axes = Seen<kAhead>;
+    View view{static_cast<float>(shear.right),
+              static_cast<float>(shear.up),
+              static_cast<float>(place[Axes::kRight] - shear.right * place[kAhead]),
+              static_cast<float>(place[Axes::kUp] - shear.up * place[kAhead]),
+              static_cast<float>(margin * (shear.stretch * kMarginRounding)),
+              0.0F};
+    view.reach = 4.0F * kExtent + view.margin + std::fabs(view.x) + std::fabs(view.y) + extent;
+    return view;
+}
+
+bool is_empty(const Mask& mask) {
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask);
+    return (halves[0] | halves[1]) == 0;
+}
+
+struct QuadPlace {
+    Quad x;
+    Quad y;
+};
+
+/// Twice the area that a place, the origin, and an edge span, and by how much it must differ from 0 for the place to be
+/// certainly more than the margin on one side of the edge.
+struct Beside {
+    Quad area;
+    Quad bound;
+};
+
+Beside beside(const QuadPlace& from, const QuadPlace& to, const View& view, float rounding) {
+    const Quad length = abs(to.x - from.x) + abs(to.y - from.y);
+    return {from.x * to.y - from.y * to.x, view.margin * length + rounding};
+}
+
+template <int kAxis>
+const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& cluster) {
+    return kAxis == 0 ? cluster.x : (kAxis == 1 ? cluster.y : cluster.z);
+}
+
+// A triangle as seen along the way is away from the way's place when the place is certainly beyond one of its edges, or
+// of its box. Which way round the triangle's corners are seen does not matter: the areas add up to that of the
+// triangle, so beyond an edge one has the sign that the other two do not have. A triangle that is seen as a line has
+// its box.
+template <int kAhead>
+Mask in_view(const TriangleCluster& cluster, const View& view) {
+    using Axes = Seen<kAhead>;
+    std::array<QuadPlace, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Quad depth = loaded(coordinates<kAhead>(cluster)[k]);
+        corner[k].x = loaded(coordinates<Axes::kRight>(cluster)[k]) - view.right * depth - view.x;
+        corner[k].y = loaded(coordinates<Axes::kUp>(cluster)[k]) - view.up * depth - view.y;
+    }
+    const auto& [a, b, c] = corner;
+    const float rounding = kViewRounding * view.reach * view.reach;
+    const Beside ab = beside(a, b, view, rounding);
+    const Beside bc = beside(b, c, view, rounding);
+    const Beside ca = beside(c, a, view, rounding);
+    const Quad none{};
+    const Mask beyond = (min(min(ab.area + ab.bound, bc.area + bc.bound), ca.area + ca.bound) < none) &
+                        (max(max(ab.area - ab.bound, bc.area - bc.bound), ca.area - ca.bound) > none);
+    const float near = view.margin + kViewRounding * view.reach;
+    const Mask beside_box = (min(min(a.x, b.x), c.x) > near) | (max(max(a.x, b.x), c.x) < -near) |
+                            (min(min(a.y, b.y), c.y) > near) | (max(max(a.y, b.y), c.y) < -near);
+    return ~(beyond | beside_box);
+}
+
+/// The lanes that may be near a way that goes along the shear. Straight ways need not be cut first: their whole line is
+/// one place.
+Mask lanes_in_view(const TriangleCluster& cluster, const Vec3& place, const Shear& shear, double margin, float extent) {
+    switch (shear.ahead) {
+        case 0:
+            return in_view<0>(cluster, view_through<0>(place, shear, margin, extent));
+        case 1:
+            return in_view<1>(cluster, view_through<1>(place, shear, margin, extent));
+        default:
+            return in_view<2>(cluster, view_through<2>(place, shear, margin, extent));
+    }
+}
+
+// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. Everything is
+// compared without dividing by the normal's length, so slivers only make the bound larger.
+unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& seen,
+                    TubeStretches& stretches) {
+    const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
+    const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
+    const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
+    const QuadVec normal = cross(ab, ac);
+    const float rounding = kRounding * segment.reach;
+    const Quad bound = segment.margin * size_of(normal) + rounding;
+    const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
+    const Quad height = dot(normal, start);
+    const Quad slope = dot(normal, segment.along);
+    const Quad per_slope = 1.0F / slope;
+    const Quad first = (-bound - height) * per_slope;
+    const Quad second = (bound - height) * per_slope;
+    const Quad none{};
+    const Quad lower = min(first, second);
+    const Quad upper = max(first, second);
+    // A slope that is rounding says nothing about where.
+    const Mask is_level = abs(slope) <= rounding;
+    const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
+    const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);
+    const Mask near = seen & (is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave);
+    const double span = segment.end - segment.begin;
+    unsigned bits = 0;
+    for (unsigned lane = 0; lane < 4; ++lane) {
+        if (near[lane] == 0 || cluster.triangle[lane] == kNoTriangle) continue;
+        bits |= 1U << lane;
+        stretches.enter[lane] = segment.begin + static_cast<double>(enter[lane]) * span;
+        stretches.leave[lane] = segment.begin + static_cast<double>(leave[lane]) * span;
+    }
+    return bits;
+}
+
+Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {
+    Box3 box;
+    for (const std::uint32_t v : triangle) box.include(vertices[v]);
+    return box;
+}
+
+std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    Box3 box;
+    for (const Triangle& t : triangles) {
+        for (const std::uint32_t v : t) box.include(vertices[v]);
+    }
+    const auto bits = static_cast<unsigned>(std::bit_width(triangles.size()));
+    std::vector<std::uint64_t> keys(triangles.size());
+    parallel_for_blocks(keys.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const Vec3 center = box_of(vertices, triangles[t]).center();
+            keys[t] = morton_key(center, box, static_cast<std::uint32_t>(t), bits);
+        }
+    });
+    parallel_sort(keys);
+    std::vector<std::uint32_t> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(), [&](std::uint64_t key) { return index_of_key(key, bits); });
+    return order;
+}
+
+std::int16_t nearest_number(double x) { return static_cast<std::int16_t>(std::min(std::lrint(x), 32767L)); }
+
+TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                           std::span<const std::uint32_t> members) {
+    Box3 box;
+    for (const std::uint32_t triangle : members) box.include(box_of(vertices, triangles[triangle]));
+    TriangleCluster cluster;
+    cluster.center = box.center();
+    const double extent = max_abs(box.size());
+    if (extent > 0.0) cluster.per_unit = 2.0 * kExtent * std::ldexp(1.0, -std::ilogb(extent) - 1);
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        const bool is_there = lane < members.size();
+        const std::uint32_t triangle = members[is_there ? lane : 0];
+        cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 corner = cluster.per_unit * (vertices[triangles[triangle][k]] - cluster.center);
+            cluster.x[k][lane] = nearest_number(corner.x);
+            cluster.y[k][lane] = nearest_number(corner.y);
+            cluster.z[k][lane] = nearest_number(corner.z);
+        }
+    }
+    return cluster;
+}
+
+/// Half the surface of a box, m^2: the share of random lines that meet it goes by the surface.
+double half_area(const Box3& box) {
+    const Vec3 size = box.size();
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/// Where clusters end along a stretch of the order, given the triangles' boxes, such that the sum of their costs is
+/// least: dynamic programming over what the last cluster of a beginning holds.
+std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
+    double area = 0.0;
+    for (const Box3& box : boxes) area += half_area(box);
+    const double each = kCostOfCluster * area / static_cast<double>(boxes.size());
+    std::vector<double> least(boxes.size() + 1, 0.0);
+    std::vector<std::uint32_t> members(boxes.size() + 1, 1);
+    for (std::uint32_t end = 1; end <= boxes.size(); ++end) {
+        least[end] = std::numeric_limits<double>::infinity();
+        Box3 box;
+        for (std::uint32_t count = 1; count <= std::min(4U, end); ++count) {
+            box.include(boxes[end - count]);
+            const double cost = least[end - count] + half_area(box) + each;
+            if (cost > least[end]) continue;
+            least[end] = cost;
+            members[end] = count;
+        }
+    }
+    std::vector<std::uint32_t> ends;
+    for (auto end = static_cast<std::uint32_t>(boxes.size()); end > 0; end -= members[end]) ends.push_back(end);
+    std::reverse(ends.begin(), ends.end());
+    return ends;
+}
+
+/// A block of the order and where its clusters end in it.
+struct Stretch {
+    std::span<const std::uint32_t> triangles;
+    std::vector<std::uint32_t> ends;
+    std::size_t first = 0;  ///< number of its first cluster
+};
+
+std::vector<Stretch> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                            std::span<const std::uint32_t> order) {
+    std::vector<Stretch> stretches((order.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(order.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        const auto members = order.subspan(begin, end - begin);
+        std::vector<Box3> boxes;
+        boxes.reserve(members.size());
+        for (const std::uint32_t triangle : members) boxes.push_back(box_of(vertices, triangles[triangle]));
+        stretches[block] = {members, cluster_ends(boxes)};
+    });
+    for (std::size_t k = 1; k < stretches.size(); ++k) {
+        stretches[k].first = stretches[k - 1].first + stretches[k - 1].ends.size();
+    }
+    return stretches;
+}
+
+}  // namespace
+
+Shear::Shear(const Vec3& direction) {
+    const Vec3 size = abs(direction);
+    ahead = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    if (!(size[ahead] > kShortestDirection)) return;
+    right = direction[(ahead + 1) % 3] / direction[ahead];
+    up = direction[(ahead + 2) % 3] / direction[ahead];
+    stretch = std::sqrt(1.0 + right * right + up * up);
+}
+
+unsigned TriangleCluster::near(const Tube& tube, TubeStretches& stretches) const {
+    if (tube.is_straight) {
+        const Vec3 place = per_unit * (tube.from - center);
+        const Mask seen = lanes_in_view(*this, place, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
+        if (is_empty(seen)) return 0;
+        const LocalSegment segment = localized(*this, tube);
+        return segment.begin > segment.end ? 0 : near_lanes(*this, segment, seen, stretches);
+    }
+    const LocalSegment segment = localized(*this, tube);
+    if (segment.begin > segment.end) return 0;
+    const Shear shear(segment.chord);
+    const Mask seen = lanes_in_view(*this, segment.place, shear, segment.width, segment.reach);
+    return is_empty(seen) ? 0 : near_lanes(*this, segment, seen, stretches);
+}
+
+Box3 TriangleCluster::box() const {
+    const double unit = 1.0 / per_unit;
+    Box3 result;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 corner{static_cast<double>(x[k][lane]), static_cast<double>(y[k][lane]),
+                              static_cast<double>(z[k][lane])};
+            result.include(center + unit * corner);
+        }
+    }
+    const double rounding = kCornerRounding * unit;
+    const Vec3 by{rounding, rounding, rounding};
+    return {result.lower - by, result.upper + by};
+}
+
+std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    const std::vector<std::uint32_t> order = in_spatial_order(vertices, triangles);
+    const std::vector<Stretch> stretches = divide(vertices, triangles, order);
+    if (stretches.empty()) return {};
+    std::vector<TriangleCluster> clusters(stretches.back().first + stretches.back().ends.size());
+    parallel_for_blocks(stretches.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+        const auto& [members, ends, first] = stretches[k];
+        std::size_t begin = 0;
+        for (std::size_t c = 0; c < ends.size(); ++c) {
+            clusters[first + c] = cluster_of(vertices, triangles, members.subspan(begin, ends[c] - begin));
+            begin = ends[c];
+        }
+    });
+    return clusters;
+}
+
+}  // namespace ricochet

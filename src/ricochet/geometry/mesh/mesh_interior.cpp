@@ -1,0 +1,92 @@
+#include "ricochet/geometry/mesh/mesh_interior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/geometry/predicates/orient2d.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kMostCells = 1024.0;  // along either axis: a million columns are enough for any mesh
+
+Point2 flat(const Vec3& p) { return {p.x, p.y}; }
+
+// True when the horizontal ray to the right of the moved point p crosses the edge from a to b, seen from above.
+bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
+    const bool a_is_above = a.y > p.y;  // p counts as moved up, so what is level with it is below
+    if (a_is_above == (b.y > p.y)) return false;
+    const Vec3& low = a_is_above ? b : a;
+    const Vec3& high = a_is_above ? a : b;
+    int turn = orient2d(flat(low), flat(high), flat(p));  // +1: p is on the left
+    if (turn == 0) turn = high.x > low.x ? 1 : (high.x < low.x ? -1 : 0);
+    return turn > 0;  // on a vertical edge the move to the right decides: p is not on the left
+}
+
+// True when the ray upwards from the moved point crosses the triangle.
+bool is_crossed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
+    if (!covers) return false;
+    const int turn = orient2d(flat(a), flat(b), flat(c));
+    return turn != 0 && orient3d(a, b, c, p) == -turn;  // the normal's z has the sign of the turn
+}
+
+bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    Box3 box;
+    for (const Vec3& corner : {a, b, c}) box.include(corner);
+    return box.contains(p) && point_on_triangle(p, a, b, c);
+}
+
+}  // namespace
+
+MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
+    cells_ =
+        static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMostCells));
+    fill_columns();
+}
+
+// Monotone in the value, so that a point's column lies within those of every triangle above or below it.
+std::size_t MeshInterior::cell_of(double value, int axis) const {
+    const double width = box_.upper[axis] - box_.lower[axis];
+    if (!(width > 0.0)) return 0;
+    const double cell = (value - box_.lower[axis]) / width * static_cast<double>(cells_);
+    return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(cells_ - 1)));
+}
+
+void MeshInterior::fill_columns() {
+    column_begin_.assign(cells_ * cells_ + 1, 0);
+    const auto for_each_column = [&](const Triangle& t, auto&& use) {
+        Box3 box;
+        for (const std::uint32_t v : t) box.include(mesh_->vertices[v]);
+        for (std::size_t y = cell_of(box.lower.y, 1); y <= cell_of(box.upper.y, 1); ++y) {
+            for (std::size_t x = cell_of(box.lower.x, 0); x <= cell_of(box.upper.x, 0); ++x) use(y * cells_ + x);
+        }
+    };
+    for (const Triangle& t : mesh_->triangles) for_each_column(t, [&](std::size_t k) { ++column_begin_[k + 1]; });
+    for (std::size_t k = 1; k < column_begin_.size(); ++k) column_begin_[k] += column_begin_[k - 1];
+    column_triangles_.resize(column_begin_.back());
+    std::vector<std::uint32_t> next(column_begin_.begin(), column_begin_.end() - 1);
+    for (std::size_t t = 0; t < mesh_->triangles.size(); ++t) {
+        for_each_column(mesh_->triangles[t],
+                        [&](std::size_t k) { column_triangles_[next[k]++] = static_cast<std::uint32_t>(t); });
+    }
+}
+
+bool MeshInterior::contains(const Vec3& point) const {
+    if (!is_finite(point) || !box_.contains(point)) return false;
+    const std::size_t column = cell_of(point.y, 1) * cells_ + cell_of(point.x, 0);
+    bool inside = false;
+    for (std::uint32_t k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
+        const Triangle& t = mesh_->triangles[column_triangles_[k]];
+        const Vec3& a = mesh_->vertices[t[0]];
+        const Vec3& b = mesh_->vertices[t[1]];
+        const Vec3& c = mesh_->vertices[t[2]];
+        if (is_on(a, b, c, point)) return false;
+        if (is_crossed(a, b, c, point)) inside = !inside;
+    }
+    return inside;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,42 @@
+/// \file
+/// Inside or outside of a closed mesh, exactly, for many points of one mesh.
+///
+/// Method: crossings of the ray upwards (along z) from the point are counted. The point counts as moved by an
+/// infinitesimal amount along y and a still smaller one along x (symbolic perturbation: H. Edelsbrunner, E. P. Muecke,
+/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so the ray meets neither edges nor vertices, and
+/// neighbouring triangles agree about the edge between them. Signs come from the exact predicates.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Answers for one mesh, safe from any number of threads. Means something for meshes without open edges only
+/// (TopologyReport::closed). A place inside an even number of nested shells is outside.
+class MeshInterior {
+public:
+    explicit MeshInterior(std::shared_ptr<const TriangleMesh> mesh);
+
+    /// Exact; false for a place on the surface itself.
+    [[nodiscard]] bool contains(const Vec3& point) const;
+    [[nodiscard]] const Box3& box() const { return box_; }
+
+private:
+    [[nodiscard]] std::size_t cell_of(double value, int axis) const;
+    void fill_columns();
+
+    std::shared_ptr<const TriangleMesh> mesh_;
+    Box3 box_;
+    std::size_t cells_ = 1;  // columns along x and y each
+    std::vector<std::uint32_t> column_begin_;
+    std::vector<std::uint32_t> column_triangles_;
+};
+
+}  // namespace ricochet

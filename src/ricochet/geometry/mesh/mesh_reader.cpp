@@ -1,0 +1,97 @@
+#include "ricochet/geometry/mesh/mesh_reader.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "ricochet/geometry/mesh/mesh_format.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
+#include "ricochet/geometry/mesh/obj_reader.h"
+#include "ricochet/geometry/mesh/off_reader.h"
+#include "ricochet/geometry/mesh/ply_header.h"
+#include "ricochet/geometry/mesh/ply_reader.h"
+#include "ricochet/geometry/mesh/stl_reader.h"
+#include "ricochet/geometry/mesh/triangulation.h"
+
+namespace ricochet {
+namespace {
+
+// A signature in the content outweighs the name; without one the extension decides.
+std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesystem::path& path) {
+    if (looks_like_ply(source)) return MeshFormat::kPly;
+    if (has_binary_stl_size(source) || starts_with_solid(source)) return MeshFormat::kStl;
+    if (looks_like_off(source)) return MeshFormat::kOff;
+    if (const std::optional<MeshFormat> by_name = mesh_format_of(path)) return by_name;
+    if (looks_like_obj(source)) return MeshFormat::kObj;
+    return std::nullopt;
+}
+
+ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path) {
+    const std::optional<MeshFormat> format = format_of(source, path);
+    if (!format) source.fail("unknown mesh format, expected an OBJ, PLY, STL or OFF file");
+    switch (*format) {
+        case MeshFormat::kObj:
+            return read_obj(source);
+        case MeshFormat::kPly:
+            return read_ply(source);
+        case MeshFormat::kStl:
+            return read_stl(source);
+        case MeshFormat::kOff:
+            break;
+    }
+    return read_off(source);
+}
+
+ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view bytes) {
+    const MeshSource source{path.string(), bytes};
+    if (bytes.empty()) source.fail("empty file, expected an OBJ, PLY, STL or OFF mesh");
+    ParsedMesh parsed = parse(source, path);
+    if (parsed.polygons.face_count() == 0) {
+        source.fail(fmt::format("no faces ({} vertices), expected a surface that particles can hit",
+                                parsed.polygons.vertices.size()));
+    }
+    return parsed;
+}
+
+// Frees what collisions do not need, the triangles' own memory being taken already.
+void keep_triangles(ImportedMesh& imported) {
+    imported.mesh.vertices = std::move(imported.polygons.vertices);
+    imported.polygons.vertices = {};
+    imported.polygons.corners = {};
+    imported.polygons.face_offsets = {};
+    if (imported.polygons.face_groups.empty()) imported.triangle_face = {};
+}
+
+ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
+    ImportedMesh result;
+    result.polygons = std::move(parsed.polygons);
+    result.format = std::move(parsed.format);
+    result.weld = parsed.weld;
+    Triangulation triangulation = triangulate(result.polygons);
+    result.mesh.triangles = std::move(triangulation.triangles);
+    result.triangle_face = std::move(triangulation.triangle_face);
+    result.faces_with_repeated_corners = triangulation.faces_with_repeated_corners;
+    result.crossing_faces = triangulation.crossing_faces;
+    if (content == MeshContent::everything) {
+        result.mesh.vertices = result.polygons.vertices;
+    } else {
+        keep_triangles(result);
+    }
+    return result;
+}
+
+}  // namespace
+
+ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
+    ParsedMesh parsed = [&path] {
+        const FileBytes bytes = read_regular_file(path);
+        return parse_checked(path, bytes.view());
+    }();  // the file's bytes are gone before the triangles are made
+    return finish(std::move(parsed), content);
+}
+
+ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes, MeshContent content) {
+    return finish(parse_checked(name, bytes), content);
+}
+
+}  // namespace ricochet

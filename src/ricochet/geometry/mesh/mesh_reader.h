@@ -1,0 +1,71 @@
+/// \file
+/// Strict mesh import: OBJ, PLY, STL and OFF in double precision.
+///
+/// A file is read completely or refused; nothing is skipped in silence. Only the named file is opened (no material
+/// libraries). Memory is bounded by a small multiple of the file's size, whatever counts its header promises. There is
+/// no shared state: any number of files can be read at the same time.
+///
+/// Formats (sources: the OBJ appendix B1 of the Advanced Visualizer manual; G. Turk's PLY description; 3D Systems' STL
+/// description; the Geomview manual's OFF page):
+///  - OBJ: v (x y z, with w or colours after them, which are not used), f with any number of corners and v, v/t, v//n,
+///    v/t/n, negative indices, continuation lines; texture coordinates, normals, points, lines and render settings are
+///    ignored; free-form curves and surfaces, `call` and `csh` are refused.
+///  - PLY: ASCII and both binary byte orders, elements and properties in any order, unknown ones skipped, faces as
+///    vertex_indices or vertex_index lists, triangle strips.
+///  - STL: ASCII (several solids too) and binary, told apart by size. Corners with equal coordinates become one vertex.
+///  - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used); 4OFF, nOFF and binary OFF are
+///    refused.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+
+namespace ricochet {
+
+/// What joining the separate facets of an STL file did. Corners are joined when their coordinates are equal (0 and -0
+/// too), never when they are only close.
+struct WeldReport {
+    std::size_t corners = 0;   ///< facet corners in the file
+    std::size_t vertices = 0;  ///< different positions among them
+};
+
+/// A mesh file's contents.
+struct ImportedMesh {
+    PolygonMesh polygons;                      ///< faces as the file lists them
+    TriangleMesh mesh;                         ///< the collision mesh: every face, triangulated, none dropped
+    std::vector<std::uint32_t> triangle_face;  ///< for every triangle the face it is a part of
+    std::string format;                        ///< for example "OBJ" or "PLY, binary little endian"
+    std::optional<WeldReport> weld;            ///< STL only
+    std::size_t faces_with_repeated_corners =
+        0;                           ///< faces that name a vertex twice; they are kept (see triangulation.h)
+    std::size_t crossing_faces = 0;  ///< polygons whose outline crosses itself; kept (see triangulation.h)
+};
+
+/// How much of a file is kept once it is read.
+enum class MeshContent : std::uint8_t {
+    everything,
+    /// What collisions need: `mesh`, and the groups. The polygons' vertices, corners and offsets are empty, and so is
+    /// `triangle_face` where the file names no groups. Takes about half the memory.
+    triangles,
+};
+
+/// Reads a mesh file. The format is that of the content where it has a signature (PLY, OFF, STL), of the extension
+/// otherwise. Coordinates smaller than kSmallestExactCoordinate (predicates.h) become zero.
+/// Throws InputError "path:line: what is wrong" for text, "path: byte N: what is wrong" for binary data, "path: what is
+/// wrong" for the file as a whole: not a regular file, unknown format, any statement that cannot be understood, counts
+/// that do not agree with the data, numbers that are not finite or larger than kLargestCoordinate (tolerances.h),
+/// indices out of range, no faces.
+[[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content = MeshContent::everything);
+
+/// The same for a file that is in memory already. The name is used in messages, and its extension as read_mesh does.
+[[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes,
+                                     MeshContent content = MeshContent::everything);
+
+}  // namespace ricochet

@@ -1,0 +1,139 @@
+#include "ricochet/geometry/mesh/mesh_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "ricochet/geometry/mesh/self_intersection.h"
+
+namespace ricochet {
+namespace {
+
+std::size_t count_degenerate(const TriangleMesh& mesh) {
+    const auto without_area = [&mesh](const Triangle& t) {
+        return is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    };
+    return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), without_area));
+}
+
+// "1 edge is", "2 edges are".
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) {
+    const TopologyReport& topology = report.topology;
+    if (topology.closed) return;
+    warnings.push_back(fmt::format("open surface, {} in {}: particles pass through the openings",
+                                   counted(topology.boundary_edges, "boundary edge", "boundary edges"),
+                                   counted(topology.boundary_loops, "loop", "loops")));
+    if (report.weld) {
+        warnings.push_back(
+            "STL corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
+            "wide "
+            "as the difference, through which particles can pass");
+    }
+}
+
+void warn_of_nonmanifold_places(const TopologyReport& topology, std::vector<std::string>& warnings) {
+    if (topology.nonmanifold_edges > 0) {
+        warnings.push_back(
+            fmt::format("{} three faces or more: every face stops particles, so nothing leaks, but inside "
+                        "and outside may not be told apart there",
+                        counted(topology.nonmanifold_edges, "edge belongs to", "edges belong to")));
+    }
+    if (topology.nonmanifold_vertices > 0) {
+        warnings.push_back(
+            fmt::format("{} parts of the surface that share no edge there: nothing leaks through a single point",
+                        counted(topology.nonmanifold_vertices, "vertex joins", "vertices join")));
+    }
+}
+
+void warn_of_orientation(const MeshReport& report, std::vector<std::string>& warnings) {
+    if (!report.topology.consistently_oriented) {
+        warnings.push_back(
+            fmt::format("inconsistent winding along {}: faces stop particles from both sides, so nothing leaks, but "
+                        "normals and the "
+                        "volume cannot be trusted",
+                        counted(report.topology.inconsistent_edges, "edge", "edges")));
+    }
+    if (report.wound_inward) {
+        warnings.push_back(
+            "the faces are wound so that their normals point inward: faces stop particles from both sides, so nothing "
+            "leaks");
+    }
+}
+
+void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warnings) {
+    if (report.degenerate_triangles > 0) {
+        warnings.push_back(fmt::format("{} no area and cannot be hit: nothing leaks where neighbours share the edges",
+                                       counted(report.degenerate_triangles, "triangle has", "triangles have")));
+    }
+    if (report.faces_with_repeated_corners > 0) {
+        warnings.push_back(fmt::format("{} a vertex more than once: repeated neighbours count once, nothing leaks",
+                                       counted(report.faces_with_repeated_corners, "face names", "faces name")));
+    }
+    if (report.crossing_faces > 0) {
+        warnings.push_back(fmt::format(
+            "{} an outline that crosses itself: its triangles cover all of it, so nothing leaks, but they overlap",
+            counted(report.crossing_faces, "face has", "faces have")));
+    }
+    if (report.duplicate_faces > 0) {
+        warnings.push_back(
+            fmt::format("{} an earlier face: nothing leaks, but inside and outside may not be told apart",
+                        counted(report.duplicate_faces, "face repeats", "faces repeat")));
+    }
+}
+
+void warn_of_self_intersections(const MeshReport& report, std::vector<std::string>& warnings) {
+    if (report.self_intersections == 0) return;
+    warnings.push_back(
+        fmt::format("{} or cross each other: every triangle stops particles, so nothing leaks, but where parts overlap "
+                    "the volume counts "
+                    "twice",
+                    counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
+}
+
+std::vector<std::string> warnings_for(const MeshReport& report) {
+    std::vector<std::string> warnings;
+    warn_of_gaps(report, warnings);
+    warn_of_nonmanifold_places(report.topology, warnings);
+    warn_of_orientation(report, warnings);
+    warn_of_odd_faces(report, warnings);
+    warn_of_self_intersections(report, warnings);
+    if (report.topology.unused_vertices > 0) {
+        warnings.push_back(fmt::format("{} to no face: ignored, nothing leaks",
+                                       counted(report.topology.unused_vertices, "vertex belongs", "vertices belong")));
+    }
+    return warnings;
+}
+
+}  // namespace
+
+MeshReport report_on(const ImportedMesh& imported) {
+    MeshReport report;
+    report.format = imported.format;
+    report.vertices = imported.polygons.vertices.size();
+    report.faces = imported.polygons.face_count();
+    report.triangles = imported.mesh.triangles.size();
+    report.bounds = bounds(imported.mesh);
+    report.area = surface_area(imported.mesh);
+    report.topology = MeshTopology(imported.mesh).report();
+    report.duplicate_faces = count_duplicate_faces(imported.polygons);
+    if (report.topology.closed) {
+        const double volume = signed_volume(imported.mesh);
+        report.volume = std::fabs(volume);
+        report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
+    }
+    report.degenerate_triangles = count_degenerate(imported.mesh);
+    report.self_intersections = count_self_intersections(imported.mesh);
+    report.faces_with_repeated_corners = imported.faces_with_repeated_corners;
+    report.crossing_faces = imported.crossing_faces;
+    report.weld = imported.weld;
+    report.warnings = warnings_for(report);
+    return report;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,39 @@
+/// \file
+/// What is to be known about an imported mesh before particles are let loose on it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+
+namespace ricochet {
+
+/// Sizes, topology and defects of a mesh file.
+struct MeshReport {
+    std::string format;
+    std::size_t vertices = 0;              ///< in the file, used or not
+    std::size_t faces = 0;                 ///< as the file lists them
+    std::size_t triangles = 0;             ///< of the collision mesh
+    Box3 bounds;                           ///< of the triangles, m
+    double area = 0.0;                     ///< m^2
+    std::optional<double> volume;          ///< enclosed volume, m^3, not negative; nothing when the surface is open
+    bool wound_inward = false;             ///< closed, and the faces' normals point to the inside
+    TopologyReport topology;               ///< of the collision mesh
+    std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
+    std::size_t degenerate_triangles = 0;  ///< exactly without area
+    std::size_t faces_with_repeated_corners = 0;
+    std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
+    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, see self_intersection.h
+    std::optional<WeldReport> weld;      ///< STL only
+    std::vector<std::string> warnings;   ///< one sentence per kind of defect: what it is, what it means for leaks
+};
+
+/// Examines a mesh. Time and memory are close to linear in its size.
+[[nodiscard]] MeshReport report_on(const ImportedMesh& imported);
+
+}  // namespace ricochet

@@ -1,0 +1,356 @@
+#include "ricochet/geometry/mesh/mesh_topology.h"
+
+#include <OpenMesh/Core/System/config.h>
+#include <OpenMesh/Core/Mesh/PolyConnectivity.hh>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "ricochet/geometry/mesh/disjoint_sets.h"
+#include "ricochet/geometry/mesh/edge_table.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+using Corners = std::span<const std::uint32_t>;
+
+// Adds a face; equal neighbours count once, and faces with fewer than three corners left are none.
+void add_face(Corners corners, FaceList& faces) {
+    const std::size_t first = faces.corners.size();
+    for (const std::uint32_t corner : corners) {
+        if (faces.corners.size() == first || faces.corners.back() != corner) faces.corners.push_back(corner);
+    }
+    while (faces.corners.size() > first + 1 && faces.corners.back() == faces.corners[first]) faces.corners.pop_back();
+    if (faces.corners.size() < first + 3) {
+        faces.corners.resize(first);
+        return;
+    }
+    const auto begin = static_cast<std::uint32_t>(first);
+    const auto end = static_cast<std::uint32_t>(faces.corners.size());
+    for (std::uint32_t c = begin; c < end; ++c) faces.next_corner.push_back(c + 1 < end ? c + 1 : begin);
+    faces.face_offsets.push_back(end);
+}
+
+FaceList with_room_for(std::size_t face_count, std::size_t corner_count) {
+    FaceList faces;
+    faces.corners.reserve(corner_count);
+    faces.next_corner.reserve(corner_count);
+    faces.face_offsets.reserve(face_count + 1);
+    faces.face_offsets.push_back(0);
+    return faces;
+}
+
+FaceList faces_of(const PolygonMesh& mesh) {
+    FaceList faces = with_room_for(mesh.face_count(), mesh.corners.size());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        const std::uint32_t begin = mesh.face_offsets[f];
+        add_face(Corners(mesh.corners.data() + begin, mesh.face_offsets[f + 1] - begin), faces);
+    }
+    return faces;
+}
+
+// Triangles stand one after the other in memory, and so do their corners.
+Corners corners_of(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
+    return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
+}
+
+FaceList faces_of(const TriangleMesh& mesh) {
+    FaceList faces = with_room_for(mesh.triangles.size(), 3 * mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) add_face(t, faces);
+    return faces;
+}
+
+// Half-edges that run along one edge in both directions, one each, can be glued.
+bool is_manifold_edge(const FaceList& faces, std::span<const std::uint32_t> uses) {
+    return uses.size() == 2 && faces.corners[uses[0]] != faces.corners[uses[1]];
+}
+
+// Joins, for two half-edges along one edge, the corners at its two ends.
+void join_at_ends(const FaceList& faces, std::uint32_t a, std::uint32_t b, DisjointSets& corners) {
+    const bool same_direction = faces.corners[a] == faces.corners[b];
+    corners.join(a, same_direction ? b : faces.next_corner[b]);
+    corners.join(faces.next_corner[a], same_direction ? faces.next_corner[b] : b);
+}
+
+class ReportBuilder {
+public:
+    ReportBuilder(const FaceList& faces, const EdgeTable& edges, std::size_t vertex_count)
+        : faces_(faces), shells_(faces.face_count()), fans_(faces.corners.size()), vertex_count_(vertex_count) {
+        face_of_corner_.resize(faces.corners.size());
+        for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
+            std::fill(face_of_corner_.begin() + faces.face_offsets[f],
+                      face_of_corner_.begin() + faces.face_offsets[f + 1], f);
+        }
+        edges.for_each_edge([&](std::span<const std::uint32_t> uses) { add_edge(uses); });
+    }
+
+    TopologyReport finish() {
+        report_.closed = report_.boundary_edges == 0;
+        report_.consistently_oriented = report_.inconsistent_edges == 0;
+        report_.shells = shells_.count();
+        count_vertices();
+        return report_;
+    }
+
+private:
+    void add_edge(std::span<const std::uint32_t> uses) {
+        if (uses.size() == 1) ++report_.boundary_edges;
+        if (uses.size() > 2) ++report_.nonmanifold_edges;
+        const auto along = std::count_if(uses.begin(), uses.end(), [&](std::uint32_t c) {
+            return faces_.corners[c] < faces_.corners[faces_.next_corner[c]];
+        });
+        if (along > 1) ++report_.inconsistent_edges;
+        if (static_cast<std::ptrdiff_t>(uses.size()) - along > 1) ++report_.inconsistent_edges;
+        for (const std::uint32_t use : uses.subspan(1)) {
+            shells_.join(face_of_corner_[uses[0]], face_of_corner_[use]);
+            join_at_ends(faces_, uses[0], use, fans_);
+        }
+    }
+
+    void count_vertices() {
+        std::vector<std::uint32_t> fans_at(vertex_count_, 0);
+        for (std::uint32_t c = 0; c < faces_.corners.size(); ++c) {
+            if (fans_.find(c) == c) ++fans_at[faces_.corners[c]];
+        }
+        report_.nonmanifold_vertices = static_cast<std::size_t>(
+            std::count_if(fans_at.begin(), fans_at.end(), [](std::uint32_t n) { return n > 1; }));
+    }
+
+    const FaceList& faces_;
+    DisjointSets shells_;
+    DisjointSets fans_;
+    std::vector<std::uint32_t> face_of_corner_;
+    std::size_t vertex_count_;
+    TopologyReport report_;
+};
+
+std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
+    std::vector<char> named(vertex_count, 0);
+    for (const std::uint32_t v : corners) named[v] = 1;
+    return static_cast<std::size_t>(std::count(named.begin(), named.end(), 0));
+}
+
+}  // namespace
+
+// The half-edge mesh is assembled from the edge table instead of by add_face: that function searches all edges of a
+// vertex for every face (quadratic at the tip of a large fan) and refuses what is not manifold. Here every vertex is
+// first split into its fans, which are manifold by construction: a half-edge vertex has at most one gap.
+struct MeshTopology::Impl {
+    OpenMesh::PolyConnectivity mesh;
+    std::vector<std::uint32_t> vertex_of_fan;  // our vertex of every half-edge vertex
+    std::vector<char> is_real_boundary;        // per edge: it belongs to one face, it is not a cut
+    TopologyReport report;
+
+    [[nodiscard]] static std::unique_ptr<Impl> of(const FaceList& faces, std::size_t vertex_count);
+    void assemble(const FaceList& faces, const EdgeTable& edges);
+    void add_vertices(const FaceList& faces, const EdgeTable& edges);
+    void add_edges(const FaceList& faces, const EdgeTable& edges);
+    void add_faces(const FaceList& faces);
+    void close_gaps();
+    [[nodiscard]] std::uint32_t vertex_across(OpenMesh::HalfedgeHandle halfedge) const;
+    [[nodiscard]] std::vector<std::uint32_t> loop_from(OpenMesh::HalfedgeHandle start,
+                                                       std::vector<char>& visited) const;
+
+    std::vector<std::uint32_t> fan_of_corner;                  // scratch of assembly
+    std::vector<OpenMesh::HalfedgeHandle> halfedge_of_corner;  // scratch of assembly
+};
+
+void MeshTopology::Impl::assemble(const FaceList& faces, const EdgeTable& edges) {
+    add_vertices(faces, edges);
+    add_edges(faces, edges);
+    add_faces(faces);
+    close_gaps();
+    fan_of_corner = {};
+    halfedge_of_corner = {};
+}
+
+void MeshTopology::Impl::add_vertices(const FaceList& faces, const EdgeTable& edges) {
+    DisjointSets fans(faces.corners.size());
+    edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
+        if (is_manifold_edge(faces, uses)) join_at_ends(faces, uses[0], uses[1], fans);
+    });
+    fan_of_corner.assign(faces.corners.size(), kNone);
+    for (std::uint32_t c = 0; c < faces.corners.size(); ++c) {
+        const std::uint32_t first = fans.find(c);  // not after c, so it has its number already
+        if (first == c) {
+            fan_of_corner[c] = static_cast<std::uint32_t>(vertex_of_fan.size());
+            vertex_of_fan.push_back(faces.corners[c]);
+            (void)mesh.new_vertex();
+        } else {
+            fan_of_corner[c] = fan_of_corner[first];
+        }
+    }
+}
+
+void MeshTopology::Impl::add_edges(const FaceList& faces, const EdgeTable& edges) {
+    halfedge_of_corner.resize(faces.corners.size());
+    const auto add_edge = [&](std::uint32_t corner) {
+        const OpenMesh::VertexHandle from(static_cast<int>(fan_of_corner[corner]));
+        const OpenMesh::VertexHandle to(static_cast<int>(fan_of_corner[faces.next_corner[corner]]));
+        halfedge_of_corner[corner] = mesh.new_edge(from, to);
+    };
+    edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
+        if (is_manifold_edge(faces, uses)) {
+            add_edge(uses[0]);
+            halfedge_of_corner[uses[1]] = mesh.opposite_halfedge_handle(halfedge_of_corner[uses[0]]);
+            is_real_boundary.push_back(0);
+            return;
+        }
+        for (const std::uint32_t use : uses) {
+            add_edge(use);
+            is_real_boundary.push_back(uses.size() == 1 ? 1 : 0);
+        }
+    });
+}
+
+void MeshTopology::Impl::add_faces(const FaceList& faces) {
+    for (std::size_t f = 0; f < faces.face_count(); ++f) {
+        const OpenMesh::FaceHandle face = mesh.new_face();
+        for (std::uint32_t c = faces.face_offsets[f]; c < faces.face_offsets[f + 1]; ++c) {
+            const OpenMesh::HalfedgeHandle halfedge = halfedge_of_corner[c];
+            mesh.set_face_handle(halfedge, face);
+            mesh.set_next_halfedge_handle(halfedge, halfedge_of_corner[faces.next_corner[c]]);
+            mesh.set_halfedge_handle(OpenMesh::VertexHandle(static_cast<int>(fan_of_corner[c])), halfedge);
+        }
+        mesh.set_halfedge_handle(face, halfedge_of_corner[faces.face_offsets[f]]);
+    }
+}
+
+// A vertex at a gap starts exactly one half-edge without a face; OpenMesh wants it to be the vertex's own.
+void MeshTopology::Impl::close_gaps() {
+    for (std::size_t h = 0; h < mesh.n_halfedges(); ++h) {
+        const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));
+        if (mesh.is_boundary(halfedge)) mesh.set_halfedge_handle(mesh.from_vertex_handle(halfedge), halfedge);
+    }
+    for (std::size_t h = 0; h < mesh.n_halfedges(); ++h) {
+        const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));
+        if (!mesh.is_boundary(halfedge)) continue;
+        mesh.set_next_halfedge_handle(halfedge, mesh.halfedge_handle(mesh.to_vertex_handle(halfedge)));
+    }
+}
+
+std::vector<std::uint32_t> MeshTopology::Impl::loop_from(OpenMesh::HalfedgeHandle start,
+                                                         std::vector<char>& visited) const {
+    std::vector<std::uint32_t> loop;
+    bool is_real = false;
+    OpenMesh::HalfedgeHandle halfedge = start;
+    do {
+        visited[static_cast<std::size_t>(halfedge.idx())] = 1;
+        is_real = is_real || is_real_boundary[static_cast<std::size_t>(mesh.edge_handle(halfedge).idx())] != 0;
+        loop.push_back(vertex_of_fan[static_cast<std::size_t>(mesh.from_vertex_handle(halfedge).idx())]);
+        halfedge = mesh.next_halfedge_handle(halfedge);
+    } while (halfedge != start);
+    if (!is_real) loop.clear();
+    return loop;
+}
+
+std::uint32_t MeshTopology::Impl::vertex_across(OpenMesh::HalfedgeHandle halfedge) const {
+    if (mesh.is_boundary(halfedge)) return kNoVertex;
+    const OpenMesh::HalfedgeHandle next = mesh.next_halfedge_handle(halfedge);
+    const OpenMesh::HalfedgeHandle after = mesh.next_halfedge_handle(next);
+    if (mesh.next_halfedge_handle(after) != halfedge) return kNoVertex;
+    return vertex_of_fan[static_cast<std::size_t>(mesh.to_vertex_handle(next).idx())];
+}
+
+std::unique_ptr<MeshTopology::Impl> MeshTopology::Impl::of(const FaceList& faces, std::size_t vertex_count) {
+    auto impl = std::make_unique<Impl>();
+    const EdgeTable edges(faces, vertex_count);
+    impl->report = ReportBuilder(faces, edges, vertex_count).finish();
+    impl->assemble(faces, edges);
+    return impl;
+}
+
+MeshTopology::MeshTopology(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {
+    impl_->report.boundary_loops = boundary_loops().size();
+}
+
+MeshTopology::MeshTopology(const PolygonMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
+    impl_->report.unused_vertices = count_unnamed(mesh.corners, mesh.vertices.size());
+}
+
+MeshTopology::MeshTopology(const TriangleMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
+    impl_->report.unused_vertices = count_unnamed(corners_of(mesh), mesh.vertices.size());
+}
+
+MeshTopology::~MeshTopology() = default;
+MeshTopology::MeshTopology(MeshTopology&&) noexcept = default;
+MeshTopology& MeshTopology::operator=(MeshTopology&&) noexcept = default;
+
+const TopologyReport& MeshTopology::report() const { return impl_->report; }
+
+std::vector<std::vector<std::uint32_t>> MeshTopology::boundary_loops() const {
+    std::vector<std::vector<std::uint32_t>> loops;
+    std::vector<char> visited(impl_->mesh.n_halfedges(), 0);
+    for (std::size_t h = 0; h < visited.size(); ++h) {
+        const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));
+        if (visited[h] != 0 || !impl_->mesh.is_boundary(halfedge)) continue;
+        std::vector<std::uint32_t> loop = impl_->loop_from(halfedge, visited);
+        if (!loop.empty()) loops.push_back(std::move(loop));
+    }
+    return loops;
+}
+
+// The half-edge structure has an edge that is cut once for every face along it: those become one without neighbours.
+std::vector<MeshEdge> MeshTopology::edges() const {
+    std::vector<MeshEdge> edges;
+    edges.reserve(impl_->mesh.n_edges());
+    for (std::size_t e = 0; e < impl_->mesh.n_edges(); ++e) {
+        const OpenMesh::HalfedgeHandle along =
+            impl_->mesh.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(e)), 0);
+        const OpenMesh::HalfedgeHandle back = impl_->mesh.opposite_halfedge_handle(along);
+        const std::uint32_t from =
+            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.from_vertex_handle(along).idx())];
+        const std::uint32_t to =
+            impl_->vertex_of_fan[static_cast<std::size_t>(impl_->mesh.to_vertex_handle(along).idx())];
+        edges.push_back(
+            {std::min(from, to), std::max(from, to), {impl_->vertex_across(along), impl_->vertex_across(back)}});
+    }
+    const auto key = [](const MeshEdge& edge) { return std::pair(edge.first, edge.second); };
+    std::stable_sort(edges.begin(), edges.end(), [&](const MeshEdge& a, const MeshEdge& b) { return key(a) < key(b); });
+    std::size_t kept = 0;
+    for (const MeshEdge& edge : edges) {
+        if (kept > 0 && key(edges[kept - 1]) == key(edge)) {
+            edges[kept - 1].opposite = {kNoVertex, kNoVertex};
+        } else {
+            edges[kept++] = edge;
+        }
+    }
+    edges.resize(kept);
+    return edges;
+}
+
+std::size_t count_duplicate_faces(const PolygonMesh& mesh) {
+    const FaceList faces = faces_of(mesh);
+    const std::size_t count = faces.face_count();
+    std::vector<std::uint32_t> sorted = faces.corners;
+    std::vector<std::uint32_t> order(count);
+    for (std::uint32_t f = 0; f < count; ++f) {
+        order[f] = f;
+        std::sort(sorted.begin() + faces.face_offsets[f], sorted.begin() + faces.face_offsets[f + 1]);
+    }
+    const auto corners_of = [&](std::uint32_t f) {
+        return std::span(sorted.data() + faces.face_offsets[f], faces.face_offsets[f + 1] - faces.face_offsets[f]);
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::ranges::lexicographical_compare(corners_of(a), corners_of(b));
+    });
+    std::size_t duplicates = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+        duplicates += std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i])) ? 1 : 0;
+    }
+    return duplicates;
+}
+
+const char* openmesh_version() {
+    static const std::string version =
+        std::to_string(OM_GET_VER) + "." + std::to_string(OM_GET_MAJ) + "." + std::to_string(OM_GET_MIN);
+    return version.c_str();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,77 @@
+/// \file
+/// How the faces of a mesh hang together: the one place that uses OpenMesh.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Counts that say whether a surface is watertight and two-manifold. Everything is by vertex index (vertices at one
+/// place with different numbers are different). A face that names a vertex several times in a row counts it once; faces
+/// with fewer than three corners left have no part in this.
+struct TopologyReport {
+    bool closed = false;                   ///< no boundary edge
+    std::size_t shells = 0;                ///< sets of faces that hang together by edges
+    std::size_t boundary_edges = 0;        ///< edges of one face
+    std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
+    std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
+    std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces are several groups without a common edge
+    std::size_t inconsistent_edges = 0;    ///< edge directions that more than one face runs along
+    bool consistently_oriented = false;    ///< no inconsistent edge
+    std::size_t unused_vertices = 0;       ///< vertices that no face names
+};
+
+/// In place of a vertex number: none.
+inline constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
+
+/// An edge of a mesh, and what lies across it.
+struct MeshEdge {
+    std::uint32_t first;   ///< vertex
+    std::uint32_t second;  ///< vertex, first < second
+    /// Of the triangle on either side the corner that is not on the edge. kNoVertex where there is no face, where the
+    /// face is no triangle, and on both sides of an edge at which the surface is not manifold.
+    std::array<std::uint32_t, 2> opposite;
+};
+
+/// Half-edge structure of a polygon mesh. Where it is not manifold (edges of several faces, vertices that join separate
+/// sheets, neighbours of opposite winding) the structure is cut open, as half-edges cannot say it; the counts of the
+/// report are those of the index list all the same. Time and memory are linear in the number of corners.
+class MeshTopology {
+public:
+    explicit MeshTopology(const PolygonMesh& mesh);
+    /// The same for triangles. Differs from that of the polygons they were cut from in one case: two polygons with two
+    /// common corners that are not neighbours may be cut along the same line, which is an edge of four triangles then.
+    explicit MeshTopology(const TriangleMesh& mesh);
+    ~MeshTopology();
+    MeshTopology(MeshTopology&&) noexcept;
+    MeshTopology& operator=(MeshTopology&&) noexcept;
+
+    [[nodiscard]] const TopologyReport& report() const;
+
+    /// The chains of half-edges that bound the surface, as vertex numbers, each with the surface on its right hand (the
+    /// direction opposite to the faces'). A chain that meets cuts of the half-edge structure runs along them; chains of
+    /// cuts alone are left out.
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops() const;
+
+    /// Every edge of the index list once, in the order of (first, second).
+    [[nodiscard]] std::vector<MeshEdge> edges() const;
+
+private:
+    struct Impl;
+    explicit MeshTopology(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Faces with the same vertices as an earlier one, in whatever order.
+[[nodiscard]] std::size_t count_duplicate_faces(const PolygonMesh& mesh);
+
+/// OpenMesh's version, for `--version` and reports.
+[[nodiscard]] const char* openmesh_version();
+
+}  // namespace ricochet

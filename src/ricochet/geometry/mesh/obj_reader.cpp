@@ -1,0 +1,235 @@
+#include "ricochet/geometry/mesh/obj_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <unordered_map>
+
+#include "ricochet/geometry/mesh/text_cursor.h"
+#include "ricochet/geometry/mesh/triangulation.h"
+
+namespace ricochet {
+namespace {
+
+// Statements that hold nothing a particle can meet: normals and texture coordinates, points and lines (no area),
+// render settings, other files, and attributes of curves, which matter only where a curve or surface is drawn.
+constexpr std::array<std::string_view, 32> kIgnored = {
+    "vt",       "vn",       "s",     "mtllib", "p",   "l",      "vp",         "maplib",    "usemap", "lod",  "bevel",
+    "c_interp", "d_interp", "stech", "ctech",  "mg",  "cstype", "deg",        "bmat",      "step",   "parm", "trim",
+    "hole",     "scrv",     "sp",    "end",    "con", "curv2",  "shadow_obj", "trace_obj", "res",    "#"};
+
+// Statements that draw a curved surface or run something.
+constexpr std::array<std::string_view, 9> kRefused = {"curv", "surf", "bsp", "bzp", "cdc", "cdp", "fo", "call", "csh"};
+
+template <typename List>
+bool contains(const List& list, std::string_view word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// Lines that begin as vertices and faces do: what the lists will hold, as a rule.
+struct LineCounts {
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+};
+
+LineCounts count_lines(std::string_view text) {
+    LineCounts counts;
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); end - at > 1;) {
+        if (at[1] == ' ') {
+            counts.vertices += at[0] == 'v' ? 1 : 0;
+            counts.faces += at[0] == 'f' ? 1 : 0;
+        }
+        const auto* const line_end =
+            static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end - at)));
+        if (line_end == nullptr) break;
+        at = line_end + 1;
+    }
+    return counts;
+}
+
+struct FaceGroupHash {
+    std::size_t operator()(const FaceGroup& group) const {
+        const std::hash<std::uint64_t> hash;
+        return hash(hash(std::uint64_t{group.material} << 32U | group.group) * 31 + group.object);
+    }
+};
+
+class ObjReader {
+public:
+    explicit ObjReader(const MeshSource& source)
+        : cursor_(source, {.hash_comments = true, .backslash_continues_line = true}) {
+        reserve(source.bytes);
+        mesh_.face_offsets.push_back(0);
+    }
+
+    PolygonMesh read() {
+        while (cursor_.next_filled_line()) {
+            read_statement();
+            cursor_.next_line();
+        }
+        if (forward_.index > static_cast<std::int64_t>(mesh_.vertices.size())) fail_past_end(forward_);
+        return std::move(mesh_);
+    }
+
+private:
+    // An index that was past the last vertex read so far, with its line.
+    struct IndexUse {
+        std::int64_t index = 0;
+        std::size_t line = 0;
+    };
+
+    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes: whatever the lines turn out to hold, the
+    // lists take no more than a small multiple of the file's size.
+    void reserve(std::string_view text) {
+        constexpr std::size_t kShortestLine = 8;
+        const LineCounts counts = count_lines(text);
+        const std::size_t most = text.size() / kShortestLine + 1;
+        mesh_.vertices.reserve(std::min(counts.vertices, most));
+        mesh_.face_offsets.reserve(std::min(counts.faces, most) + 1);
+        mesh_.corners.reserve(3 * std::min(counts.faces, most));
+    }
+
+    void read_statement() {
+        const std::string_view keyword = cursor_.word();
+        if (keyword == "v") {
+            read_vertex();
+        } else if (keyword == "f") {
+            read_face();
+        } else if (keyword == "usemtl") {
+            enter(material_);
+        } else if (keyword == "g") {
+            enter(group_);
+        } else if (keyword == "o") {
+            enter(object_);
+        } else if (contains(kRefused, keyword)) {
+            cursor_.fail(fmt::format("statement {} (curves, surfaces and calls) is not supported, export polygons only",
+                                     in_quotes(keyword)));
+        } else if (!contains(kIgnored, keyword)) {
+            cursor_.fail(fmt::format("unknown statement {}, expected an OBJ statement such as 'v x y z' or 'f 1 2 3'",
+                                     in_quotes(keyword)));
+        }
+    }
+
+    // After x y z may come w (a weight of curves) or red green blue, with w or alpha.
+    void read_vertex() {
+        if (mesh_.vertices.size() >= kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} vertices", kLargestIndexCount));
+        mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
+        int more = 0;
+        for (; !cursor_.at_line_end(); ++more) (void)cursor_.number("value after the vertex coordinates");
+        if (more != 0 && more != 1 && more != 3 && more != 4) {
+            cursor_.fail(
+                fmt::format("vertex has {} values, expected x y z, x y z w or x y z red green blue", 3 + more));
+        }
+    }
+
+    void read_face() {
+        const std::size_t first = mesh_.corners.size();
+        while (!cursor_.at_line_end()) read_corner();
+        const std::size_t count = mesh_.corners.size() - first;
+        if (count < 3) cursor_.fail(fmt::format("face has {} corners, expected at least 3", count));
+        if (count > kLargestPolygon)
+            cursor_.fail(fmt::format("face has {} corners, expected at most {}", count, kLargestPolygon));
+        if (mesh_.corners.size() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
+        close_face(mesh_);
+        note_group();
+    }
+
+    // v, v/t, v//n or v/t/n; only v counts.
+    void read_corner() {
+        const std::int64_t index = cursor_.integer_part("vertex index of a face");
+        for (int i = 0; i < 2 && cursor_.take('/'); ++i) {
+            if (!cursor_.at_word_end() && !cursor_.comes_next('/')) (void)cursor_.integer_part("index after '/'");
+        }
+        if (!cursor_.at_word_end()) cursor_.fail("face corner cannot be read, expected v, v/t, v//n or v/t/n");
+        mesh_.corners.push_back(vertex_number(index));
+    }
+
+    // OBJ counts from 1, or backwards from the last vertex read with negative numbers.
+    std::uint32_t vertex_number(std::int64_t index) {
+        const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
+        if (index == 0) cursor_.fail("vertex index 0, OBJ counts from 1 (or from -1 backwards)");
+        if (index < -count) {
+            cursor_.fail(
+                fmt::format("vertex index {} reaches before the first vertex ({} are defined above)", index, count));
+        }
+        if (index > static_cast<std::int64_t>(kLargestIndexCount)) fail_past_end({index, cursor_.line()});
+        if (index > count && index > forward_.index) forward_ = {index, cursor_.line()};
+        return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+    }
+
+    [[noreturn]] void fail_past_end(const IndexUse& use) const {
+        cursor_.source().fail_at_line(use.line, fmt::format("vertex index {} is past the end, the file has {} vertices",
+                                                            use.index, mesh_.vertices.size()));
+    }
+
+    void enter(std::string& name) {
+        name = cursor_.rest_of_line();
+        has_names_ = has_names_ || !name.empty();
+        group_is_known_ = false;
+    }
+
+    // Files without names keep empty lists; the first name found gives the faces before it the empty names.
+    void note_group() {
+        if (!has_names_) return;
+        if (!group_is_known_) {
+            if (mesh_.group_names.empty()) (void)name_number("");
+            const FaceGroup group{name_number(material_), name_number(group_), name_number(object_)};
+            if (mesh_.groups.empty() && mesh_.face_count() > 1) {
+                (void)group_number(FaceGroup{});
+                mesh_.face_groups.assign(mesh_.face_count() - 1, 0);
+            }
+            current_group_ = group_number(group);
+            group_is_known_ = true;
+        }
+        mesh_.face_groups.push_back(current_group_);
+    }
+
+    std::uint32_t group_number(const FaceGroup& group) {
+        const auto [place, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh_.groups.size()));
+        if (is_new) mesh_.groups.push_back(group);
+        return place->second;
+    }
+
+    // Every name is stored once, however many combinations it is part of, so that memory stays bounded by the file.
+    std::uint32_t name_number(const std::string& name) {
+        const auto [place, is_new] = names_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
+        if (is_new) mesh_.group_names.push_back(name);
+        return place->second;
+    }
+
+    TextCursor cursor_;
+    PolygonMesh mesh_;
+    IndexUse forward_;
+    std::string material_;
+    std::string group_;
+    std::string object_;
+    bool has_names_ = false;
+    bool group_is_known_ = false;
+    std::uint32_t current_group_ = 0;
+    // Numbers go by first use, so that the tables' own order reaches nothing.
+    std::unordered_map<FaceGroup, std::uint32_t, FaceGroupHash> groups_;
+    std::unordered_map<std::string, std::uint32_t> names_;
+};
+
+}  // namespace
+
+ParsedMesh read_obj(const MeshSource& source) {
+    require_plain_text(source);
+    return {ObjReader(source).read(), "OBJ", std::nullopt};
+}
+
+bool looks_like_obj(const MeshSource& source) {
+    TextCursor cursor(source, {.hash_comments = true});
+    if (!cursor.next_filled_line()) return false;
+    const std::string_view keyword = cursor.word();
+    constexpr std::array<std::string_view, 5> kDrawn = {"v", "f", "g", "o", "usemtl"};
+    return contains(kDrawn, keyword) || contains(kIgnored, keyword) || contains(kRefused, keyword);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,173 @@
+#include "ricochet/geometry/mesh/off_reader.h"
+
+#include <fmt/format.h>
+
+#include "ricochet/geometry/mesh/text_cursor.h"
+#include "ricochet/geometry/mesh/triangulation.h"
+
+namespace ricochet {
+namespace {
+
+constexpr TextCursor::Syntax kSyntax = {.hash_comments = true};
+
+// Values that the header's prefixes announce for every vertex after x y z.
+struct OffHeader {
+    bool texture = false;
+    bool color = false;
+    bool normal = false;
+    bool four_dimensions = false;
+    bool any_dimension = false;
+};
+
+// Programs write the prefixes in different orders.
+std::optional<OffHeader> parse_keyword(std::string_view word) {
+    if (!word.ends_with("OFF")) return std::nullopt;
+    word.remove_suffix(3);
+    OffHeader header;
+    while (!word.empty()) {
+        bool& flag = word.starts_with("ST")  ? header.texture
+                     : word.starts_with('C') ? header.color
+                     : word.starts_with('N') ? header.normal
+                     : word.starts_with('4') ? header.four_dimensions
+                                             : header.any_dimension;
+        if (flag || (&flag == &header.any_dimension && !word.starts_with('n'))) return std::nullopt;
+        flag = true;
+        word.remove_prefix(&flag == &header.texture ? 2 : 1);
+    }
+    return header;
+}
+
+class OffReader {
+public:
+    explicit OffReader(const MeshSource& source) : cursor_(source, kSyntax) { mesh_.face_offsets.push_back(0); }
+
+    PolygonMesh read() {
+        read_header();
+        read_counts();
+        for (std::uint64_t i = 0; i < vertex_count_; ++i) read_vertex(i);
+        for (std::uint64_t i = 0; i < face_count_; ++i) read_face(i);
+        if (cursor_.next_filled_line()) {
+            cursor_.fail(fmt::format("more lines than {} vertices and {} faces, expected the end of the file",
+                                     vertex_count_, face_count_));
+        }
+        return std::move(mesh_);
+    }
+
+private:
+    void read_header() {
+        const bool has_text = cursor_.next_filled_line();
+        const std::string_view word = has_text ? cursor_.word() : std::string_view{};
+        const std::optional<OffHeader> header = parse_keyword(word);
+        if (!header) cursor_.fail(fmt::format("file starts with {}, expected the keyword OFF", in_quotes(word)));
+        if (header->four_dimensions || header->any_dimension) {
+            cursor_.fail(fmt::format(
+                "{} has vertices that are not three-dimensional, expected OFF, COFF, NOFF or STOFF", in_quotes(word)));
+        }
+        header_ = *header;
+        if (cursor_.at_line_end()) cursor_.next_line();
+    }
+
+    // Vertices, faces, and edges, which nobody needs and some programs leave out.
+    void read_counts() {
+        if (!cursor_.next_filled_line()) cursor_.fail("file ends before the counts of vertices and faces");
+        vertex_count_ = count("number of vertices", 6);
+        face_count_ = count("number of faces", 8);
+        if (!cursor_.at_line_end()) (void)cursor_.integer("number of edges");
+        if (!cursor_.at_line_end()) cursor_.fail("the line of counts has more than three numbers");
+        cursor_.next_line();
+        mesh_.vertices.reserve(vertex_count_);
+        mesh_.face_offsets.reserve(face_count_ + 1);
+    }
+
+    // The shortest vertex line is "0 0 0\n", the shortest face line "3 0 1 2\n": no file holds more than its size
+    // allows.
+    std::uint64_t count(const char* what, std::uint64_t shortest_line) {
+        const std::int64_t value = cursor_.integer(what);
+        if (value < 0) cursor_.fail(fmt::format("{} is {}, expected 0 or more", what, value));
+        const std::uint64_t most = (cursor_.bytes_left() + 1) / shortest_line;
+        if (static_cast<std::uint64_t>(value) > most) {
+            cursor_.fail(fmt::format("{} is {}, but the {} bytes left hold at most {}; is the file cut off?", what,
+                                     value, cursor_.bytes_left(), most));
+        }
+        return static_cast<std::uint64_t>(value);
+    }
+
+    void read_vertex(std::uint64_t i) {
+        if (!cursor_.next_filled_line()) {
+            cursor_.fail(fmt::format("file ends after {} vertices, expected {} vertices and {} faces", i, vertex_count_,
+                                     face_count_));
+        }
+        mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
+        const int announced = (header_.normal ? 3 : 0) + (header_.color ? 1 : 0) + (header_.texture ? 2 : 0);
+        const int most = announced + (header_.color ? 3 : 4);
+        const int more = skip_numbers("value after the vertex coordinates");
+        if (more < announced || more > most) {
+            cursor_.fail(
+                fmt::format("vertex line has {} numbers, expected {} to {}", 3 + more, 3 + announced, 3 + most));
+        }
+        cursor_.next_line();
+    }
+
+    void read_face(std::uint64_t i) {
+        if (!cursor_.next_filled_line())
+            cursor_.fail(fmt::format("file ends after {} faces, expected {}", i, face_count_));
+        const std::int64_t corners = cursor_.integer("number of corners");
+        if (corners < 3) cursor_.fail(fmt::format("face has {} corners, expected at least 3", corners));
+        if (corners > static_cast<std::int64_t>(kLargestPolygon)) {
+            cursor_.fail(fmt::format("face has {} corners, expected at most {}", corners, kLargestPolygon));
+        }
+        for (std::int64_t corner = 0; corner < corners; ++corner) read_corner();
+        if (mesh_.corners.size() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
+        const int color_values = skip_numbers("colour of a face");
+        if (color_values > 4) {
+            cursor_.fail(fmt::format("face line has {} numbers after its indices, expected a colour of at most 4",
+                                     color_values));
+        }
+        close_face(mesh_);
+        cursor_.next_line();
+    }
+
+    void read_corner() {
+        const std::int64_t index = cursor_.integer("vertex index of a face");
+        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
+            cursor_.fail(fmt::format("vertex index {} is out of range, expected 0 to {}", index,
+                                     static_cast<std::int64_t>(vertex_count_) - 1));
+        }
+        mesh_.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+
+    int skip_numbers(const char* what) {
+        int count = 0;
+        for (; !cursor_.at_line_end(); ++count) (void)cursor_.number(what);
+        return count;
+    }
+
+    TextCursor cursor_;
+    PolygonMesh mesh_;
+    OffHeader header_;
+    std::uint64_t vertex_count_ = 0;
+    std::uint64_t face_count_ = 0;
+};
+
+void refuse_binary(const MeshSource& source) {
+    TextCursor cursor(source, kSyntax);
+    if (!cursor.next_filled_line()) return;
+    (void)cursor.word();
+    if (cursor.word() == "BINARY") cursor.fail("binary OFF is not supported, save the mesh as text OFF or binary PLY");
+}
+
+}  // namespace
+
+ParsedMesh read_off(const MeshSource& source) {
+    refuse_binary(source);
+    require_plain_text(source);
+    return {OffReader(source).read(), "OFF", std::nullopt};
+}
+
+bool looks_like_off(const MeshSource& source) {
+    TextCursor cursor(source, kSyntax);
+    return cursor.next_filled_line() && parse_keyword(cursor.word()).has_value();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,56 @@
+/// \file
+/// Private to mesh_reader: the header of a PLY file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ricochet/geometry/mesh/mesh_source.h"
+
+namespace ricochet {
+
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+/// Bytes of a value in a binary file.
+[[nodiscard]] std::size_t ply_size(PlyType type);
+[[nodiscard]] inline bool is_integer(PlyType type) { return type < PlyType::kFloat32; }
+
+struct PlyProperty {
+    std::string name;
+    PlyType type = PlyType::kFloat32;  ///< of the value, or of a list's items
+    bool is_list = false;
+    PlyType count_type = PlyType::kUint8;  ///< of a list's length
+};
+
+struct PlyElement {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<PlyProperty> properties;
+    std::size_t line = 0;  ///< where the header declares it
+
+    [[nodiscard]] bool has_lists() const;
+    /// Bytes of one element in a binary file if all its lists are empty.
+    [[nodiscard]] std::size_t smallest_size() const;
+    /// Place of a property; nothing if there is none of that name.
+    [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
+};
+
+struct PlyHeader {
+    PlyEncoding encoding = PlyEncoding::kAscii;
+    std::vector<PlyElement> elements;
+    std::size_t body_byte = 0;  ///< first byte after the header
+    std::size_t body_line = 0;  ///< its line number
+
+    [[nodiscard]] const PlyElement* find(std::string_view element) const;
+};
+
+/// True when the first line is "ply".
+[[nodiscard]] bool looks_like_ply(const MeshSource& source);
+
+/// Reads the header and checks that the rest of the file is long enough for the counts it promises.
+[[nodiscard]] PlyHeader read_ply_header(const MeshSource& source);
+
+}  // namespace ricochet

@@ -1,0 +1,173 @@
+#include "ricochet/geometry/mesh/stl_reader.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+
+#include "ricochet/geometry/mesh/text_cursor.h"
+#include "ricochet/geometry/mesh/vertex_welder.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kCountByte = 80;
+constexpr std::size_t kFirstFacet = 84;
+constexpr std::size_t kFacetBytes = 50;
+constexpr std::size_t kNormalBytes = 12;
+
+static_assert(std::endian::native == std::endian::little, "binary STL is copied from little-endian bytes");
+
+template <typename Value>
+Value value_at(const MeshSource& source, std::size_t byte) {
+    Value value;
+    std::memcpy(&value, source.bytes.data() + byte, sizeof value);
+    return value;
+}
+
+std::uint64_t facets_promised(const MeshSource& source) { return value_at<std::uint32_t>(source, kCountByte); }
+
+// Keywords are written in lower or upper case.
+bool is_keyword(std::string_view word, std::string_view keyword) {
+    if (word.size() != keyword.size()) return false;
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        const char c = word[i];
+        if ((c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) != keyword[i]) return false;
+    }
+    return true;
+}
+
+// Joins facet corners while they are read.
+class FacetCollector {
+public:
+    FacetCollector() { mesh_.face_offsets.push_back(0); }
+
+    void add_corner(const Vec3& position) { mesh_.corners.push_back(welder_.index_of(position)); }
+    void end_facet() { close_face(mesh_); }
+    [[nodiscard]] std::size_t corners() const { return mesh_.corners.size(); }
+    void reserve(std::size_t facets) {
+        mesh_.corners.reserve(3 * facets);
+        mesh_.face_offsets.reserve(facets + 1);
+        welder_.reserve(facets / 2 + 2);  // of a closed surface, by Euler's formula; others grow
+    }
+    ParsedMesh finish(std::string format) {
+        const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
+        return {std::move(mesh_), std::move(format), weld};
+    }
+
+private:
+    PolygonMesh mesh_;
+    VertexWelder welder_{mesh_.vertices};
+};
+
+Vec3 binary_point(const MeshSource& source, std::size_t byte) {
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t place = byte + 4 * static_cast<std::size_t>(axis);
+        const auto value = static_cast<double>(value_at<float>(source, place));
+        const std::optional<double> accepted = accepted_coordinate(value);
+        if (!accepted)
+            source.fail_at_byte(place, fmt::format("vertex coordinate is {}, expected a finite number", value));
+        point[axis] = *accepted;
+    }
+    return point;
+}
+
+ParsedMesh read_binary(const MeshSource& source) {
+    const std::uint64_t facets = facets_promised(source);
+    if (3 * facets > kLargestIndexCount) source.fail(fmt::format("more than {} facet corners", kLargestIndexCount));
+    FacetCollector collector;
+    collector.reserve(facets);
+    for (std::uint64_t facet = 0; facet < facets; ++facet) {
+        const std::size_t corners = kFirstFacet + facet * kFacetBytes + kNormalBytes;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            collector.add_corner(binary_point(source, corners + corner * 12));
+        }
+        collector.end_facet();
+    }
+    return collector.finish("STL, binary");
+}
+
+class AsciiStlReader {
+public:
+    explicit AsciiStlReader(const MeshSource& source) : cursor_(source, {}) {}
+
+    ParsedMesh read() {
+        do {
+            read_solid();
+        } while (cursor_.next_filled_line());
+        return collector_.finish("STL, ASCII");
+    }
+
+private:
+    // solid NAME facet ... endsolid NAME; a file may hold several.
+    void read_solid() {
+        expect("solid");
+        cursor_.next_line();
+        std::string_view word = next_word("'facet' or 'endsolid'");
+        for (; is_keyword(word, "facet"); word = next_word("'facet' or 'endsolid'")) read_facet();
+        if (!is_keyword(word, "endsolid"))
+            cursor_.fail(fmt::format("{}, expected 'facet' or 'endsolid'", in_quotes(word)));
+        cursor_.next_line();
+    }
+
+    void read_facet() {
+        expect("normal");
+        for (int axis = 0; axis < 3; ++axis) (void)next_word("the facet's normal");
+        expect("outer");
+        expect("loop");
+        for (int corner = 0; corner < 3; ++corner) {
+            expect("vertex");
+            collector_.add_corner(cursor_.point("vertex coordinate"));
+            if (!cursor_.at_line_end()) cursor_.fail("vertex has more than three coordinates");
+        }
+        expect("endloop");
+        expect("endfacet");
+        if (collector_.corners() > kLargestIndexCount)
+            cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
+        collector_.end_facet();
+    }
+
+    std::string_view next_word(std::string_view expected) {
+        if (!cursor_.next_filled_line()) cursor_.fail(fmt::format("file ends, expected {}; is it cut off?", expected));
+        return cursor_.word();
+    }
+
+    void expect(std::string_view keyword) {
+        const std::string_view word = next_word(keyword);
+        if (!is_keyword(word, keyword)) cursor_.fail(fmt::format("{}, expected '{}'", in_quotes(word), keyword));
+    }
+
+    TextCursor cursor_;
+    FacetCollector collector_;
+};
+
+}  // namespace
+
+bool has_binary_stl_size(const MeshSource& source) {
+    return source.bytes.size() >= kFirstFacet &&
+           source.bytes.size() - kFirstFacet == kFacetBytes * facets_promised(source);
+}
+
+bool starts_with_solid(const MeshSource& source) {
+    TextCursor cursor(source, {});
+    return cursor.next_filled_line() && is_keyword(cursor.word(), "solid");
+}
+
+ParsedMesh read_stl(const MeshSource& source) {
+    if (has_binary_stl_size(source)) return read_binary(source);
+    // A binary file that is cut off may start with "solid" too, but text holds no NUL bytes.
+    if (starts_with_solid(source) && source.bytes.find('\0') == std::string_view::npos) {
+        return AsciiStlReader(source).read();
+    }
+    if (source.bytes.size() < kFirstFacet) {
+        source.fail(fmt::format("{} bytes, expected 'solid' (ASCII STL) or at least {} bytes (binary STL)",
+                                source.bytes.size(), kFirstFacet));
+    }
+    const std::uint64_t facets = facets_promised(source);
+    source.fail_at_byte(
+        kCountByte, fmt::format("binary STL promises {} triangles and should have {} bytes, but has {}; is it cut off?",
+                                facets, kFirstFacet + kFacetBytes * facets, source.bytes.size()));
+}
+
+}  // namespace ricochet

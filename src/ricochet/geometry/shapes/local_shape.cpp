@@ -1,0 +1,186 @@
+#include "ricochet/geometry/shapes/local_shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+namespace {
+
+/// Halvings and secants for the nearest point of a segment; the bound returned is valid after any number of them.
+constexpr int kMostSegmentSteps = 100;
+
+/// Room between a segment's least distance and its bound, relative: the search for the nearest point ends there.
+constexpr double kSegmentError = 0x1p-50;
+
+/// Error of a squared length at the rounded foot of a perpendicular, relative to the square of the start: the foot errs
+/// by some 8 u, the square by the square of that.
+constexpr double kFootError = 0x1p-98;
+
+double rounded_value(double x) { return x; }
+double rounded_value(const DoubleDouble& x) { return x.hi; }
+
+template <class Scalar>
+Vec3 rounded_vector(const VectorOf<Scalar>& v) {
+    return {rounded_value(v.x), rounded_value(v.y), rounded_value(v.z)};
+}
+
+template <class Scalar>
+VectorOf<Scalar> on_segment(const VectorOf<Scalar>& from, const VectorOf<Scalar>& step, const Scalar& t) {
+    return {from.x + t * step.x, from.y + t * step.y, from.z + t * step.z};
+}
+
+template <class Scalar>
+VectorOf<Scalar> step_of(const LocalSegment<Scalar>& s) {
+    return {s.to.x - s.from.x, s.to.y - s.from.y, s.to.z - s.from.z};
+}
+
+/// Part of the way from a height `before` > 0 to `after` < before at which zero is reached.
+template <class Scalar>
+Scalar crossing(const Scalar& before, const Scalar& after) {
+    return before / (before - after);
+}
+
+int sign_beyond(double value, double bound) {
+    return static_cast<int>(value > bound) - static_cast<int>(value < -bound);
+}
+
+}  // namespace
+
+LocalShape::LocalShape(const std::array<double, 3>& half_axes, bool is_capped)
+    : around_(half_axes, is_capped ? 2 : 3), is_capped_(is_capped), half_height_(is_capped ? half_axes[2] : 0.0) {}
+
+LocalShape LocalShape::ball(const std::array<double, 3>& half_axes) { return {half_axes, false}; }
+LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return {half_axes, true}; }
+
+template <class Scalar>
+int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
+    const Vec3 y = rounded_vector(segment.from);
+    const int around = sign_beyond(rounded_value(around_.value(segment.from)),
+                                   around_.value_error(y, segment.coordinate_error, segment.unit));
+    if (!is_capped_ || around > 0) return around;
+    const double magnitude = std::fabs(y.z) + half_height_;
+    const Scalar height = (y.z < 0.0 ? -segment.from.z : segment.from.z) + Scalar(-half_height_);
+    const int beyond_cap = sign_beyond(rounded_value(height), segment.coordinate_error + segment.unit * magnitude);
+    if (beyond_cap > 0) return 1;
+    return around < 0 && beyond_cap < 0 ? -1 : 0;
+}
+
+/// The part of the segment between the caps' planes, a little more by rounding; nothing when it is all beyond one.
+template <class Scalar>
+std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const LocalSegment<Scalar>& segment) const {
+    Interval<Scalar> part;
+    for (const double sign : {1.0, -1.0}) {
+        const Scalar before = sign * segment.from.z + Scalar(-half_height_);
+        const Scalar after = sign * segment.to.z + Scalar(-half_height_);
+        const double largest =
+            std::max(std::fabs(rounded_value(segment.from.z)), std::fabs(rounded_value(segment.to.z)));
+        const double error = segment.coordinate_error + segment.unit * (largest + half_height_);
+        if (rounded_value(before) > error && rounded_value(after) > error) return std::nullopt;
+        const double slack = 4.0 * segment.unit + 4.0 * error / std::fabs(rounded_value(before - after));
+        if (rounded_value(before) > error) {
+            part.from = std::max(part.from, crossing(before, after) + Scalar(-slack));
+        } else if (rounded_value(after) > error) {
+            part.to = std::min(part.to, Scalar(1.0) - crossing(after, before) + Scalar(slack));
+        }
+    }
+    if (part.from > part.to) return std::nullopt;
+    return part;
+}
+
+/// Outside, the smallest value() between the caps decides: it is convex along the segment, and an error of the place of
+/// its minimum counts by its square.
+template <class Scalar>
+bool LocalShape::is_free(const LocalSegment<Scalar>& segment) const {
+    const int side = side_of_start(segment);
+    const LocalSegment<Scalar> reversed{segment.to, segment.from, segment.coordinate_error, segment.unit};
+    if (side == 0 || side_of_start(reversed) != side) return false;
+    if (side < 0) return true;
+    const auto part = is_capped_ ? between_caps(segment) : std::optional(Interval<Scalar>{});
+    if (!part) return true;
+    const VectorOf<Scalar> step = step_of(segment);
+    const Vec3 y = rounded_vector(segment.from);
+    const Vec3 d = rounded_vector(step);
+    double slope = 0.0;
+    double curvature = 0.0;
+    for (int i = 0; i < around_.axes(); ++i) {
+        slope += y[i] / around_.half_axis(i) * (d[i] / around_.half_axis(i));
+        curvature += d[i] / around_.half_axis(i) * (d[i] / around_.half_axis(i));
+    }
+    const Scalar lowest(curvature > 0.0 ? -slope / curvature : 0.0);
+    const VectorOf<Scalar> nearest = on_segment(segment.from, step, std::clamp(lowest, part->from, part->to));
+    const Vec3 magnitude = abs(y) + abs(d);
+    const double error =
+        around_.value_error(magnitude, 4.0 * segment.coordinate_error, 4.0 * segment.unit + kFootError);
+    return rounded_value(around_.value(nearest)) > error;
+}
+
+template int LocalShape::side_of_start(const LocalSegment<double>&) const;
+template int LocalShape::side_of_start(const LocalSegment<DoubleDouble>&) const;
+template bool LocalShape::is_free(const LocalSegment<double>&) const;
+template bool LocalShape::is_free(const LocalSegment<DoubleDouble>&) const;
+
+LocalNearest LocalShape::nearest(const PreciseVec3& y) const {
+    LocalNearest around = around_.nearest(y);
+    if (!is_capped_) return around;
+    const double up = y.z.hi < 0.0 ? -1.0 : 1.0;
+    const double height = (up * y.z + -half_height_).hi;
+    const bool is_beside = around.distance > 0.0;
+    if (height <= 0.0 && (is_beside || around.distance >= height)) return around;
+    if (!is_beside) return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, height};
+    const double distance = std::sqrt(around.distance * around.distance + height * height);
+    const Vec3 normal = (around.distance / distance) * around.normal + Vec3{0.0, 0.0, up * (height / distance)};
+    return {{around.foot.x, around.foot.y, up * half_height_}, normal, distance};
+}
+
+double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) const {
+    const LocalNearest at_from = nearest(from);
+    const LocalNearest at_to = nearest(to);
+    double least = std::min(std::fabs(at_from.distance), std::fabs(at_to.distance));
+    const Vec3 size = abs(rounded(from)) + abs(rounded(to));
+    // The depth inside a convex body is concave along the segment: its least value is at an end.
+    if (at_from.distance > 0.0 && at_to.distance > 0.0) least = std::min(least, distance_from_outside(from, to));
+    return std::max(0.0, least - around_.distance_error(least, size));
+}
+
+/// The distance from a convex body is convex along the segment, so that it lies above its tangents. The root of its
+/// slope is bracketed by secants (with the Illinois rule) until the tangents leave no room.
+double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseVec3& to) const {
+    struct Tangent {
+        double t;
+        double distance;
+        double slope;
+    };
+    const PreciseVec3 step = to - from;
+    const Vec3 direction = rounded(step);
+    const auto tangent_at = [&](double t) {
+        const LocalNearest near = nearest(on_segment(from, step, DoubleDouble(t)));
+        return Tangent{t, near.distance, dot(near.normal, direction)};
+    };
+    Tangent low = tangent_at(0.0);
+    Tangent high = tangent_at(1.0);
+    if (low.slope >= 0.0) return low.distance;
+    if (high.slope <= 0.0) return high.distance;
+    double low_weight = low.slope;
+    double high_weight = high.slope;
+    int last_side = 0;
+    double bound = 0.0;
+    for (int k = 0; k < kMostSegmentSteps; ++k) {
+        const double width = high.t - low.t;
+        const double where = (low.distance - high.distance + high.slope * width) / (high.slope - low.slope);
+        bound = std::max(bound, low.distance + low.slope * std::clamp(where, 0.0, width));
+        if (std::min(low.distance, high.distance) - bound <= kSegmentError * bound) break;
+        double t = low.t + width * (low_weight / (low_weight - high_weight));
+        if (k % 4 == 3 || !(t > low.t && t < high.t)) t = low.t + 0.5 * width;
+        if (!(t > low.t && t < high.t)) break;
+        const Tangent middle = tangent_at(t);
+        bound = std::max(bound, middle.distance - std::fabs(middle.slope) * std::max(high.t - t, t - low.t));
+        const int side = middle.slope < 0.0 ? -1 : 1;
+        (side < 0 ? low : high) = middle;
+        (side < 0 ? low_weight : high_weight) = middle.slope;
+        if (side == last_side) (side < 0 ? high_weight : low_weight) *= 0.5;
+        last_side = side;
+    }
+    return bound;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,80 @@
+#include "ricochet/geometry/shapes/shape_mesh.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "ricochet/geometry/mesh/placed_mesh.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::uint32_t kSides = 96;  // around the axis
+constexpr std::uint32_t kBelts = 48;  // from pole to pole of a ball
+
+/// Points of a circle about the z axis.
+void add_ring(TriangleMesh& mesh, double radius, double z) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const double angle = 2.0 * kPi * k / kSides;
+        mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+}
+
+/// Two triangles for every side between two rings, the lower one first in the list.
+void add_belt(TriangleMesh& mesh, std::uint32_t lower, std::uint32_t upper) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const std::uint32_t next = (k + 1) % kSides;
+        mesh.triangles.push_back({lower + k, lower + next, upper + next});
+        mesh.triangles.push_back({lower + k, upper + next, upper + k});
+    }
+}
+
+/// A fan around a point on the axis, facing up or down.
+void add_fan(TriangleMesh& mesh, std::uint32_t apex, std::uint32_t ring, bool up) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const std::uint32_t next = (k + 1) % kSides;
+        mesh.triangles.push_back(up ? Triangle{apex, ring + k, ring + next} : Triangle{apex, ring + next, ring + k});
+    }
+}
+
+}  // namespace
+
+TriangleMesh ball_mesh(double radius, const Placement& placement) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, -radius}, {0, 0, radius}};
+    for (std::uint32_t belt = 1; belt < kBelts; ++belt) {
+        const double angle = kPi * belt / kBelts;
+        add_ring(mesh, radius * std::sin(angle), -radius * std::cos(angle));
+    }
+    add_fan(mesh, 0, 2, false);
+    for (std::uint32_t belt = 1; belt + 1 < kBelts; ++belt) {
+        add_belt(mesh, 2 + (belt - 1) * kSides, 2 + belt * kSides);
+    }
+    add_fan(mesh, 1, 2 + (kBelts - 2) * kSides, true);
+    return placed(mesh, placement);
+}
+
+TriangleMesh cylinder_mesh(double radius, double height, const Placement& placement) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, -0.5 * height}, {0, 0, 0.5 * height}};
+    add_ring(mesh, radius, -0.5 * height);
+    add_ring(mesh, radius, 0.5 * height);
+    add_fan(mesh, 0, 2, false);
+    add_belt(mesh, 2, 2 + kSides);
+    add_fan(mesh, 1, 2 + kSides, true);
+    return placed(mesh, placement);
+}
+
+TriangleMesh cuboid_mesh(const Vec3& size) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.vertices.push_back({(corner & 1) != 0 ? 0.5 * size.x : -0.5 * size.x,
+                                 (corner & 2) != 0 ? 0.5 * size.y : -0.5 * size.y,
+                                 (corner & 4) != 0 ? 0.5 * size.z : -0.5 * size.z});
+    }
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,207 @@
+#include "ricochet/geometry/sweep/closest_point.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/distance_polynomials.h"
+
+namespace ricochet {
+namespace {
+
+/// A cross product this much smaller than its terms has lost too many digits in plain doubles.
+constexpr double kSlenderNormal = 0x1p-4;
+
+/// Error of a side in plain doubles, relative to the lengths it is made of: 2^-48 of the normal and some roundings.
+constexpr double kSideError = 0x1p-47;
+
+/// Twice a triangle's area over its longest edge's square (within a factor 4) below which its barycentric coordinates
+/// lose digits in plain doubles.
+constexpr double kSlenderFace = 0x1p-10;
+
+/// Sine of a triangle's angle below which it has no face.
+constexpr double kThinnestFace = 0x1p-80;
+
+/// Unit normal within some 2^-48; nothing for a degenerate triangle.
+std::optional<Vec3> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const detail::FilteredCross cross = detail::filtered_cross(b - a, c - a);
+    const double largest = max_abs(cross.value);
+    if (largest > kSlenderNormal * max_abs(cross.magnitude)) return normalized(cross.value / largest);
+    if (are_collinear(a, b, c)) return std::nullopt;
+    return unit_normal(a, b, c);
+}
+
+/// Power of two that brings the largest component between 1 and 2.
+PreciseVec3 scaled_to_one(const PreciseVec3& u) {
+    const double largest = max_abs(rounded(u));
+    return largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) * u : u;
+}
+
+/// Which side of an edge's upright plane p is on: +1 on the triangle's, in double-double.
+int precise_side_of_edge(const Vec3& p, const Vec3& from, const Vec3& to, const PreciseVec3& normal) {
+    const PreciseVec3 d = scaled_to_one(difference<DoubleDouble>(to, from));
+    return sign(dot_of(cross_of(normal, d), scaled_to_one(difference<DoubleDouble>(p, from))));
+}
+
+/// Offset of p from the face, where the foot of its perpendicular lies in the triangle.
+std::optional<Vec3> offset_from_face(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const std::optional<Vec3> normal = normal_of(a, b, c);
+    if (!normal || !projects_into_triangle(p, a, b, c, *normal)) return std::nullopt;
+    // From the nearest vertex the height errs least.
+    const Vec3 pa = p - a, pb = p - b, pc = p - c;
+    const double la = length_squared(pa), lb = length_squared(pb), lc = length_squared(pc);
+    const Vec3& nearest = la <= lb && la <= lc ? pa : (lb <= lc ? pb : pc);
+    return dot(*normal, nearest) * *normal;
+}
+
+struct Edge {
+    const Vec3& from;
+    const Vec3& to;
+    TriangleFeature edge;
+    TriangleFeature first;
+    TriangleFeature second;
+};
+
+/// True when the first candidate is to be preferred.
+bool is_nearer(const ClosestPointOnTriangle& x, const ClosestPointOnTriangle& y) {
+    if (x.distance_squared != y.distance_squared) return x.distance_squared < y.distance_squared;
+    return rank(x.feature) < rank(y.feature);
+}
+
+ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Edge& e) {
+    const ClosestPointOnSegment s = closest_point_on_segment(p, e.from, e.to);
+    const double squared = length_squared(s.offset);
+    if (s.fraction <= 0.0) return {e.from, s.offset, squared, e.first};
+    if (s.fraction >= 1.0) return {e.to, s.offset, squared, e.second};
+    const Vec3 point =
+        s.fraction <= 0.5 ? e.from + s.fraction * (e.to - e.from) : e.to - (1.0 - s.fraction) * (e.to - e.from);
+    return {point, s.offset, squared, e.edge};
+}
+
+/// Weights of a point inside the face. Lengths are first divided by the longest, so that no product leaves the range.
+Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double longest = std::max({max_abs(b - a), max_abs(c - b), max_abs(a - c)});
+    const double scale = std::ldexp(1.0, -std::ilogb(longest));
+    const auto plain = [&](const Vec3& to, const Vec3& from) { return scale * (to - from); };
+    const Vec3 u = plain(b, a);
+    const Vec3 v = plain(c, a);
+    const Vec3 normal = cross(u, v);
+    if (max_abs(normal) > kSlenderFace) {
+        const auto part = [&](const Vec3& from, const Vec3& to) {
+            return std::max(0.0, dot(normal, cross(plain(to, from), plain(p, from))));
+        };
+        return {part(b, c), part(c, a), part(a, b)};
+    }
+    const auto precise = [&](const Vec3& to, const Vec3& from) { return scale * difference<DoubleDouble>(to, from); };
+    const PreciseVec3 precise_normal = scaled_to_one(cross_of(precise(b, a), precise(c, a)));
+    const auto part = [&](const Vec3& from, const Vec3& to) {
+        return std::max(0.0, dot_of(precise_normal, cross_of(precise(to, from), precise(p, from))).hi);
+    };
+    return {part(b, c), part(c, a), part(a, b)};
+}
+
+}  // namespace
+
+bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+    const std::array<const Vec3*, 3> corner{&a, &b, &c};
+    bool is_certain = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 d = *corner[(i + 1) % 3] - *corner[i];
+        const Vec3 w = p - *corner[i];
+        const double side = dot(cross(normal, d), w);
+        const double error = kSideError * length(d) * length(w);
+        if (side < -error) return false;
+        is_certain = is_certain && side > error;
+    }
+    if (is_certain) return true;
+    const PreciseVec3 precise =
+        cross_of(scaled_to_one(difference<DoubleDouble>(b, a)), scaled_to_one(difference<DoubleDouble>(c, a)));
+    // Thinner than this, the edges are as near as the face to far below rounding.
+    if (max_abs(rounded(precise)) < kThinnestFace) return false;
+    return precise_side_of_edge(p, a, b, precise) >= 0 && precise_side_of_edge(p, b, c, precise) >= 0 &&
+           precise_side_of_edge(p, c, a, precise) >= 0;
+}
+
+// The fraction is measured from the nearer end, so that the offset does not cancel.
+ClosestPointOnSegment closest_point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+    const Vec3 d = b - a;
+    const double squared = length_squared(d);
+    const double from_a = dot(p - a, d);
+    if (!(from_a > 0.0)) return {0.0, p - a};
+    const double from_b = -dot(p - b, d);
+    if (!(from_b > 0.0)) return {1.0, p - b};
+    if (from_a <= from_b) return {from_a / squared, (p - a) - (from_a / squared) * d};
+    return {1.0 - from_b / squared, (p - b) + (from_b / squared) * d};
+}
+
+ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    using enum TriangleFeature;
+    ClosestPointOnTriangle nearest = closest_point_on_edge(p, {a, b, kEdgeAB, kVertexA, kVertexB});
+    for (const Edge& edge : {Edge{b, c, kEdgeBC, kVertexB, kVertexC}, Edge{c, a, kEdgeCA, kVertexC, kVertexA}}) {
+        const ClosestPointOnTriangle candidate = closest_point_on_edge(p, edge);
+        if (is_nearer(candidate, nearest)) nearest = candidate;
+    }
+    if (const std::optional<Vec3> offset = offset_from_face(p, a, b, c)) {
+        const ClosestPointOnTriangle face{p - *offset, *offset, length_squared(*offset), kFace};
+        if (is_nearer(face, nearest)) return face;
+    }
+    return nearest;
+}
+
+Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto along = [&](const Vec3& from, const Vec3& to) {
+        return closest_point_on_segment(nearest.point, from, to).fraction;
+    };
+    switch (nearest.feature) {
+        case TriangleFeature::kVertexA:
+            return {1, 0, 0};
+        case TriangleFeature::kVertexB:
+            return {0, 1, 0};
+        case TriangleFeature::kVertexC:
+            return {0, 0, 1};
+        case TriangleFeature::kEdgeAB:
+            return {1.0 - along(a, b), along(a, b), 0};
+        case TriangleFeature::kEdgeBC:
+            return {0, 1.0 - along(b, c), along(b, c)};
+        case TriangleFeature::kEdgeCA:
+            return {along(c, a), 0, 1.0 - along(c, a)};
+        case TriangleFeature::kFace:
+            break;
+    }
+    const Vec3 weights = face_weights(nearest.point, a, b, c);
+    // A triangle that is a line to rounding has no such weights worth having: then those on an edge are nearer.
+    const std::array<Vec3, 4> candidates{
+        Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
+        Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
+    const auto miss = [&](const Vec3& w) { return length_squared(w.x * a + w.y * b + w.z * c - nearest.point); };
+    return *std::min_element(candidates.begin(), candidates.end(),
+                             [&](const Vec3& v, const Vec3& w) { return miss(v) < miss(w); });
+}
+
+// The smallest distance is that of an end from the other segment, or that of two inner points where the common
+// perpendicular meets both. Where the segments are almost parallel that place is ill-determined, but what is returned
+// is always the distance of two points of the segments, and there the ends are as near to rounding.
+double squared_distance_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+    const double least = std::min({length_squared(closest_point_on_segment(p, a, b).offset),
+                                   length_squared(closest_point_on_segment(q, a, b).offset),
+                                   length_squared(closest_point_on_segment(a, p, q).offset),
+                                   length_squared(closest_point_on_segment(b, p, q).offset)});
+    const Vec3 d = q - p;
+    const Vec3 common = cross(d, b - a);
+    const double squared = length_squared(common);
+    const double s = dot(cross(a - p, b - a), common) / squared;
+    if (!(s > 0.0 && s < 1.0)) return least;
+    return std::min(least, length_squared(closest_point_on_segment(s * d, a - p, b - p).offset));
+}
+
+double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                                 const Vec3& c) {
+    if (segment_meets_triangle(p, q, a, b, c)) return 0.0;
+    return std::min({closest_point_on_triangle(p, a, b, c).distance_squared,
+                     closest_point_on_triangle(q, a, b, c).distance_squared, squared_distance_of_segments(p, q, a, b),
+                     squared_distance_of_segments(p, q, b, c), squared_distance_of_segments(p, q, c, a)});
+}
+
+}  // namespace ricochet

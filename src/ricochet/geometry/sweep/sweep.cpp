@@ -1,0 +1,352 @@
+#include "ricochet/geometry/sweep/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/expansion.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/polynomial.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kUnitRoundoff = 0x1p-53;
+
+/// Corners of the path's Bezier hull: the path and all its chords lie inside.
+struct Hull {
+    std::array<Vec3, 4> points;
+    int count = 0;
+};
+
+Hull hull_of(const Path& path) {
+    const double h = path.duration;
+    switch (path.degree) {
+        case 1:
+            return {{path.c[0], path.end, {}, {}}, 2};
+        case 2:
+            return {{path.c[0], path.c[0] + (0.5 * h) * path.c[1], path.end, {}}, 3};
+        default:
+            return {{path.c[0], path.c[0] + (h / 3.0) * path.c[1],
+                     path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2]), path.end},
+                    4};
+    }
+}
+
+/// A triangle as a surface: sides and meetings are exact, the normal is rounded.
+struct TriangleSurface {
+    const TrianglePlane& plane;
+
+    [[nodiscard]] const Vec3& normal() const { return plane.unit_normal(); }
+    [[nodiscard]] int side(const Vec3& p) const { return plane.side(p); }
+    [[nodiscard]] const Vec3& origin() const { return plane.a(); }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const { return plane.is_met_by(p, q); }
+    [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, plane.a(), plane.b(), plane.c()); }
+    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return plane.crossing_fraction(p, q); }
+    /// No more than fraction(), in plain doubles, for points that are on different sides.
+    [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
+    /// True when a direction certainly leads towards the given side, for the rounded normal as well.
+    [[nodiscard]] bool leads_to(int side, const Vec3& direction) const;
+    /// Fraction of a segment in the triangle's plane, which meets the triangle, at which it enters: the last of the
+    /// crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
+    /// Clipping", Computers & Graphics 3, 1978).
+    [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
+};
+
+// In parts of the largest magnitude, the plain product errs by 8.5 u of the direction's components, the unit normal
+// by 1.1 u and its product with the direction by 3 u.
+bool TriangleSurface::leads_to(int side, const Vec3& direction) const {
+    const auto& [normal, magnitude] = plane.cross();
+    const Vec3 d = abs(direction);
+    return side * dot(normal, direction) > 16.0 * kUnitRoundoff * max_abs(magnitude) * (d.x + d.y + d.z);
+}
+
+// The heights err by no more than what the filter leaves for it.
+double TriangleSurface::least_fraction(const Vec3& p, const Vec3& q) const {
+    const auto& [normal, magnitude] = plane.cross();
+    const Vec3 to_p = p - plane.a();
+    const Vec3 to_q = q - plane.a();
+    const double p_height = std::fabs(dot(normal, to_p));
+    const double p_error = detail::kDeterminantFilter * dot(magnitude, abs(to_p));
+    const double q_height = std::fabs(dot(normal, to_q));
+    const double q_error = detail::kDeterminantFilter * dot(magnitude, abs(to_q));
+    const double all = p_height + q_height + p_error + q_error;
+    return all > 0.0 ? (1.0 - 8.0 * kUnitRoundoff) * ((p_height - p_error) / all) : 0.0;
+}
+
+double TriangleSurface::entry(const Vec3& p, const Vec3& q) const {
+    const std::array<const Vec3*, 3> corners{&plane.a(), &plane.b(), &plane.c()};
+    const Vec3 n = abs(normal());
+    const int axis = n.x >= n.y && n.x >= n.z ? 0 : (n.y >= n.z ? 1 : 2);
+    double latest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& from = *corners[k];
+        const Vec3& to = *corners[(k + 1) % 3];
+        // The plane through the edge and parallel to the axis, exactly: only one coordinate differs.
+        Vec3 lifted = from;
+        lifted[axis] += std::max(max_abs(to - from), ulp(from[axis]));
+        const int inside = orient3d(from, to, lifted, *corners[(k + 2) % 3]);
+        if (orient3d(from, to, lifted, p) != -inside || orient3d(from, to, lifted, q) == -inside) continue;
+        latest = std::max(latest, crossing_fraction(p, q, from, to, lifted));
+    }
+    return latest;
+}
+
+Expansion<12> plane_expansion(const Plane& plane, const Vec3& p) {
+    const auto term = [](double n, double x, double origin) { return Expansion<2>(two_diff(x, origin)) * n; };
+    return (term(plane.normal.x, p.x, plane.point.x) + term(plane.normal.y, p.y, plane.point.y)) +
+           term(plane.normal.z, p.z, plane.point.z);
+}
+
+DoubleDouble plane_value(const Plane& plane, const Vec3& p) { return rounded(plane_expansion(plane, p)); }
+
+struct PlaneSurface {
+    const Plane& plane;
+
+    [[nodiscard]] Vec3 normal() const { return plane.normal; }
+    [[nodiscard]] int side(const Vec3& p) const { return side_of(plane, p); }
+    [[nodiscard]] const Vec3& origin() const { return plane.point; }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const { return side(p) * side(q) <= 0; }
+    [[nodiscard]] bool contains(const Vec3& p) const { return side(p) == 0; }
+    [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const {
+        const DoubleDouble at_p = plane_value(plane, p);
+        return (at_p / (at_p - plane_value(plane, q))).hi;
+    }
+    [[nodiscard]] double least_fraction(const Vec3& /*p*/, const Vec3& /*q*/) const { return 0.0; }
+    [[nodiscard]] bool leads_to(int /*side*/, const Vec3& /*direction*/) const { return false; }
+    [[nodiscard]] double entry(const Vec3& /*p*/, const Vec3& /*q*/) const { return 0.0; }
+};
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& surface, double latest) {
+    const int before = surface.side(path.c[0]);
+    const int after = surface.side(path.end);
+    if (before == after && before != 0) return std::nullopt;
+    if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
+    if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
+    // A particle born on the surface is turned back from the side it heads for.
+    if (before == 0) return Crossing{0.0, -after};
+    if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
+    return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
+}
+
+/// Signed distance from the plane along the path, g(s) = g0 + g1 s + g2 s^2 (+ g3 s^3), oriented so that the start is
+/// on the positive side.
+struct Distance {
+    double g0;
+    double g1;
+    double g2;
+};
+
+template <class Surface>
+Distance distance_along(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
+    const double sign = orientation;
+    return {std::max(0.0, sign * dot(n, path.c[0] - surface.origin())), sign * dot(n, path.c[1]),
+            sign * dot(n, path.c[2])};
+}
+
+/// Discriminant g1^2 - 4 g0 g2 without cancellation.
+double discriminant(const Distance& g) { return (two_product(g.g1, g.g1) - 4.0 * two_product(g.g0, g.g2)).hi; }
+
+/// The times at which the distance passes through zero: downwards first, then (a path that comes back) upwards.
+struct Roots {
+    std::array<double, 2> time{};
+    int count = 0;
+};
+
+/// Roots in [0, duration], given the exact sides of the end points; the number of crossings agrees with them.
+/// Method: the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and
+/// Stability of Numerical Algorithms", section 1.8).
+Roots crossings_of_parabola(const Distance& g, bool ends_on_same_side, double duration) {
+    const double d = discriminant(g);
+    if (!ends_on_same_side) {
+        const double root = std::sqrt(std::max(0.0, d));
+        const double time =
+            g.g1 < 0.0 ? 2.0 * g.g0 / (-g.g1 + root) : (g.g2 < 0.0 ? (g.g1 + root) / (-2.0 * g.g2) : duration);
+        return {{std::clamp(time, 0.0, duration), 0.0}, 1};
+    }
+    const bool dips_inside = g.g1 < 0.0 && g.g2 > 0.0 && -g.g1 < 2.0 * g.g2 * duration;
+    if (!dips_inside || d <= 0.0) return {};
+    const double q = -g.g1 + std::sqrt(d);
+    return {{std::min(2.0 * g.g0 / q, duration), std::min(q / (2.0 * g.g2), duration)}, 2};
+}
+
+/// True when the path crosses the surface around time s, where it comes from the given exact side: two points of the
+/// path that bracket s lie on different sides and the segment between them meets the surface.
+template <class Surface>
+bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal, double s, int side) {
+    const double reach = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
+    const double speed = std::fabs(dot(normal, path.velocity(s)));
+    double margin = 8.0 * kUnitRoundoff * (s + reach / std::max(speed, 1e-300));
+    for (int attempt = 0; attempt < 24; ++attempt, margin *= 8.0) {
+        const double from = std::max(0.0, s - margin);
+        const double to = std::min(path.duration, s + margin);
+        const Vec3 p = path.position(from);
+        const Vec3 q = path.position(to);
+        if (surface.side(p) == side && surface.side(q) != side) return surface.contains_crossing_of(p, q);
+        if (from == 0.0 && to == path.duration) return false;
+    }
+    return false;
+}
+
+/// A path that starts in the surface's plane. On the surface itself the particle is turned back from the side it heads
+/// for; beside it, one crossing is behind and the other is where the distance returns to zero.
+template <class Surface>
+std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
+    const Vec3 normal = surface.normal();
+    const double g1 = dot(normal, path.c[1]);
+    const double g2 = dot(normal, path.c[2]);
+    if (surface.contains(path.c[0])) {
+        const double ahead = g1 != 0.0 ? g1 : g2;
+        return Crossing{0.0, ahead > 0.0 ? -1 : (ahead < 0.0 ? 1 : 0)};
+    }
+    if (g1 * g2 >= 0.0) return std::nullopt;
+    const double s = -g1 / g2;
+    const int side = g1 > 0.0 ? 1 : -1;
+    if (s > path.duration || !crosses_around(path, surface, normal, s, side)) return std::nullopt;
+    return Crossing{s, side};
+}
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surface& surface) {
+    const int before = surface.side(path.c[0]);
+    if (before == 0) return first_crossing_from_plane(path, surface);
+    const int after = surface.side(path.end);
+    // It dips below the surface and comes back only where it begins downwards and bends upwards.
+    const bool dips = !surface.leads_to(before, path.c[1]) && !surface.leads_to(-before, path.c[2]);
+    if (before == after && !dips) return std::nullopt;
+    const Vec3 normal = surface.normal();
+    const Distance g = distance_along(path, surface, normal, before);
+    const Roots roots = crossings_of_parabola(g, before == after, path.duration);
+    for (int k = 0; k < roots.count; ++k) {
+        const double s = roots.time[static_cast<std::size_t>(k)];
+        const int side = k == 0 ? before : -before;
+        if (crosses_around(path, surface, normal, s, side)) return Crossing{s, side};
+    }
+    return std::nullopt;
+}
+
+/// Times at which a cubic path passes through the plane, in order. At the ends the exact sides overrule the rounded
+/// distance: a crossing that rounding has pushed out of the interval is put back at its end.
+template <class Surface>
+Times passes_of_cubic(const Path& path, const Surface& surface, const Vec3& normal, int before, int after) {
+    Polynomial distance;
+    distance.degree = 3;
+    distance.duration = path.duration;
+    distance.coefficients[0] = DoubleDouble(dot(normal, path.c[0] - surface.origin()));
+    for (std::size_t k = 1; k <= 3; ++k) distance.coefficients[k] = DoubleDouble(dot(normal, path.c[k]));
+    Times times;
+    const double heading = dot(normal, path.c[1]) * before;
+    if (sign(distance.coefficients[0]) != before && heading < 0.0) times.append(0.0);
+    for (const double s : sign_changes(distance)) times.append(s);
+    if (sign(distance.value(path.duration)) != after) times.append(path.duration);
+    return times;
+}
+
+template <class Surface>
+std::optional<Crossing> first_crossing_of_cubic(const Path& path, const Surface& surface) {
+    const int before = surface.side(path.c[0]);
+    if (before == 0 && surface.contains(path.c[0])) return first_crossing_from_plane(path, surface);
+    const int after = surface.side(path.end);
+    const Vec3 normal = surface.normal();
+    for (const double s : passes_of_cubic(path, surface, normal, before, after)) {
+        const double heading = dot(normal, path.velocity(s));
+        const int side = s == 0.0 ? before : (heading < 0.0 ? 1 : -1);
+        if (crosses_around(path, surface, normal, s, side)) return Crossing{s, side};
+    }
+    return std::nullopt;
+}
+
+template <class Surface>
+std::optional<Crossing> crossing_of(const Path& path, const Surface& surface, double latest) {
+    if (path.degree < 2) return first_crossing_of_line(path, surface, latest);
+    return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
+}
+
+}  // namespace
+
+// Filter: each difference errs by u relative, each product and sum by another u; 8 u times the sum of magnitudes covers
+// the 5 roundings on the way.
+int side_of(const Plane& plane, const Vec3& p) {
+    const Vec3 d = p - plane.point;
+    const Vec3 terms{plane.normal.x * d.x, plane.normal.y * d.y, plane.normal.z * d.z};
+    const double value = terms.x + terms.y + terms.z;
+    const double bound = 8.0 * kUnitRoundoff * (std::fabs(terms.x) + std::fabs(terms.y) + std::fabs(terms.z));
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    return plane_expansion(plane, p).sign();
+}
+
+bool clears_plane(const Path& path, const Plane& plane, double slack) {
+    const Hull hull = hull_of(path);
+    int side = 0;
+    for (int k = 0; k < hull.count; ++k) {
+        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - plane.point;
+        const double value = dot(plane.normal, d);
+        const double bound = 2.0 * slack + 16.0 * kUnitRoundoff * dot(abs(plane.normal), abs(d));
+        if (!(std::fabs(value) > bound)) return false;
+        const int here = value > 0.0 ? 1 : -1;
+        if (side != 0 && here != side) return false;
+        side = here;
+    }
+    return true;
+}
+
+// With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
+// N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
+bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
+    return clears_plane_of(path, TrianglePlane(a, b, c), slack);
+}
+
+bool clears_plane_of(const Path& path, const TrianglePlane& triangle, double slack) {
+    const auto& [normal, magnitude] = triangle.cross();
+    const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
+    const Hull hull = hull_of(path);
+    int side = 0;
+    for (int k = 0; k < hull.count; ++k) {
+        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - triangle.a();
+        const double value = dot(normal, d);
+        if (!(std::fabs(value) > clearance + 16.0 * kUnitRoundoff * dot(magnitude, abs(d)))) return false;
+        const int here = value > 0.0 ? 1 : -1;
+        if (side != 0 && here != side) return false;
+        side = here;
+    }
+    return true;
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c) {
+    return first_crossing(path, TrianglePlane(a, b, c));
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const TrianglePlane& triangle, double latest) {
+    return crossing_of(path, TriangleSurface{triangle}, latest);
+}
+
+std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
+    return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
+}
+
+double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
+                          double slack) {
+    const std::array<Vec3, 3> corners{a, b, c};
+    double leaves = path.duration;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& from = corners[k];
+        Vec3 inward = normalized(cross(normal, corners[(k + 1) % 3] - from));
+        if (dot(inward, corners[(k + 2) % 3] - from) < 0.0) inward = -inward;
+        const Distance g{dot(inward, path.c[0] - from) + slack, dot(inward, path.c[1]), dot(inward, path.c[2])};
+        if (g.g0 < 0.0) return 0.0;
+        const bool ends_inside = g.g0 + path.duration * (g.g1 + path.duration * g.g2) >= 0.0;
+        const Roots roots = crossings_of_parabola(g, ends_inside, path.duration);
+        if (roots.count > 0) leaves = std::min(leaves, roots.time[0]);
+    }
+    return leaves;
+}
+
+double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    return TrianglePlane(a, b, c).signed_distance(p);
+}
+
+double signed_distance(const Vec3& p, const Plane& plane) { return plane_value(plane, p).hi; }
+
+}  // namespace ricochet

@@ -1,0 +1,151 @@
+/// \file
+/// The features of one triangle against one moving sphere: what SphereSweep does with a candidate that its cheap tests
+/// have not discarded.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/distance_polynomials.h"
+#include "ricochet/geometry/sweep/path.h"
+#include "ricochet/geometry/sweep/polynomial.h"
+#include "ricochet/geometry/sweep/sphere_sweep.h"
+#include "ricochet/geometry/sweep/triangle_plane.h"
+
+namespace ricochet {
+
+/// side * height - radius as a polynomial: positive while the sphere is clear of the plane on that side.
+[[nodiscard]] Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& height,
+                                        const DoubleDouble& radius, int side);
+[[nodiscard]] inline Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& height,
+                                               double radius, int side) {
+    return face_clearance(path, height, DoubleDouble(radius), side);
+}
+
+/// How a start in overlap goes on.
+struct OverlapEnd {
+    enum Kind {
+        kStopped,  ///< the distance shrinks from `time` on, while it is at most the radius
+        kFree,     ///< it grows until at `time` it exceeds the radius
+        kNever     ///< it grows, or stays, to the end of the path
+    };
+    Kind kind = kNever;
+    double time = 0.0;
+};
+
+/// Times at which the distance from a surface may have an extremum.
+class Extrema {
+public:
+    /// Those of the distance from a point or a line, given its clearance.
+    void add_of(const Polynomial& clearance) { add(sign_changes(clearance.derivative())); }
+    /// Those of the distance from a plane, given the height over it: its extrema and its zeros.
+    void add_of_height(const Polynomial& height) {
+        add_of(height);
+        add(sign_changes(height));
+    }
+    /// In ascending order.
+    [[nodiscard]] std::span<const double> sorted() {
+        std::sort(times_.begin(), times_.begin() + count_);
+        return {times_.data(), static_cast<std::size_t>(count_)};
+    }
+
+private:
+    void add(const Times& times) {
+        for (const double time : times) times_[static_cast<std::size_t>(count_++)] = time;
+    }
+    std::array<double, 40> times_{};  // 5 for each of three edges and three vertices, 2 + 3 for the face
+    int count_ = 0;
+};
+
+/// Follows a path that starts in overlap. `cuts` are the times, in order, at which the distance from the surface may
+/// have an extremum; offset_at(p) is the vector from the surface's nearest point to p. The squared distance from a
+/// convex set has a continuous derivative, so between two cuts it is monotone and its middle tells the direction.
+/// Distances up to `reach`, the radius plus its rounding, count as overlap.
+template <class OffsetAt>
+[[nodiscard]] OverlapEnd follow_overlap(const Path& path, double reach, std::span<const double> cuts,
+                                        const OffsetAt& offset_at) {
+    double start = 0.0;
+    for (std::size_t i = 0; i <= cuts.size(); ++i) {
+        const double end = i < cuts.size() ? cuts[i] : path.duration;
+        if (!(end > start)) continue;
+        if (start > 0.0 && length(offset_at(path.position(start))) > reach) return {OverlapEnd::kFree, start};
+        const double middle = start + 0.5 * (end - start);
+        const Vec3 offset = offset_at(path.position(middle));
+        const Vec3 velocity = path.velocity(middle);
+        if (dot(offset, velocity) < -kSlowestApproach * length(offset) * length(velocity)) {
+            return {OverlapEnd::kStopped, start};
+        }
+        start = end;
+    }
+    return {};
+}
+
+/// One search; see SphereSweep::first_contact.
+class TriangleContactSearch {
+public:
+    TriangleContactSearch(const SphereSweep& sphere, const TrianglePlane& plane);
+
+    [[nodiscard]] std::optional<SphereContact> first();
+
+private:
+    struct Candidate {
+        double time;
+        TriangleFeature feature;
+    };
+    /// The line through an edge, from its lexicographically first end, so that triangles that share it agree to the
+    /// bit.
+    struct EdgeLine {
+        int first;  ///< corner it starts from
+        PreciseVec3 direction;
+        double length;
+    };
+    struct EdgeClearance {
+        Polynomial polynomial;              ///< squared distance from the line minus squared radius
+        std::array<DoubleDouble, 4> place;  ///< along the line, m from its start
+    };
+
+    void search(double from);
+    void search_face(double from);
+    void search_edge(int i, double from);
+    void search_vertex(int i, double from);
+    void offer(double time, TriangleFeature feature);
+    [[nodiscard]] std::optional<SphereContact> search_from_overlap();
+
+    [[nodiscard]] const std::optional<Vec3>& normal();
+    [[nodiscard]] std::array<DoubleDouble, 4> height_over_face(DoubleDouble& scaled_radius);
+    [[nodiscard]] Times face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,
+                                       double from) const;
+    [[nodiscard]] bool certainly_passes_beside_face() const;
+    [[nodiscard]] bool foot_is_on_face(const Vec3& p);
+    [[nodiscard]] bool is_upright(const Vec3& offset, double slack) const;
+    [[nodiscard]] bool certainly_misses_edge(int i) const;
+    [[nodiscard]] bool certainly_clears(const Coefficients<double>& clearance, double start_distance) const;
+    [[nodiscard]] Polynomial polynomial(const Coefficients<DoubleDouble>& coefficients) const;
+    [[nodiscard]] std::optional<EdgeLine> edge_line(int i) const;
+    [[nodiscard]] EdgeClearance edge_clearance(const EdgeLine& line) const;
+    [[nodiscard]] std::span<const double> distance_extrema(Extrema& extrema);
+    [[nodiscard]] PreciseVec3 position_from(const Vec3& origin, double time) const;
+
+    [[nodiscard]] SphereContact contact_at(const Candidate& candidate);
+    [[nodiscard]] Vec3 offset_at(const Candidate& candidate) const;
+    [[nodiscard]] double seam_slack(const Vec3& p) const;
+
+    const SphereSweep& sphere_;
+    const Path& path_;
+    double radius_;
+    const TrianglePlane& plane_;
+    std::array<Vec3, 3> corners_;
+    double largest_coordinate_;  ///< of the corners
+    std::optional<Vec3> normal_;
+    bool normal_is_known_ = false;
+    std::optional<Candidate> best_;
+    double limit_;  ///< times after this one do not matter any more
+    bool starts_in_overlap_ = false;
+};
+
+}  // namespace ricochet

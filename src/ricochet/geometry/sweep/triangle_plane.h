@@ -1,0 +1,63 @@
+/// \file
+/// The plane of one triangle, asked several times: what the questions have in common is worked out once.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/geometry/predicates/bounded_cross.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+
+/// Answers as the predicates of the same names give them, to the last bit, for one triangle (a, b, c). For one thread:
+/// what is worked out is kept.
+class TrianglePlane {
+public:
+    TrianglePlane() = default;
+    TrianglePlane(const Vec3& a, const Vec3& b, const Vec3& c)
+        : a_(a), b_(b), c_(c), cross_(detail::filtered_cross(b - a, c - a)) {}
+
+    [[nodiscard]] const Vec3& a() const { return a_; }
+    [[nodiscard]] const Vec3& b() const { return b_; }
+    [[nodiscard]] const Vec3& c() const { return c_; }
+    /// (b - a) x (c - a) in plain doubles.
+    [[nodiscard]] const detail::FilteredCross& cross() const { return cross_; }
+
+    /// orient3d(a, b, c, p) where plain doubles tell, else 0.
+    [[nodiscard]] int likely_side(const Vec3& p) const { return detail::filtered_sign(cross_, p - a_); }
+    /// orient3d(a, b, c, p). Exact.
+    [[nodiscard]] int side(const Vec3& p) const {
+        const int likely = likely_side(p);
+        return likely != 0 ? likely : detail::orient3d_beyond_filter(a_, b_, c_, p);
+    }
+    /// segment_meets_triangle(p, q, a, b, c). Exact.
+    [[nodiscard]] bool is_met_by(const Vec3& p, const Vec3& q) const {
+        const int p_side = likely_side(p);
+        const int q_side = likely_side(q);
+        return p_side * q_side <= 0 && detail::segment_meets_triangle_beyond_filter(p, q, a_, b_, c_, p_side, q_side);
+    }
+    /// See crossing_fraction().
+    [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q) const;
+    /// See unit_normal().
+    [[nodiscard]] const Vec3& unit_normal() const;
+    /// See signed_distance() in sweep.h, m.
+    [[nodiscard]] double signed_distance(const Vec3& p) const;
+
+private:
+    struct Fine {
+        ExactDifference u;
+        ExactDifference v;
+        BoundedCross normal;
+    };
+    [[nodiscard]] const Fine& fine() const;
+    [[nodiscard]] DoubleDouble volume(const Vec3& p, double relative_error) const;
+
+    Vec3 a_;
+    Vec3 b_;
+    Vec3 c_;
+    detail::FilteredCross cross_;
+    mutable std::optional<Fine> fine_;
+    mutable std::optional<Vec3> unit_normal_;
+};
+
+}  // namespace ricochet

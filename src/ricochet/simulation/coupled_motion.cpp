@@ -1,0 +1,142 @@
+#include "ricochet/simulation/coupled_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Members per unit of parallel work.
+constexpr std::size_t kBlock = 256;
+
+/// An energy, J, that rounding explains: all springs stretched by a part of their length that no one asks about.
+double negligible_energy(const SpringNetwork& network) {
+    double sum = 0.0;
+    for (const Spring& spring : network.springs()) {
+        const double stretch = kNegligibleStretch * spring.rest_length;
+        sum += 0.5 * spring.stiffness * stretch * stretch;
+    }
+    return sum;
+}
+
+}  // namespace
+
+CoupledMotion::CoupledMotion(std::vector<Spring> springs, SystemSolver solver, const ForceField& forces,
+                             const Integrator& integrator)
+    : springs_(std::move(springs)),
+      solver_(std::move(solver)),
+      integrator_(integrator),
+      system_(forces, springs_),
+      least_energy_(negligible_energy(springs_)) {}
+
+void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
+
+double CoupledMotion::plan(const Particles& particles, double time, double duration) {
+    std::vector<std::uint32_t> all;
+    if (solver_) {
+        all.resize(particles.size());
+        std::iota(all.begin(), all.end(), 0U);
+        // Who is born inside the step joins with the next one.
+        std::erase_if(all, [&](std::uint32_t i) { return particles.birth_time[i] > time || particles.frozen[i] != 0; });
+    }
+    system_.assign(particles, solver_ ? all : springs_.coupled(), time);
+    slots_.assign(particles.size(), kNoSlot);
+    flights_.resize(system_.size());
+    if (system_.size() == 0) return duration;
+    const SystemStep step = stepped(duration);
+    if (!springs_.empty()) watch_energy(step);
+    unsolved_steps_ += step.solved ? 0 : 1;
+    for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
+    parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 coupling = held_coupling(integrator_.kind, system_, step, k);
+            const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // a solver's path: the cubic
+            flights_[k] = planned_flight(kind, system_, step, k, coupling);
+        }
+    });
+    return step.duration;
+}
+
+SystemStep CoupledMotion::stepped(double duration) {
+    if (!solver_) {
+        SystemStep step = step_system(integrator_, system_, duration, first_try_ > 0.0 ? first_try_ : duration);
+        first_try_ = step.next_duration;
+        return step;
+    }
+    SystemStep step;
+    step.duration = duration;
+    step.start_accelerations.resize(system_.size());
+    system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.start_accelerations);
+    ParticleSystem advanced = system_;
+    solver_(advanced, duration);
+    step.positions = advanced.positions();
+    step.velocities = advanced.velocities();
+    return step;
+}
+
+double CoupledMotion::energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const {
+    const double kinetic = ordered_sum(system_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t k = begin; k < end; ++k) sum += 0.5 * system_.mass(k) * length_squared(velocities[k]);
+        return sum;
+    });
+    return kinetic + system_.spring_energy(positions);
+}
+
+// Energy comes from the start, from forces and from walls. What a method makes beyond that is its error, and far beyond
+// it the motion is nonsense. The work of a step is taken by the trapezoid rule; its error is of the work's own size.
+void CoupledMotion::watch_energy(const SystemStep& step) {
+    const double before = energy(system_.positions(), system_.velocities());
+    const double after = energy(step.positions, step.velocities);
+    given_ += watching_ ? std::max(0.0, before - energy_after_plan_) : before;
+    const auto work_of = [&](std::size_t k) {
+        if (system_.is_pinned(k)) return 0.0;
+        const Vec3& x0 = system_.positions()[k];
+        const Vec3& x1 = step.positions[k];
+        const Vec3 pull = system_.own_acceleration(k, system_.time(), x0, system_.velocities()[k]) +
+                          system_.own_acceleration(k, system_.time() + step.duration, x1, step.velocities[k]);
+        return 0.5 * system_.mass(k) * dot(pull, x1 - x0);
+    };
+    const auto sum = [&](auto&& term) {
+        return ordered_sum(system_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+            double partial = 0.0;
+            for (std::size_t k = begin; k < end; ++k) partial += term(work_of(k));
+            return partial;
+        });
+    };
+    gained_ += after - before - sum([](double work) { return work; });
+    given_ += sum([](double work) { return std::fabs(work); });
+    energy_after_plan_ = after;
+    watching_ = true;
+    if (!(gained_ <= kDivergedGain * (given_ + least_energy_))) report_divergence(step);
+}
+
+void CoupledMotion::report_divergence(const SystemStep& step) const {
+    const auto speed_of = [&](std::size_t k) {
+        const double speed = length(step.velocities[k]);
+        return std::isfinite(speed) ? speed : INFINITY;
+    };
+    std::size_t fastest = 0;
+    for (std::size_t k = 1; k < system_.size(); ++k) {
+        if (speed_of(k) > speed_of(fastest)) fastest = k;
+    }
+    throw DivergedError(
+        fmt::format("at t = {:.6g} s the motion has diverged: particle {} would reach {:.3g} m/s, and springs and "
+                    "particles hold over {} times the energy that forces and walls have given them; use a shorter "
+                    "time step, more damping, or the integrator implicit_euler",
+                    system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain));
+}
+
+void CoupledMotion::settle(const Particles& particles) {
+    if (!springs_.empty()) springs_.break_overstretched(particles.position);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,249 @@
+#include "ricochet/simulation/offspring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "ricochet/collision/contact_search.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+/// Parents per unit of parallel work.
+constexpr std::size_t kBlock = 256;
+
+// Exact: no surface meets the closed straight line.
+bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to) {
+    ContactSearch search(world, scratch);
+    return !search.search(line_path(from, to - from, 1.0), 0.0) && search.is_free(from, to);
+}
+
+}  // namespace
+
+/// What one particle did in one pass: flights between knots.
+struct Offspring::Way {
+    struct Knot {
+        double time;
+        Vec3 position;
+        Vec3 before;  ///< velocity with which it arrives
+        Vec3 after;
+    };
+    Particle particle;  ///< with the last state
+    std::vector<Knot> knots;
+    std::span<const ContactRecord> records;
+    bool shattered = false;
+    bool died = false;
+
+    [[nodiscard]] double begin() const { return knots.front().time; }
+    [[nodiscard]] double end() const { return knots.back().time; }
+    [[nodiscard]] Particle at(const Knot& knot, const Vec3& velocity) const;
+    [[nodiscard]] Particle at(double time, const CollisionWorld& world, ContactScratch& scratch) const;
+};
+
+Particle Offspring::Way::at(const Knot& knot, const Vec3& velocity) const {
+    Particle parent = particle;
+    parent.position = knot.position;
+    parent.velocity = velocity;
+    return parent;
+}
+
+// The cubic through both ends of the flight with their velocities: exact for a steady acceleration.
+Particle Offspring::Way::at(double time, const CollisionWorld& world, ContactScratch& scratch) const {
+    std::size_t k = 0;
+    while (k + 2 < knots.size() && knots[k + 1].time <= time) ++k;
+    const Knot& a = knots[k];
+    if (k + 1 == knots.size()) return at(a, a.after);
+    const Knot& b = knots[k + 1];
+    const double duration = b.time - a.time;
+    if (!(duration > 0.0)) return at(a, a.after);
+    const double s = std::clamp((time - a.time) / duration, 0.0, 1.0);
+    const Vec3 chord = b.position - a.position;
+    const Vec3 begin = duration * a.after - chord;
+    const Vec3 end = chord - duration * b.before;
+    Particle parent = particle;
+    parent.position = flush_tiny(a.position + s * (chord + (1.0 - s) * ((1.0 - s) * begin + s * end)));
+    parent.velocity = (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration;
+    if (is_clear(world, scratch, a.position, parent.position)) return parent;
+    if (is_clear(world, scratch, b.position, parent.position)) return parent;
+    return at(a, a.after);
+}
+
+Offspring::Offspring(const std::vector<Emitter>& emitters, const OffspringLimits& limits)
+    : emitters_(emitters), limits_(limits), children_of_(emitters.size()) {
+    for (const Emitter& emitter : emitters) {
+        const auto& rule = emitter.description().parent;
+        if (!rule) continue;
+        empty_ = false;
+        if (rule->emitter >= emitters.size()) {
+            throw InputError(fmt::format("emitter '{}': its parent is not there", emitter.description().name));
+        }
+        children_of_[rule->emitter].push_back(emitter.number());
+        if (rule->recursive && rule->emitter != emitter.number()) {
+            children_of_[emitter.number()].push_back(emitter.number());
+        }
+    }
+    for (const auto& children : children_of_) {
+        for (const BirthEvent event : {BirthEvent::death, BirthEvent::impact}) {
+            const auto shares = std::count_if(children.begin(), children.end(), [&](std::uint32_t child) {
+                const ParentRule& rule = *emitters[child].description().parent;
+                return rule.share && rule.on == event;
+            });
+            if (shares > 1) throw InputError("two emitters share out the same parents at the same event");
+        }
+    }
+}
+
+double Offspring::shatter_impulse(const Particles& particles, std::size_t i) const {
+    const Origin& origin = particles.origin[i];
+    if (origin.emitter == kNoEmitter || origin.generation >= limits_.max_depth) {
+        return std::numeric_limits<double>::infinity();
+    }
+    for (const std::uint32_t child : children_of_[origin.emitter]) {
+        const ParentRule& rule = *emitters_[child].description().parent;
+        if (rule.share && rule.on == BirthEvent::impact) return rule.threshold_impulse;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+void Offspring::before_move(const Particles& particles, std::size_t first) {
+    first_ = first;
+    const auto begin = static_cast<std::ptrdiff_t>(first);
+    positions_.assign(particles.position.begin() + begin, particles.position.end());
+    velocities_.assign(particles.velocity.begin() + begin, particles.velocity.end());
+}
+
+Offspring::Way Offspring::way_of(const Particles& particles, std::size_t i, double from, double to,
+                                 std::span<const ContactRecord> records) const {
+    Way way;
+    way.particle = particles.at(i);
+    way.records = records;
+    const double begin = std::max(from, way.particle.birth_time);
+    const double death = way.particle.birth_time + way.particle.lifetime;
+    way.knots.push_back({begin, positions_[i - first_], velocities_[i - first_], velocities_[i - first_]});
+    for (const ContactRecord& record : records) {
+        way.knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
+    }
+    const bool absorbed = particles.absorbed[i] != 0;
+    way.shattered = particles.absorbed[i] == kShattered;
+    way.died = !way.shattered && (absorbed || death <= to);
+    if (!absorbed) {
+        const double end = std::max(begin, std::min(to, death));
+        way.knots.push_back({end, way.particle.position, way.particle.velocity, way.particle.velocity});
+    }
+    return way;
+}
+
+void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Way& way,
+                         std::vector<SpawnBatch>& batches) const {
+    thread_local ContactScratch scratch;
+    for (const LifeBirth& birth : births_in_life(emitter, way.particle, way.begin(), way.end())) {
+        batches.push_back({birth.time, emitter.number(), birth.ordinal, 1, false, way.at(birth.time, world, scratch)});
+    }
+}
+
+void Offspring::add_impacts(const Emitter& emitter, const Way& way, Origin& origin,
+                            std::vector<SpawnBatch>& batches) const {
+    const ParentRule& rule = *emitter.description().parent;
+    for (const ContactRecord& record : way.records) {
+        const bool is_last = &record == &way.records.back();
+        const double impulse = record.mass * length(record.velocity_after - record.velocity_before);
+        const bool ends_here = rule.share && way.shattered && is_last;
+        // A shattering parent's only birth is at its end; one that is too deep to shatter is refused here and there.
+        const bool refused = rule.share && origin.generation >= limits_.max_depth && impulse >= rule.threshold_impulse;
+        if (!ends_here && !refused && (rule.share || impulse < rule.threshold_impulse)) continue;
+        std::uint32_t count = children_of_event(emitter, way.particle, origin.birth_impacts++);
+        if (rule.share) count = std::max(count, 1U);
+        Particle parent = way.particle;
+        parent.position = record.position;
+        parent.velocity = record.velocity_after;
+        batches.push_back({record.time, emitter.number(), origin.impact_children, count, rule.share, parent});
+        origin.impact_children += count;
+    }
+}
+
+void Offspring::add_death(const Emitter& emitter, const Way& way, std::vector<SpawnBatch>& batches) const {
+    if (!way.died) return;
+    const ParentRule& rule = *emitter.description().parent;
+    std::uint32_t count = children_of_event(emitter, way.particle, 0);
+    if (rule.share) count = std::max(count, 1U);
+    const Way::Knot& last = way.knots.back();
+    // What an absorbing surface has stopped is born with the velocity of arrival.
+    const bool absorbed = !way.records.empty() && last.time == way.records.back().time;
+    batches.push_back(
+        {last.time, emitter.number(), 0, count, rule.share, way.at(last, absorbed ? last.before : last.after)});
+}
+
+std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
+                                            std::vector<ContactRecord> records, OffspringCounts& counts) const {
+    std::stable_sort(records.begin(), records.end(),
+                     [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
+    const auto records_of = [&](std::uint64_t id) {
+        const auto first =
+            std::lower_bound(records.begin(), records.end(), id,
+                             [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
+        auto last = first;
+        while (last != records.end() && last->particle == id) ++last;
+        return std::span<const ContactRecord>(first, last);
+    };
+    const std::size_t count = positions_.size();
+    std::vector<std::vector<SpawnBatch>> blocks((count + kBlock - 1) / kBlock);
+    parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = first_ + begin; i < first_ + end; ++i) {
+            Origin& origin = particles.origin[i];
+            if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty())
+                continue;
+            const Way way = way_of(particles, i, from, to, records_of(particles.id[i]));
+            for (const std::uint32_t child : children_of_[origin.emitter]) {
+                const Emitter& emitter = emitters_[child];
+                const BirthEvent on = emitter.description().parent->on;
+                if (on == BirthEvent::life) add_life(world, emitter, way, blocks[block]);
+                if (on == BirthEvent::impact) add_impacts(emitter, way, origin, blocks[block]);
+                if (on == BirthEvent::death) add_death(emitter, way, blocks[block]);
+            }
+        }
+    });
+    std::vector<SpawnBatch> batches;
+    for (std::vector<SpawnBatch>& block : blocks) {
+        batches.insert(batches.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
+    }
+    return born(batches, particles.size(), counts);
+}
+
+std::vector<Particle> Offspring::born(std::vector<SpawnBatch>& batches, std::size_t living,
+                                      OffspringCounts& counts) const {
+    std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
+        return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
+               std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
+    });
+    std::vector<Particle> children;
+    for (const SpawnBatch& batch : batches) {
+        if (batch.parent.origin.generation >= limits_.max_depth) {
+            counts.refused_by_depth += batch.count;
+            continue;
+        }
+        if (batch.share) --living;  // the parent makes room
+        const std::uint64_t room = limits_.most_particles - std::min<std::uint64_t>(limits_.most_particles, living);
+        const auto allowed = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(batch.count, std::max<std::uint64_t>(room, batch.share ? 1 : 0)));
+        counts.refused_by_population += batch.count - allowed;
+        const Emitter& emitter = emitters_[batch.emitter];
+        if (batch.share) {
+            const auto fragments = make_fragments(emitter, batch.parent, allowed, batch.first_ordinal, batch.time);
+            children.insert(children.end(), fragments.begin(), fragments.end());
+        } else {
+            for (std::uint32_t k = 0; k < allowed; ++k) {
+                children.push_back(make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time));
+            }
+        }
+        living += allowed;
+        counts.children += allowed;
+    }
+    return children;
+}
+
+}  // namespace ricochet

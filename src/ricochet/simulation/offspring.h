@@ -1,0 +1,84 @@
+/// \file
+/// Private to the simulation: particles that are born of particles, step by step.
+///
+/// A parent's children come only from places on its own way: where it is at an impact or at its end, or, in between, a
+/// place of the cubic through both ends of a flight that a straight line joins to one of these ends without meeting a
+/// surface (decided exactly); otherwise that end itself. So no child begins behind a wall that its parent is before.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/collision_world.h"
+#include "ricochet/dynamics/child_emitter.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// Where hierarchies end.
+struct OffspringLimits {
+    std::uint32_t max_depth = 16;                ///< highest generation
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time
+};
+
+/// What a pass of births has done.
+struct OffspringCounts {
+    std::uint64_t children = 0;
+    std::uint64_t refused_by_depth = 0;
+    std::uint64_t refused_by_population = 0;
+};
+
+/// The births of a simulation's particles.
+class Offspring {
+public:
+    /// emitters: all of the scene's; must outlive it. Throws InputError for a parent that is not there and for two
+    /// emitters that share out one parent at the same event.
+    Offspring(const std::vector<Emitter>& emitters, const OffspringLimits& limits);
+
+    /// True when no emitter has a parent.
+    [[nodiscard]] bool empty() const { return empty_; }
+    /// N s: the impact that ends particle i; infinity when none does.
+    [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
+
+    /// Keeps the states of the entries from `first` on, which are about to be moved.
+    void before_move(const Particles& particles, std::size_t first);
+    /// The children that the entries kept have given birth to on their way in [from, to), in the order of (time,
+    /// parent, ordinal). records: of the impacts of these entries, those of one particle in the order of time.
+    [[nodiscard]] std::vector<Particle> after_move(const CollisionWorld& world, Particles& particles, double from,
+                                                   double to, std::vector<ContactRecord> records,
+                                                   OffspringCounts& counts) const;
+
+private:
+    /// Children of one event, or one child of a life.
+    struct SpawnBatch {
+        double time = 0.0;
+        std::uint32_t emitter = 0;
+        std::uint32_t first_ordinal = 0;
+        std::uint32_t count = 0;
+        bool share = false;
+        Particle parent;  ///< as it is at the birth
+    };
+    struct Way;
+
+    [[nodiscard]] Way way_of(const Particles& particles, std::size_t i, double from, double to,
+                             std::span<const ContactRecord> records) const;
+    void add_life(const CollisionWorld& world, const Emitter& emitter, const Way& way,
+                  std::vector<SpawnBatch>& batches) const;
+    void add_impacts(const Emitter& emitter, const Way& way, Origin& origin, std::vector<SpawnBatch>& batches) const;
+    void add_death(const Emitter& emitter, const Way& way, std::vector<SpawnBatch>& batches) const;
+    [[nodiscard]] std::vector<Particle> born(std::vector<SpawnBatch>& batches, std::size_t living,
+                                             OffspringCounts& counts) const;
+
+    const std::vector<Emitter>& emitters_;
+    OffspringLimits limits_;
+    std::vector<std::vector<std::uint32_t>> children_of_;  // emitters by the emitter of their parents
+    bool empty_ = true;
+    std::size_t first_ = 0;
+    std::vector<Vec3> positions_;
+    std::vector<Vec3> velocities_;
+};
+
+}  // namespace ricochet

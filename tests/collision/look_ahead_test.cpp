@@ -1,0 +1,223 @@
+#include "ricochet/collision/look_ahead.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/collision/contact_search.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
+#include "support/mesh_distance.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+using testing::distance_from;
+
+double height(const Plane& plane, const Vec3& p) { return dot(plane.normal, p - plane.point); }
+
+TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
+    RandomSequence random(1, 0, 0);
+    for (int i = 0; i < test::scaled(5000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const Plane plane{random.in_unit_ball(), random.unit_vector()};
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const double margin = 0.1 * random.uniform();
+        const double time = time_free_of_plane(path, plane, margin);
+        ASSERT_GE(time, 0.0);
+        ASSERT_LE(time, path.duration);
+        const double side = height(plane, path.c[0]) < 0.0 ? -1.0 : 1.0;
+        for (int k = 0; k <= 50 && time > 0.0; ++k) {
+            ASSERT_GT(side * height(plane, path.position(0.02 * k * time)), margin - 1e-12);
+        }
+        if (time < path.duration) {
+            ASSERT_LT(side * height(plane, path.position(time)), margin + 1e-6);
+        }
+    }
+}
+
+// The plane's point is so far along it that the height of the start rounds to the wrong side.
+TEST(TimeFreeOfPlane, IsNothingWhereRoundingHidesTheSide) {
+    const Plane plane{{8e8, -6e8, 0}, {0.6, 0.8, 0}};
+    EXPECT_EQ(time_free_of_plane(line_path({-7e-8, 0, 0}, {0, -1e-9, 0}, 100.0), plane, 0.0), 0.0);
+    EXPECT_EQ(time_free_of_plane(line_path({1, 0, 0}, {0, 1e-9, 0}, 100.0), plane, 0.0), 100.0);
+}
+
+TEST(TimeOutside, IsFreeOfTheBoxAndLongWhereTheBoxIsFarAway) {
+    RandomSequence random(2, 0, 0);
+    int outside = 0;
+    for (int i = 0; i < test::scaled(5000); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        Box3 box;
+        box.include(random.in_unit_ball());
+        box.include(random.in_unit_ball());
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const double time = time_outside(path, box);
+        ASSERT_LE(time, path.duration);
+        EXPECT_EQ(time > 0.0, !box.contains(path.c[0]));
+        for (int k = 0; k < 50 && time > 0.0; ++k) ASSERT_FALSE(box.contains(path.position(0.02 * k * time)));
+        outside += time > 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(outside, test::scaled(5000) / 2);
+    const Path thrown = parabola_path({0, 0, 1}, {3, 0, 5}, {0, 0, -10}, 3.0);
+    EXPECT_NEAR(time_outside(thrown, {{-100, -100, -1}, {100, 100, 0.5}}), 0.5 + std::sqrt(0.35), 1e-9);
+}
+
+TEST(Shortened, IsTheSamePathWithAnEarlierEnd) {
+    const Path path = parabola_path({1, 2, 3}, {4, 5, 6}, {0, 0, -9.81}, 2.0);
+    const Path part = shortened(path, 0.5);
+    EXPECT_EQ(part.duration, 0.5);
+    EXPECT_EQ(part.end, path.position(0.5));
+    EXPECT_EQ(part.position(0.25), path.position(0.25));
+    EXPECT_EQ(shortened(path, 5.0).duration, 2.0);
+    EXPECT_EQ(shortened(path, 5.0).end, path.end);
+}
+
+CollisionWorld rough_world(const TriangleMesh& mesh) {
+    std::vector<ColliderDescription> colliders;
+    colliders.push_back({"mesh", MeshShape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}}, 0});
+    return CollisionWorld(std::move(colliders));
+}
+
+TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
+    TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
+    RandomSequence random(2, 0, 0);
+    for (Vec3& v : mesh.vertices) v *= 1.0 + 0.1 * random.uniform();
+    CollisionWorld world = rough_world(mesh);
+    world.prepare_radius(0.03);
+    ContactScratch scratch;
+    struct Sum {
+        double looked = 0.0;
+        double possible = 0.0;
+    };
+    Sum points, bent_points, spheres, bent_spheres;
+    for (int i = 0; i < test::scaled(600); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const double radius = i % 3 == 0 ? 0.03 : 0.0;
+        const bool is_straight = i % 2 == 0;
+        const Vec3 acceleration = is_straight ? Vec3{} : 0.5 * random.in_unit_ball();
+        const Vec3 start = (i % 5 == 0 ? 3.0 : 0.8) * random.in_unit_ball();
+        const Vec3 velocity = 2.0 * random.unit_vector();
+        const double h = 0.01;
+        const Path path = parabola_path(start, velocity, acceleration, h);
+        const LookAhead look_ahead{parabola_path(start, velocity, acceleration, 1.0), 1e-9, 2.0 * h};
+        ContactSearch search(world, scratch);
+        const auto contact = search.search(path, radius, &look_ahead);
+        const double until = search.free_until();
+        ASSERT_EQ(contact.has_value(), ContactSearch(world, scratch).search(path, radius).has_value());
+        if (contact) {
+            ASSERT_EQ(until, 0.0);
+            continue;
+        }
+        ASSERT_LE(until, 1.0);
+        for (int k = 0; k < 40; ++k) {
+            const double time = h + (until - h) * k / 40.0;
+            if (until <= h) break;
+            ASSERT_GE(distance_from(mesh, look_ahead.path.position(time)), radius + 1e-9) << time;
+        }
+        ContactSearch whole(world, scratch);
+        const auto hit = whole.search(look_ahead.path, radius);
+        Sum& sum = radius == 0.0 ? (is_straight ? points : bent_points) : (is_straight ? spheres : bent_spheres);
+        sum.looked += until;
+        sum.possible += hit ? hit->time : 1.0;
+    }
+    EXPECT_GT(points.looked, 0.95 * points.possible);
+    EXPECT_GT(bent_points.looked, 0.9 * bent_points.possible);
+    EXPECT_GT(spheres.looked, 0.995 * spheres.possible) << spheres.looked / spheres.possible;
+    EXPECT_GT(bent_spheres.looked, 0.8 * bent_spheres.possible) << bent_spheres.looked / bent_spheres.possible;
+}
+
+/// A rough ball of fine triangles, with some things inside.
+TriangleMesh furnished_ball(RandomSequence& random) {
+    TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
+    for (Vec3& v : mesh.vertices) v *= 1.0 + 0.02 * random.uniform();
+    return testing::merged(std::move(mesh), testing::sphere_mesh({0.2, 0.1, 0.3}, 0.15, 3));
+}
+
+TEST(TimeClearOf, IsBeforeAnyTriangleIsNearAndMostOfTheWayToTheFirst) {
+    RandomSequence random(3, 0, 0);
+    const TriangleMesh mesh = furnished_ball(random);
+    const CollisionWorld world = rough_world(mesh);
+    double told = 0.0;
+    double possible = 0.0;
+    for (int i = 0; i < test::scaled(300); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
+        const Vec3 velocity = i % 7 == 0 ? Vec3{} : 2.0 * random.in_unit_ball();
+        const Path path = parabola_path(0.5 * random.in_unit_ball(), velocity, acceleration, 1.0);
+        const double margin = 0.05 * random.uniform();
+        const double from = 0.1 * random.uniform();
+        const double until = time_clear_of_field(path, world.distance_field(), margin, from);
+        ASSERT_GE(until, from);
+        ASSERT_LE(until, path.duration);
+        for (int k = 0; k < 20 && until > from; ++k) {
+            ASSERT_GT(distance_from(mesh, path.position(from + (until - from) * k / 20.0)), margin) << k;
+        }
+        ContactScratch scratch;
+        const auto hit = ContactSearch(world, scratch).search(path, 0.0);
+        told += until;
+        possible += hit ? hit->time : 1.0;
+    }
+    EXPECT_GT(told, 0.5 * possible);
+    EXPECT_EQ(time_clear_of_field(line_path({}, {1, 0, 0}, 1.0), DistanceField(), 0.0, 0.25), 0.25);
+}
+
+/// Chains of steps of one particle: where it is free the search of every step must say so, and what it awaits must lead
+/// to the contact that a search without it finds.
+TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
+    RandomSequence random(4, 0, 0);
+    const TriangleMesh mesh = furnished_ball(random);
+    CollisionWorld world = rough_world(mesh);
+    world.prepare_radius(0.01);
+    ContactScratch scratch;
+    ContactScratch other;
+    int candidates = 0;
+    int met = 0;
+    for (int i = 0; i < test::scaled(1500); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const double radius = i % 4 == 0 ? 0.01 : 0.0;
+        const Vec3 acceleration = i % 2 == 0 ? Vec3{} : 2.0 * random.unit_vector();
+        const Vec3 start = 0.9 * random.in_unit_ball();
+        const Vec3 velocity = 3.0 * random.unit_vector();
+        const double h = 0.005 + 0.01 * random.uniform();
+        const double margin = 1e-9 + 0.125 * h * h * length(acceleration);
+        const Path path = parabola_path(start, velocity, acceleration, h);
+        const LookAhead look_ahead{parabola_path(start, velocity, acceleration, 1.0), margin, 2.0 * h, h};
+        ContactSearch search(world, scratch);
+        if (search.search(path, radius, &look_ahead)) continue;
+        // The last step that begins before something is near.
+        const double free = std::max(search.free_until(), h);
+        const double from = h * std::max(1.0, std::floor(free / h));
+        if (!search.candidates().is_known() || search.candidates_until() < from + h) continue;
+        const Vec3 p = look_ahead.path.position(from);
+        const Vec3 v = look_ahead.path.velocity(from);
+        const Path step = parabola_path(p, v, acceleration, h);
+        const auto by_awaited = ContactSearch(world, scratch).search(step, radius, nullptr, search.candidates());
+        const auto by_boxes = ContactSearch(world, other).search(step, radius);
+        ASSERT_EQ(by_awaited.has_value(), by_boxes.has_value());
+        ++candidates;
+        if (!by_boxes) continue;
+        ++met;
+        ASSERT_EQ(by_awaited->time, by_boxes->time);
+        ASSERT_EQ(by_awaited->count, by_boxes->count);
+        for (int k = 0; k < by_boxes->count; ++k) {
+            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].surface,
+                      by_boxes->all()[static_cast<std::size_t>(k)].surface);
+            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].normal,
+                      by_boxes->all()[static_cast<std::size_t>(k)].normal);
+        }
+    }
+    EXPECT_GT(candidates, test::scaled(1500) / 3);
+    EXPECT_GT(met, test::scaled(1500) / 6);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,202 @@
+#include "ricochet/collision/safe_position.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
+#include "support/counts.h"
+#include "support/exact_oracle.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+using testing::mesh_collider;
+using testing::plane_collider;
+using testing::world_of;
+
+bool meets_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
+    for (std::uint32_t t = 0; t < world.triangles().size(); ++t) {
+        const auto [a, b, c] = world.corners_of_triangle(t);
+        if (testing::exact_segment_meets_triangle(p, q, a, b, c)) return true;
+    }
+    return false;
+}
+
+/// True when the path can be followed to the place in segments that meet nothing, by the exact oracle.
+bool can_be_walked(const CollisionWorld& world, const Path& path, double from, const Vec3& p, double to, const Vec3& q,
+                   int depth) {
+    if (!meets_any(world, p, q)) return true;
+    if (depth == 0) return false;
+    const double middle = 0.5 * (from + to);
+    const Vec3 m = path.position(middle);
+    return can_be_walked(world, path, from, p, middle, m, depth - 1) &&
+           can_be_walked(world, path, middle, m, to, q, depth - 1);
+}
+
+class ParkingAt : public ::testing::TestWithParam<double> {
+protected:
+    /// A turned box, moved by some of its sizes.
+    CollisionWorld world_{{mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1}),
+                                         {GetParam() * Vec3{1, 2, -3}, {1, 2, 3}, 25.0, {1, 1, 1}})}};
+    Vec3 center_ = GetParam() * Vec3{1, 2, -3};
+};
+
+INSTANTIATE_TEST_SUITE_P(Offsets, ParkingAt, ::testing::Values(0.0, 1e3, 1e6));
+
+TEST_P(ParkingAt, StandsOneGapBeforeTheSurfaceReachedInFreeLegs) {
+    RandomSequence random(1, 0, 0);
+    ContactScratch scratch;
+    for (int i = 0; i < test::scaled(400); ++i) {
+        SCOPED_TRACE(i);
+        const Vec3 start = center_ + 0.9 * random.in_unit_ball();
+        const Vec3 v = 4.0 * random.unit_vector();
+        const Path path =
+            i % 2 == 0 ? line_path(start, v, 1.0) : parabola_path(start, v, 8.0 * random.unit_vector(), 2.0);
+        ContactSearch search(world_, scratch);
+        const auto contact = search.search(path, 0.0);
+        ASSERT_TRUE(contact);
+        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        ASSERT_FALSE(safe_position.stayed);
+        ASSERT_TRUE(can_be_walked(world_, path, 0.0, start, contact->time, safe_position.position, 12));
+        const double height = std::fabs(world_.signed_distance_from(contact->first().surface, safe_position.position));
+        const double gap = contact_offset(safe_position.position);
+        EXPECT_GE(height, 0.5 * gap);
+        EXPECT_LE(height, 64.0 * gap);
+        // Off the true contact by no more than the gap and the rounding of the path.
+        const double rounding = 64.0 * ulp(max_abs(center_) + 8.0);
+        EXPECT_LE(length(safe_position.position - path.position(contact->time)), 256.0 * gap + rounding);
+    }
+}
+
+TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
+    RandomSequence random(2, 0, 0);
+    ContactScratch scratch;
+    for (int i = 0; i < test::scaled(4000); ++i) {
+        SCOPED_TRACE(i);
+        const Vec3 start = center_ + 0.9 * random.in_unit_ball();
+        const Path path = line_path(start, 4.0 * random.unit_vector(), 1.0);
+        ContactSearch search(world_, scratch);
+        const auto contact = search.search(path, 0.0);
+        ASSERT_TRUE(contact);
+        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        ASSERT_FALSE(safe_position.stayed);
+        const ContactSurface& met = contact->first();
+        Vec3 away = random.unit_vector();
+        // From straight away to grazing.
+        const double lift = std::pow(10.0, -12.0 * random.uniform());
+        away += (lift - dot(away, met.normal)) * met.normal;
+        const auto next = search.search(line_path(safe_position.position, 3.0 * away, 1.0), 0.0);
+        if (!next) continue;
+        for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, met.surface);
+    }
+}
+
+TEST(SafePosition, InACornerStandsOffAllItsWalls) {
+    const auto world = world_of(plane_collider({0, 0, 0}, {1, 0, 0}), plane_collider({0, 0, 0}, {0, 1, 0}),
+                                plane_collider({0, 0, 0}, {0, 0, 1}));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Path path = line_path({1, 1, 1}, {-1, -1, -1}, 2.0);
+    const auto contact = search.search(path, 0.0);
+    ASSERT_TRUE(contact);
+    const SafePosition safe_position = find_safe_position(search, path, *contact);
+    EXPECT_FALSE(safe_position.stayed);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_GT(safe_position.position[axis], 0.0);
+}
+
+// In a wedge of 0.001 rad, next to its edge, stepping off one wall means stepping through the other.
+TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
+    const double angle = 1e-3;
+    const auto world = world_of(plane_collider({0, 0, 0}, {0, 1, 0}),
+                                plane_collider({0, 0, 0}, {std::sin(angle), -std::cos(angle), 0}));
+    RandomSequence random(3, 0, 0);
+    ContactScratch scratch;
+    int moved = 0;
+    const int count = test::scaled(2000);
+    for (int i = 0; i < count; ++i) {
+        const double x = std::pow(10.0, -12.0 * random.uniform());
+        const Vec3 start{x, x * std::tan(angle * random.uniform()), 1.0};
+        if (!(start.y > 0.0) || side_of(world.planes()[1].plane, start) <= 0) continue;
+        const Vec3 aim{-1.0, 0.3 * (random.uniform() - 0.5), random.uniform() - 0.5};
+        const Path path = line_path(start, aim, 2.0);
+        ContactSearch search(world, scratch);
+        const auto contact = search.search(path, 0.0);
+        ASSERT_TRUE(contact) << i;
+        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        EXPECT_EQ(side_of(world.planes()[0].plane, safe_position.position), 1) << i;
+        EXPECT_EQ(side_of(world.planes()[1].plane, safe_position.position), 1) << i;
+        moved += safe_position.stayed ? 0 : 1;
+    }
+    EXPECT_GT(moved, count / 2);
+}
+
+TEST(Travel, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
+    // A ridge of height 1 along y; the arc passes 0.25 above it, its chord runs through it.
+    TriangleMesh ridge{{{-0.5, -5, 0}, {0, -5, 1}, {0.5, -5, 0}, {-0.5, 5, 0}, {0, 5, 1}, {0.5, 5, 0}},
+                       {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
+    const auto world = world_of(mesh_collider(ridge));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Path over = parabola_path({-1, 0, 0.25}, {1, 0, 2}, {0, 0, -2}, 2.0);
+    ASSERT_FALSE(search.search(over, 0.0));
+    EXPECT_TRUE(meets_any(world, over.c[0], over.end));
+    const Travel travelled = travel(search, over, over.duration, over.end);
+    EXPECT_FALSE(travelled.blocker);
+    EXPECT_EQ(travelled.reached, over.end);
+}
+
+// The ridge is made of triangles so small that the chord's middle lies far off every piece that the search looks at.
+TEST(Travel, DoesNotTrustAChordThatTheSearchHasNotLookedAt) {
+    const auto world = world_of(mesh_collider(testing::sphere_mesh({0, 0, 0.5}, 0.05, 3)));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Path over = parabola_path({-1, 0, 0.5}, {1, 0, 2}, {0, 0, -2}, 2.0);
+    ASSERT_FALSE(search.search(over, 0.0));
+    EXPECT_TRUE(meets_any(world, over.c[0], over.end));
+    EXPECT_FALSE(search.covers_chord(over, 0.0, over.duration));
+    const Travel travelled = travel(search, over, over.duration, over.end);
+    EXPECT_EQ(travelled.reached, over.end);
+    EXPECT_FALSE(travelled.blocker);
+}
+
+TEST(Travel, StopsWhereTheWayIsBlocked) {
+    const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
+    ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
+    ASSERT_TRUE(search.search(down, 0.0));
+    const Travel travelled = travel(search, down, down.duration, down.end);
+    ASSERT_TRUE(travelled.blocker);
+    EXPECT_EQ(*travelled.blocker, 0U);
+    EXPECT_NEAR(travelled.time, 1.0, 1e-12);
+    EXPECT_GT(travelled.reached.z, 0.0);
+    const Contact contact = contact_of_blocker(search, down, travelled);
+    EXPECT_EQ(contact.first().normal, (Vec3{0, 0, 1}));
+}
+
+TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
+    const auto world = world_of(mesh_collider(testing::box_mesh({0, 0, 0}, {1, 1, 1})));
+    ContactScratch scratch;
+    for (const Vec3& place : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {
+        ContactSearch search(world, scratch);
+        (void)search.search(line_path(place, {0, 0, 0}, 1.0), 0.0);
+        const auto off = step_off(search, place);
+        ASSERT_TRUE(off);
+        EXPECT_FALSE(world.bounds().contains(*off));
+        EXPECT_LE(length(*off - place), 64.0 * contact_offset(place));
+        EXPECT_FALSE(meets_any(world, *off, *off));
+    }
+    ContactSearch search(world, scratch);
+    const Vec3 beside{0.5, 0.5, 1.5};
+    (void)search.search(line_path(beside, {0, 0, 0}, 1.0), 0.0);
+    EXPECT_FALSE(step_off(search, beside));
+}
+
+}  // namespace
+}  // namespace ricochet

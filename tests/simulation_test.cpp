@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

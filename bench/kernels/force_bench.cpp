@@ -8,15 +8,8 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/anchor.h"
-#include "ricochet/dynamics/buoyancy.h"
-#include "ricochet/dynamics/drag.h"
-#include "ricochet/dynamics/electromagnetic.h"
-#include "ricochet/dynamics/field_force.h"
-#include "ricochet/dynamics/grid_flow.h"
-#include "ricochet/dynamics/point_gravity.h"
-#include "ricochet/dynamics/radial_force.h"
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/flows.h"
 
 namespace ricochet {
 namespace {

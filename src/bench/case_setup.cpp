@@ -12,7 +12,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 
 namespace ricochet::bench {
 namespace {

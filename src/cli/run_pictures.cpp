@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/attributes.h"
+#include "ricochet/dynamics/particles.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

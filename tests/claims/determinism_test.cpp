@@ -12,7 +12,7 @@
 #include "claims/hard_meshes.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"

@@ -18,7 +18,7 @@
 #include "response/solids.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/anchor.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 

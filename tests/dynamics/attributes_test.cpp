@@ -1,10 +1,9 @@
-#include "ricochet/dynamics/attributes.h"
+#include "ricochet/dynamics/particles.h"
 
 #include <gtest/gtest.h>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/life_curve.h"
-#include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/emitter.h"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "dynamics/trajectory.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/buoyancy.h"
 
 namespace ricochet {
 namespace {

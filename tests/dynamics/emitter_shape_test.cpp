@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/emitter_shape.h"
+#include "ricochet/dynamics/emitter.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 
 #include "dynamics/chi_square.h"
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/screen_area.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/verify/parity.h"
 #include "support/counts.h"

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/field_force.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "ricochet/dynamics/flow_field.h"
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 
 namespace ricochet::test {
 

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/flow_field.h"
+#include "ricochet/dynamics/flows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,10 @@
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/drag.h"
 
 namespace ricochet {
 namespace {

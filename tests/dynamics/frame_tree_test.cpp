@@ -11,7 +11,6 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/emitter.h"
-#include "ricochet/dynamics/frame_launch.h"
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 #include "support/counts.h"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/grid_flow.h"
+#include "ricochet/dynamics/flows.h"
 
 #include <gtest/gtest.h>
 

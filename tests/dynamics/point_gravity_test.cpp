@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/point_gravity.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/radial_force.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/point_gravity.h"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/spring_makers.h"
+#include "ricochet/dynamics/springs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/spring_network.h"
+#include "ricochet/dynamics/springs.h"
 
 #include <gtest/gtest.h>
 

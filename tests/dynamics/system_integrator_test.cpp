@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/dynamics/spring_stability.h"
+#include "ricochet/dynamics/springs.h"
 
 namespace ricochet {
 namespace {

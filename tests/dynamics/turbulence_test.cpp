@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/flows.h"
 
 #include <gtest/gtest.h>
 

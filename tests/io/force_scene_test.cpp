@@ -7,15 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/dynamics/anchor.h"
-#include "ricochet/dynamics/buoyancy.h"
-#include "ricochet/dynamics/drag.h"
-#include "ricochet/dynamics/electromagnetic.h"
-#include "ricochet/dynamics/field_force.h"
-#include "ricochet/dynamics/grid_flow.h"
-#include "ricochet/dynamics/point_gravity.h"
-#include "ricochet/dynamics/radial_force.h"
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/frame_launch.h"
+#include "ricochet/dynamics/emitter.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {

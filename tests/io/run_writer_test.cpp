@@ -13,7 +13,7 @@
 #include "geometry/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/io/run_files.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"

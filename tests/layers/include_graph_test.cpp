@@ -42,7 +42,7 @@ TEST(IncludeGraph, OfThisRepositoryHasEveryPublicHeaderInTheUmbrella) {
 TEST(IncludeGraph, FindsAPlantedViolation) {
     const std::vector<Case> cases = {
         {"src/ricochet/core/vec3.h", "ricochet/geometry/sweep/path.h"},               // upward
-        {"src/ricochet/geometry/sweep/path.cpp", "ricochet/dynamics/force.h"},        // upward
+        {"src/ricochet/geometry/sweep/path.cpp", "ricochet/dynamics/forces.h"},       // upward
         {"src/ricochet/collision/x.cpp", "ricochet/dynamics/particles.h"},            // siblings
         {"src/ricochet/dynamics/x.h", "ricochet/collision/collider.h"},               // siblings, the other way
         {"src/ricochet/io/x.cpp", "ricochet/render/image.h"},                         // siblings

@@ -11,7 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/flows.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

@@ -1,5 +1,5 @@
 #include "ricochet/response/rollback.h"
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <gtest/gtest.h>
 

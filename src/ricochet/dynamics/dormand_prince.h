@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "ricochet/dynamics/flow_field.h"
+#include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/integrator.h"
 
 namespace ricochet {

@@ -1,11 +1,11 @@
-#include "ricochet/dynamics/drag.h"
+#include "ricochet/dynamics/forces.h"
 
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "ricochet/core/portable_math.h"
-#include "ricochet/dynamics/detail/checks.h"
+#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 namespace {

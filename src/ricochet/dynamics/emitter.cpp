@@ -1,16 +1,37 @@
 #include "ricochet/dynamics/emitter.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/frame_launch.h"
 
 namespace ricochet {
+
+AttributeValue shown_value(std::span<const LifeCurve> curves, std::string_view name, const AttributeValue& value,
+                           double age, double lifetime) {
+    AttributeValue shown = value;
+    for (const LifeCurve& curve : curves) {
+        if (curve.name != name) continue;
+        const double part = std::isfinite(lifetime) && lifetime > 0.0 ? age / lifetime : 0.0;
+        const Vec3 factor = curve.factor.value(curve.of_lifetime ? part : age);
+        for (int axis = 0; axis < 3; ++axis) shown[axis] *= factor[axis];
+    }
+    return shown;
+}
+
+Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle) {
+    const MovingPose pose = frames.at(frame, particle.birth_time);
+    const AffineMap& world = pose.world_from_frame;
+    particle.velocity = world.direction(particle.velocity) + pose.velocity_of(particle.position);
+    particle.position = world.point(particle.position);
+    particle.spin = world.direction(particle.spin);
+    if (particle.radius > 0.0) particle.spin += pose.angular_velocity;
+    return particle;
+}
+
 namespace {
 
 // Streams of random numbers: the high byte says what is drawn, the rest is the emitter's number.

@@ -3,7 +3,7 @@
 /// meaning there.
 #pragma once
 
-#include "ricochet/dynamics/flow_field.h"
+#include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/geometry/sweep/path.h"
 

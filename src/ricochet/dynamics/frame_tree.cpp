@@ -8,7 +8,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
-#include "ricochet/dynamics/detail/checks.h"
+#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 namespace {

@@ -1,11 +1,17 @@
 #include "ricochet/dynamics/implicit_euler.h"
 
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
+
 namespace {
 
 /// Finite differences: steps as parts of the speed, and of the coordinates per step. The square root of a double's
@@ -65,6 +71,250 @@ Vec3 implicit_euler_velocity(const ForceField& forces, const ForceInput& state, 
         if (is_converged(max_abs(correction), speed) || !is_finite(v1)) break;
     }
     return v1;
+}
+
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Halvings of a step whose equations are not solved; then the whole step's last iterate is taken, and counted.
+constexpr int kMostHalvedSteps = 10;
+
+/// Halvings of a correction that makes the residual larger.
+constexpr int kMostCuts = 8;
+
+/// Newton's steps with symmetric matrices before the exact one is taken.
+constexpr int kMostDefiniteSteps = 24;
+
+/// Corrections, relative to the largest speed, from which on compressed springs are counted in.
+constexpr double kNear = 0.02;
+
+/// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
+constexpr double kPositionRounding = 0x1p-49;
+
+/// A 3 x 3 matrix by rows.
+using Block = std::array<std::array<double, 3>, 3>;
+
+/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and Newton's steps towards their solution.
+class BackwardEuler {
+public:
+    BackwardEuler(const ParticleSystem& system, double h)
+        : system_(system), h_(h), v1_(system.velocities()), x1_(system.size()), a1_(system.size()) {}
+
+    SystemStep run() {
+        SystemStep step;
+        step.duration = step.next_duration = h_;
+        step.start_accelerations.resize(system_.size());
+        system_.accelerations(system_.time(), system_.positions(), v1_, step.start_accelerations);
+        residual_ = evaluate(v1_);
+        // Far from the solution only the definite matrix leads to it: compressed springs have others, all unstable.
+        step.solved = solve_symmetric() || solve_exact();
+        step.positions = x1_;
+        step.velocities = v1_;
+        return step;
+    }
+
+private:
+    /// What of the derivative the matrix holds.
+    enum class Slope {
+        definite,   ///< compressed springs count as slack across: positive definite
+        symmetric,  ///< all of springs; of dampers' turning and of forces the symmetric part
+        exact,
+    };
+
+    /// Newton's method with matrices that Cholesky's factorization takes: cheap. Returns whether it converged.
+    bool solve_symmetric() {
+        Eigen::SimplicialLDLT<Matrix> solver;
+        solver.analyzePattern(jacobian(Slope::definite));
+        Slope slope = Slope::definite;
+        for (int iteration = 0; iteration < kMostDefiniteSteps; ++iteration) {
+            const Progress progress = newton_step(solver, slope);
+            if (progress.done) return true;
+            if (progress.failed && slope == Slope::definite) return false;
+            // Near the solution springs under pressure have found their place, and counting them in is quadratic.
+            const bool is_near = !progress.failed && !progress.cut && progress.correction < kNear * largest_speed();
+            slope = is_near ? Slope::symmetric : Slope::definite;
+        }
+        return false;
+    }
+
+    /// Newton's method itself, from where it is. Returns whether it converged.
+    bool solve_exact() {
+        Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> solver;
+        solver.analyzePattern(jacobian(Slope::exact));
+        for (int iteration = 0; iteration < kMostNewtonSteps; ++iteration) {
+            const Progress progress = newton_step(solver, Slope::exact);
+            if (progress.done || progress.failed) return progress.done;
+        }
+        return false;
+    }
+
+    struct Progress {
+        bool done = false;        // what is left is below the tolerance, or rounding
+        bool failed = false;      // no factorization; nothing was changed
+        bool cut = false;         // only a part of the correction was taken
+        double correction = 0.0;  // largest component, m/s
+    };
+
+    template <class Solver>
+    Progress newton_step(Solver& solver, Slope slope) {
+        if (right_.size() == 0 || right_.lpNorm<Eigen::Infinity>() <= rounding()) return {.done = true};
+        solver.factorize(jacobian(slope));
+        if (solver.info() != Eigen::Success) return {.failed = true};
+        const Eigen::VectorXd correction = solver.solve(right_);
+        if (!correction.allFinite()) return {.failed = true};
+        Progress progress;
+        progress.cut = !take(correction);
+        progress.correction = correction.lpNorm<Eigen::Infinity>();
+        progress.done = is_converged(progress.correction, largest_speed());
+        return progress;
+    }
+
+    /// Goes along the correction, or along a part of it where the whole makes things worse. Returns whether it was all.
+    bool take(const Eigen::VectorXd& correction) {
+        const std::vector<Vec3> before = v1_;
+        double part = 1.0;
+        for (int cut = 0;; ++cut, part *= 0.5) {
+            for (std::size_t i = 0; i < v1_.size(); ++i) {
+                const auto at = static_cast<Eigen::Index>(3 * i);
+                v1_[i] = before[i] + part * Vec3{correction[at], correction[at + 1], correction[at + 2]};
+            }
+            const double residual = evaluate(v1_);
+            if (residual > residual_ && cut < kMostCuts) continue;
+            residual_ = residual;
+            return cut == 0;
+        }
+    }
+
+    /// Places and accelerations at the end, and the negative residuals; returns the sum of their squares.
+    double evaluate(const std::vector<Vec3>& v1) {
+        const std::size_t count = system_.size();
+        for (std::size_t i = 0; i < count; ++i) x1_[i] = system_.positions()[i] + h_ * v1[i];
+        system_.accelerations(system_.time() + h_, x1_, v1, a1_);
+        right_.resize(static_cast<Eigen::Index>(3 * count));
+        for (std::size_t i = 0; i < count; ++i) {
+            Vec3 missing = system_.mass(i) * (system_.velocities()[i] + h_ * a1_[i] - v1[i]);
+            if (system_.is_pinned(i)) missing = {};
+            for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
+        }
+        return right_.squaredNorm();
+    }
+
+    /// Residuals, N s, that the rounding of the places explains: stiff springs make much of little.
+    [[nodiscard]] double rounding() const {
+        double largest = 0.0;
+        for (const ParticleSystem::Bond& bond : system_.bonds()) {
+            const double place = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
+            largest = std::max(largest, system_.spring_of(bond).stiffness * place);
+        }
+        return kPositionRounding * h_ * largest;
+    }
+
+    [[nodiscard]] Matrix jacobian(Slope slope) const {
+        Triplets entries;
+        for (std::size_t i = 0; i < system_.size(); ++i) add_own(entries, i, slope);
+        for (const ParticleSystem::Bond& bond : system_.bonds()) add_bond(entries, bond, slope);
+        const auto size = static_cast<Eigen::Index>(3 * system_.size());
+        Matrix matrix(size, size);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        return matrix;
+    }
+
+    /// Mass, and what the forces on one particle add: its symmetric part where the matrix has to be symmetric. A pinned
+    /// member's rows are those of the unit matrix.
+    void add_own(Triplets& entries, std::size_t i, Slope kind) const {
+        Block block{};
+        for (std::size_t k = 0; k < 3; ++k) block[k][k] = system_.is_pinned(i) ? 1.0 : system_.mass(i);
+        if (!system_.is_pinned(i) && !system_.has_uniform_forces()) {
+            const Columns3 slope = system_.own_slope(i, v1_[i], h_);
+            for (std::size_t row = 0; row < 3; ++row) {
+                for (std::size_t column = 0; column < 3; ++column) {
+                    const double here = slope[column][static_cast<int>(row)];
+                    const double mirrored = slope[row][static_cast<int>(column)];
+                    block[row][column] -=
+                        h_ * system_.mass(i) * (kind == Slope::exact ? here : 0.5 * (here + mirrored));
+                }
+            }
+        }
+        add_block(entries, i, i, block, 1.0);
+    }
+
+    /// What a spring adds: h^2 times its stiffness along and across, and h c of its damper along.
+    void add_bond(Triplets& entries, const ParticleSystem::Bond& bond, Slope slope) const {
+        const Spring& spring = system_.spring_of(bond);
+        const Vec3 apart = x1_[bond.first] - x1_[bond.second];
+        const double now = length(apart);
+        if (!(now > 0.0)) return;
+        const Vec3 u = apart / now;
+        const Vec3 w = v1_[bond.first] - v1_[bond.second];
+        const double h2 = h_ * h_;
+        const double along = h2 * spring.stiffness + h_ * spring.damping;
+        double across = h2 * spring.stiffness * (1.0 - spring.rest_length / now);
+        Vec3 turn;  // the damper's force turns with the spring
+        if (slope == Slope::definite) {
+            across = std::max(0.0, across);
+        } else {
+            across += h2 * spring.damping * dot(w, u) / now;
+            turn = (h2 * spring.damping / now) * (w - dot(w, u) * u);
+        }
+        Block block{};
+        for (std::size_t row = 0; row < 3; ++row) {
+            const double u_row = u[static_cast<int>(row)];
+            for (std::size_t column = 0; column < 3; ++column) {
+                const double outer = u_row * u[static_cast<int>(column)];
+                const double here = u_row * turn[static_cast<int>(column)];
+                const double mirrored = u[static_cast<int>(column)] * turn[static_cast<int>(row)];
+                block[row][column] = along * outer + across * ((row == column ? 1.0 : 0.0) - outer) +
+                                     (slope == Slope::exact ? here : 0.5 * (here + mirrored));
+            }
+        }
+        const bool first_moves = !system_.is_pinned(bond.first);
+        const bool second_moves = !system_.is_pinned(bond.second);
+        if (first_moves) add_block(entries, bond.first, bond.first, block, 1.0);
+        if (second_moves) add_block(entries, bond.second, bond.second, block, 1.0);
+        if (!first_moves || !second_moves) return;
+        add_block(entries, bond.first, bond.second, block, -1.0);
+        add_block(entries, bond.second, bond.first, block, -1.0);
+    }
+
+    static void add_block(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                entries.emplace_back(static_cast<int>(3 * row + i), static_cast<int>(3 * column + j),
+                                     sign * block[i][j]);
+            }
+        }
+    }
+
+    [[nodiscard]] double largest_speed() const {
+        double largest = 0.0;
+        for (std::size_t i = 0; i < v1_.size(); ++i) {
+            largest = std::max({largest, max_abs(v1_[i]), max_abs(system_.velocities()[i]), h_ * max_abs(a1_[i])});
+        }
+        return largest;
+    }
+
+    const ParticleSystem& system_;
+    double h_;
+    std::vector<Vec3> v1_;
+    std::vector<Vec3> x1_;
+    std::vector<Vec3> a1_;
+    Eigen::VectorXd right_;
+    double residual_ = 0.0;  // sum of its squares
+};
+
+}  // namespace
+
+SystemStep implicit_system_step(const ParticleSystem& system, double duration) {
+    SystemStep whole = BackwardEuler(system, duration).run();
+    double h = duration;
+    for (int halvings = 0; !whole.solved && halvings < kMostHalvedSteps; ++halvings) {
+        h *= 0.5;
+        SystemStep part = BackwardEuler(system, h).run();
+        if (part.solved) return part;
+    }
+    return whole;
 }
 
 }  // namespace ricochet

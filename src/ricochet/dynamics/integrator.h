@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {

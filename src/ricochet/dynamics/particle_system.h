@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/dynamics/spring_network.h"
+#include "ricochet/dynamics/springs.h"
 
 namespace ricochet {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "ricochet/dynamics/detail/system_implicit.h"
 #include "ricochet/dynamics/dormand_prince.h"
+#include "ricochet/dynamics/implicit_euler.h"
 
 namespace ricochet {
 namespace {
@@ -134,7 +134,7 @@ SystemStep step_system(const Integrator& integrator, const ParticleSystem& syste
         case IntegratorKind::symplectic_euler:
             return euler_step(system, duration, true);
         case IntegratorKind::implicit_euler:
-            return detail::implicit_system_step(system, duration);
+            return implicit_system_step(system, duration);
         case IntegratorKind::midpoint:
             return midpoint_step(system, duration);
         case IntegratorKind::rk4:

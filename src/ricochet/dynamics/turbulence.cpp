@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/flows.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/detail/checks.h"
+#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 namespace {

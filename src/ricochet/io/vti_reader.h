@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "ricochet/dynamics/grid_flow.h"
+#include "ricochet/dynamics/flows.h"
 
 namespace ricochet {
 

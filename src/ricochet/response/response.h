@@ -13,8 +13,8 @@
 
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/core/segment.h"
-#include "ricochet/dynamics/flow_field.h"
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/response/material.h"
 

@@ -9,7 +9,7 @@
 
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/segment.h"
-#include "ricochet/dynamics/force.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/verify/verifier.h"
 

@@ -9,7 +9,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/reserve_more.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/spring_stability.h"
+#include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/dynamics/attributes.h"
 #include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/particles.h"
 #include "ricochet/io/detail/object_view.h"
 #include "ricochet/io/detail/scene_context.h"
 #include "ricochet/io/detail/scene_keys.h"

@@ -10,7 +10,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/screen_area.h"
+#include "ricochet/dynamics/emitter.h"
 #include "ricochet/geometry/mesh/placed_mesh.h"
 #include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/scene_context.h"

@@ -5,16 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "ricochet/dynamics/anchor.h"
-#include "ricochet/dynamics/buoyancy.h"
-#include "ricochet/dynamics/drag.h"
-#include "ricochet/dynamics/electromagnetic.h"
-#include "ricochet/dynamics/field_force.h"
 #include "ricochet/dynamics/flow_path.h"
-#include "ricochet/dynamics/grid_flow.h"
-#include "ricochet/dynamics/point_gravity.h"
-#include "ricochet/dynamics/radial_force.h"
-#include "ricochet/dynamics/turbulence.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/io/detail/scene_context.h"
 #include "ricochet/io/vti_reader.h"
 

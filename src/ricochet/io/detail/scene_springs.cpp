@@ -9,7 +9,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/spring_makers.h"
+#include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/mesh/placed_mesh.h"
 #include "ricochet/io/detail/scene_context.h"
 

@@ -1,12 +1,12 @@
-#include "ricochet/dynamics/force.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/detail/checks.h"
+#include "ricochet/dynamics/checks.h"
+#include "ricochet/dynamics/forces.h"
 
 namespace ricochet {
+
 namespace {
 
 class Gravity final : public Force {

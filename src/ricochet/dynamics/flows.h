@@ -1,7 +1,9 @@
 /// \file
-/// Flows: the velocity of a medium as a function of place and time, for drags and field forces.
+/// Flows: the velocity of a medium as a function of position and time, for drags, field forces and first-order motion.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -14,7 +16,7 @@ namespace ricochet {
 class FlowField {
 public:
     virtual ~FlowField() = default;
-    /// Velocity at a place (m) and time (s), m/s.
+    /// Velocity at a position (m) and time (s), m/s.
     [[nodiscard]] virtual Vec3 velocity(const Vec3& position, double time) const = 0;
     /// True when the velocity does not depend on time.
     [[nodiscard]] virtual bool is_steady() const = 0;
@@ -76,5 +78,47 @@ struct VortexSettings {
 [[nodiscard]] FlowPointer make_flow_sum(std::vector<FlowPointer> parts);
 /// A flow times a number.
 [[nodiscard]] FlowPointer make_scaled_flow(FlowPointer flow, double factor);
+
+// A vector field sampled on a regular grid.
+
+/// Vectors at the points of a grid along the axes. Point (i, j, k) stands at origin + (i, j, k) * spacing and has the
+/// number i + counts[0] (j + counts[1] k).
+struct VectorGrid {
+    Vec3 origin;                            ///< m
+    Vec3 spacing{1, 1, 1};                  ///< m, each > 0
+    std::array<std::uint32_t, 3> counts{};  ///< points along each axis, >= 1; 1: the same all along that axis
+    std::vector<Vec3> values;               ///< one a point
+};
+
+/// What a grid says about places beyond its points.
+enum class OutsideGrid {
+    clamp,  ///< the value at the nearest point of the grid's box
+    zero,   ///< nothing
+};
+
+/// Trilinear interpolation of the samples (m/s); linear fields come out exactly but for rounding. Steady.
+/// Throws InputError when the counts do not fit the values, a spacing is not > 0, or a value is not finite.
+[[nodiscard]] FlowPointer make_grid_flow(VectorGrid grid, OutsideGrid outside = OutsideGrid::clamp);
+
+// Turbulence without divergence: the curl of a noise.
+
+/// Eddies of several sizes. Octave k has eddies of size length / 2^k, speeds times gain^k, and changes (2 gain)^k times
+/// as fast as the first, as eddies that turn over do.
+struct TurbulenceSettings {
+    std::uint64_t seed = 0;
+    double speed = 1.0;         ///< m/s, root mean square over space and seeds, >= 0
+    double length = 1.0;        ///< m, size of the largest eddies (distance of the noise's lattice points), > 0
+    std::uint32_t octaves = 3;  ///< 1 to kMostOctaves
+    double gain = 0.5;          ///< speed of an octave over that of the one before, > 0 and <= 1; 0.79: Kolmogorov's
+    double rate = 0.0;          ///< 1/s: how often the largest eddies are replaced by new ones; 0: frozen
+};
+inline constexpr std::uint32_t kMostOctaves = 16;
+
+/// The curl of three gradient noises, taken analytically: its divergence is zero but for rounding. An eddy pattern
+/// repeats after 256 lengths of its octave. In time it goes from one noise to the next with weights whose squares add
+/// up to 1, so that the mean speed stays.
+/// Method: R. Bridson, J. Hourihan, M. Nordenstam, "Curl-noise for procedural fluid flow", ACM TOG 26(3), 2007;
+/// gradient noise: K. Perlin, "Improving noise", ACM TOG 21(3), 2002.
+[[nodiscard]] FlowPointer make_turbulence(const TurbulenceSettings& settings);
 
 }  // namespace ricochet

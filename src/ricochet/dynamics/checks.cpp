@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/detail/checks.h"
+#include "ricochet/dynamics/checks.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 /// \file
-/// One case, brought to where its measured steps begin, to be timed as often as wanted.
+/// What a case's simulation holds of the process's memory.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,32 @@
 #include <vector>
 
 #include "bench/cases.h"
-#include "bench/memory_use.h"
 #include "bench/reference.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet::bench {
+
+/// Bytes that the process has allocated and not freed; 0 where the allocator does not tell.
+[[nodiscard]] std::uint64_t allocated_bytes();
+
+/// Hands back to the system what has been freed, so that one case's memory is not there twice in the next.
+void return_freed_memory();
+
+/// What a case's simulation holds after a step.
+struct MemoryUse {
+    /// With what the step itself keeps for the next one; of the search structures for spheres only what the ray
+    /// library does not map past the allocator.
+    double bytes_per_particle = 0.0;
+    double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
+};
+
+/// Builds the case's simulation with and without its particles and looks at what it has allocated.
+[[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
+                                       const std::vector<Particle>& particles);
+
+// One case, brought to where its measured steps begin, to be timed as often as wanted.
 
 /// Times of the measured steps and of the references, s, one entry a repeat.
 struct CaseTimes {

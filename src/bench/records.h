@@ -9,8 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "bench/load_measurement.h"
+#include "bench/load.h"
 #include "bench/measurement.h"
+#include "bench/ratios.h"
 
 namespace ricochet::bench {
 
@@ -34,5 +35,14 @@ using Record = std::vector<Field>;
 
 /// A header and one line a record (RFC 4180), nothing where JSON has null. Records have the same fields.
 [[nodiscard]] std::string to_csv(std::span<const Record> records);
+
+// Measurements as tables for a terminal: a header and one row each.
+
+using Table = std::vector<std::vector<std::string>>;
+
+/// Columns that have no number in any row are left out where only some suites have them.
+[[nodiscard]] Table to_table(std::span<const Row> rows);
+[[nodiscard]] Table to_table(std::span<const LoadRow> rows);
+[[nodiscard]] Table to_table(std::span<const RatioChange> changes);
 
 }  // namespace ricochet::bench

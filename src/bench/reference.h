@@ -1,10 +1,11 @@
 /// \file
-/// The work that the ray library does by itself on a case's stretches, ready to be timed.
+/// Points in an order in which neighbours of the list are neighbours in space.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "bench/native_rays.h"
@@ -12,6 +13,12 @@
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::bench {
+
+/// Indices of the points along the Z-curve through the cube of their box, 2^21 cells an axis; equal cells in the order
+/// of the list. Points must be finite. Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
+[[nodiscard]] std::vector<std::uint32_t> morton_order(std::span<const Vec3> points);
+
+// The work that the ray library does by itself on a case's stretches, ready to be timed.
 
 /// Rays and flights, in arbitrary and in spatial order. What can be prepared is prepared: rays are single precision
 /// already, and sorting takes no part in what is timed.

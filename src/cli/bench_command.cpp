@@ -11,16 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "bench/case_run.h"
 #include "bench/cases.h"
 #include "bench/environment.h"
-#include "bench/load_cases.h"
-#include "bench/load_measurement.h"
+#include "bench/load.h"
 #include "bench/measurement.h"
-#include "bench/memory_use.h"
 #include "bench/ratios.h"
 #include "bench/records.h"
-#include "bench/suites.h"
-#include "bench/tables.h"
 #include "cli/bench_plots.h"
 #include "cli/bench_results.h"
 #include "cli/interrupt.h"

@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "bench/suites.h"
+#include "bench/cases.h"
 #include "ricochet/io/gnuplot_style.h"
 
 namespace ricochet::cli {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bench/load_measurement.h"
+#include "bench/load.h"
 #include "bench/measurement.h"
 
 namespace ricochet::cli {

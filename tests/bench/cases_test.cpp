@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "bench/case_setup.h"
-#include "bench/insides.h"
+#include "bench/cases.h"
 #include "bench/small_cases.h"
-#include "bench/suites.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::bench {

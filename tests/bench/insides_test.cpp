@@ -1,4 +1,4 @@
-#include "bench/insides.h"
+#include "bench/case_setup.h"
 
 #include <gtest/gtest.h>
 

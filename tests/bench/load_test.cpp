@@ -5,8 +5,7 @@
 #include <set>
 #include <string>
 
-#include "bench/load_cases.h"
-#include "bench/load_measurement.h"
+#include "bench/load.h"
 #include "geometry/temporary_folder.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 

@@ -1,4 +1,4 @@
-#include "bench/memory_use.h"
+#include "bench/case_run.h"
 
 #include <gtest/gtest.h>
 

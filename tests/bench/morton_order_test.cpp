@@ -1,4 +1,4 @@
-#include "bench/morton_order.h"
+#include "bench/reference.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bench/suites.h"
+#include "bench/cases.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bench/tables.h"
+#include "bench/records.h"
 
 #include <gtest/gtest.h>
 

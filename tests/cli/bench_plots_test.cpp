@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/suites.h"
+#include "bench/cases.h"
 #include "cli/gnuplot.h"
 #include "geometry/temporary_folder.h"
 

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "ricochet/compare/comparison_files.h"
-#include "ricochet/compare/detail/columns.h"
 
 namespace ricochet {
 namespace {
@@ -50,7 +49,7 @@ Comparison compared(const std::string& responses) {
 std::string numbers_of(const Comparison& comparison) {
     std::string text;
     for (const ComparisonRow* row : comparison.listed_rows()) {
-        for (const detail::Column& column : detail::comparison_columns()) {
+        for (const ComparisonColumn& column : comparison_columns()) {
             if (std::string(column.name).rfind("cost_", 0) == 0) continue;
             std::ostringstream cell;
             cell.precision(17);
@@ -145,7 +144,7 @@ TEST(Comparison, GivesTheSameNumbersTwice) {
 TEST(Comparison, EveryColumnIsInTheDocument) {
     std::ifstream file(RICOCHET_SOURCE_DIR "/docs/compare.md");
     const std::string document{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    for (const detail::Column& column : detail::comparison_columns()) {
+    for (const ComparisonColumn& column : comparison_columns()) {
         EXPECT_NE(document.find("`" + std::string(column.name) + "`"), std::string::npos) << column.name;
     }
 }

@@ -1,4 +1,4 @@
-#include "ricochet/compare/detail/error_spread.h"
+#include "ricochet/compare/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 TEST(ErrorSpread, OfNothingHasNoNumbers) {
@@ -56,4 +56,4 @@ TEST(ErrorSpread, AgreesWithCountingOnRandomNumbers) {
 }
 
 }  // namespace
-}  // namespace ricochet::detail
+}  // namespace ricochet

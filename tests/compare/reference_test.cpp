@@ -1,10 +1,10 @@
-#include "ricochet/compare/detail/reference.h"
+#include "ricochet/compare/reference.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 TEST(Reference, IsInterpolatedLinearlyAndConstantBeyondItsEnds) {
@@ -92,4 +92,4 @@ TEST(Reference, LastPlacesAreComparedOfThoseAliveInBoth) {
 }
 
 }  // namespace
-}  // namespace ricochet::detail
+}  // namespace ricochet

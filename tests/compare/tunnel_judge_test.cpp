@@ -1,10 +1,10 @@
-#include "ricochet/compare/detail/tunnel_judge.h"
+#include "ricochet/compare/tunnel_judge.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 // Colliders 0 to 3, one of each kind.
@@ -126,4 +126,4 @@ TEST(TunnelJudge, ParticlesAreJudgedEachForItself) {
 }
 
 }  // namespace
-}  // namespace ricochet::detail
+}  // namespace ricochet

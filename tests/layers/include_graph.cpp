@@ -67,7 +67,7 @@ constexpr std::array kDoors = {
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"Eigen/", "src/ricochet/dynamics/implicit_euler\\.cpp"},
-    Door{"boost/", "src/ricochet/verify/detail/[^/]*\\.cpp|tests/.*"},
+    Door{"boost/", "src/ricochet/verify/[^/]*\\.cpp|tests/.*"},
     Door{"(unistd|fcntl|signal|spawn|malloc)\\.h|sys/", ".*\\.cpp|tests/.*"},
 };
 

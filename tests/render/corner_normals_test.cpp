@@ -1,4 +1,4 @@
-#include "ricochet/render/corner_normals.h"
+#include "ricochet/render/preview.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/verify/detail/signs.h"
+#include "ricochet/verify/signs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,21 +1,73 @@
+/// \file
+/// The same scene again and again: a simulation takes its setup with it, a comparison needs one for every run.
 #include "ricochet/compare/comparison.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <memory>
 #include <utility>
+#include <vector>
 
-#include "ricochet/compare/detail/measured_run.h"
-#include "ricochet/compare/detail/reference.h"
-#include "ricochet/compare/detail/setup_copies.h"
-#include "ricochet/compare/detail/timed_run.h"
+#include "ricochet/compare/measured_run.h"
+#include "ricochet/compare/reference.h"
 #include "ricochet/core/error.h"
+#include "ricochet/simulation.h"
 
 namespace ricochet {
+
+/// Makes setups that share what never changes (forces, meshes) and nothing else.
+class SetupCopies {
+public:
+    explicit SetupCopies(SimulationSetup setup);
+    /// A setup with these options.
+    [[nodiscard]] SimulationSetup make(const SimulationOptions& options) const;
+    [[nodiscard]] const SimulationOptions& options() const { return setup_.options; }
+
+private:
+    SimulationSetup setup_;  // without its forces
+    std::vector<std::shared_ptr<const Force>> forces_;
+};
+
 namespace {
 
-using detail::SetupCopies;
-using detail::StepHook;
+/// A force that several simulations have in common; forces are pure.
+class SharedForce final : public Force {
+public:
+    explicit SharedForce(std::shared_ptr<const Force> force) : force_(std::move(force)) {}
+
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override { return force_->acceleration(input); }
+    [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
+        return force_->potential_energy(input);
+    }
+    [[nodiscard]] bool is_uniform() const override { return force_->is_uniform(); }
+    [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
+
+private:
+    std::shared_ptr<const Force> force_;
+};
+
+}  // namespace
+
+SetupCopies::SetupCopies(SimulationSetup setup) : setup_(std::move(setup)) {
+    for (std::unique_ptr<Force>& force : setup_.forces) forces_.emplace_back(std::move(force));
+    setup_.forces.clear();
+}
+
+SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
+    SimulationSetup copy;
+    copy.options = options;
+    for (const auto& force : forces_) copy.forces.push_back(std::make_unique<SharedForce>(force));
+    copy.materials = setup_.materials;
+    copy.colliders = setup_.colliders;
+    copy.emitters = setup_.emitters;
+    copy.particles = setup_.particles;
+    copy.bounds = setup_.bounds;
+    copy.attributes = setup_.attributes;
+    copy.reference_camera = setup_.reference_camera;
+    return copy;
+}
+
+namespace {
 
 constexpr ResponseChoice kExact{ResponseKind::exact, false};
 
@@ -68,16 +120,15 @@ private:
 
     bool measure() {
         const double step = result_.plan.reference_step;
-        const auto reference = detail::measure_run(setup_for(kExact, step), next_run(kExact, step, 0));
+        const auto reference = measure_run(setup_for(kExact, step), next_run(kExact, step, 0));
         if (!reference) return false;
-        result_.reference = {reference->figures, detail::energy_scale(reference->trace),
-                             reference->trace.has_potential};
+        result_.reference = {reference->figures, energy_scale(reference->trace), reference->trace.has_potential};
         return std::all_of(result_.rows.begin(), result_.rows.end(), [&](ComparisonRow& row) {
             const auto run =
-                detail::measure_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, 0));
+                measure_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, 0));
             if (!run) return false;
             row.figures = run->figures;
-            row.errors = detail::errors_against(run->trace, reference->trace);
+            row.errors = errors_against(run->trace, reference->trace);
             return true;
         });
     }
@@ -95,7 +146,7 @@ private:
 
     bool take_time(ComparisonRow& row, std::uint32_t repeat) {
         const auto run =
-            detail::time_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, repeat));
+            time_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, repeat));
         if (!run) return false;
         if (run->state_hash != row.figures.state_hash) {
             throw RunError(
@@ -116,7 +167,7 @@ private:
             const auto equal = std::find_if(exact.begin(), exact.end(), [&](const ComparisonRow* candidate) {
                 return candidate->time_step == row.time_step;
             });
-            detail::settle_cost(row, **equal, exact);
+            settle_cost(row, **equal, exact);
         }
     }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "ricochet/compare/comparison_files.h"
-#include "ricochet/compare/detail/columns.h"
 #include "ricochet/io/gnuplot_style.h"
 #include "ricochet/io/run_files.h"
 
@@ -40,7 +39,7 @@ struct Values {
 };
 
 double value_of(const ComparisonRow& row, const Comparison& comparison, const char* column) {
-    return detail::number_of(detail::comparison_columns()[detail::column_index(column)].cell(row, comparison));
+    return number_of(comparison_columns()[column_index(column)].cell(row, comparison));
 }
 
 void add_values(const ComparisonRow& row, const Comparison& comparison, const char* column, Values& values) {
@@ -95,7 +94,7 @@ std::string curve(const Comparison& comparison, std::size_t index, const StepPlo
     if (!values.any || (logarithmic && values.positive.empty())) {
         return fmt::format("NaN with linespoints linestyle {} title '{}{}'", index + 1, name, reason);
     }
-    const std::size_t column = detail::column_index(plot.column) + 1;
+    const std::size_t column = column_index(plot.column) + 1;
     const std::string y = logarithmic ? fmt::format("(${0} > 0 ? ${0} : NaN)", column) : fmt::format("{}", column);
     return fmt::format("'{}' index {} using 2:{} with linespoints linestyle {} title '{}{}'", kComparisonPointsFile,
                        index, y, index + 1, name, reason);

@@ -1,5 +1,10 @@
 /// \file
-/
+/// Emitters: where, when and how particles are born. The schedule of births depends on the emitter alone, never on the
+/// time step; each birth has its own random numbers, keyed by the particle's number within the emitter.
+/// Method: W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983
+/// (mean and spread for every attribute).
+#pragma once
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -20,266 +25,265 @@
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
-    namespace ricochet {
+namespace ricochet {
 
-    /// Mean and spread: values are uniform in [mean - spread, mean + spread).
-    struct MeanSpread {
-        double mean = 0.0;
-        double spread = 0.0;  ///< >= 0
-    };
+/// Mean and spread: values are uniform in [mean - spread, mean + spread).
+struct MeanSpread {
+    double mean = 0.0;
+    double spread = 0.0;  ///< >= 0
+};
 
-    // When particles give birth to particles.
+// When particles give birth to particles.
 
-    /// What a particle gives birth at.
-    enum class BirthEvent {
-        life,    ///< all its life long, at a rate
-        death,   ///< at the end of its lifetime, or when a surface absorbs it
-        impact,  ///< at an impact whose impulse reaches the threshold
-    };
+/// What a particle gives birth at.
+enum class BirthEvent {
+    life,    ///< all its life long, at a rate
+    death,   ///< at the end of its lifetime, or when a surface absorbs it
+    impact,  ///< at an impact whose impulse reaches the threshold
+};
 
-    [[nodiscard]] std::optional<BirthEvent> birth_event_from_name(std::string_view name);
+[[nodiscard]] std::optional<BirthEvent> birth_event_from_name(std::string_view name);
 
-    /// The rule by which an emitter's particles come from other particles.
-    struct ParentRule {
-        std::uint32_t emitter = 0;  ///< whose particles are the parents, as its number in the scene
-        bool recursive = false;     ///< the children are parents in the same way too
-        BirthEvent on = BirthEvent::life;
-        MeanSpread count{1.0, 0.0};      ///< children of a death or impact; rounded, negative draws count as 0
-        double threshold_impulse = 0.0;  ///< N s, >= 0: least impulse of an impact that gives birth
-        /// The parent ends and its children share its mass and momentum: description.mass is the weight of a share,
-        /// radii follow from masses at the parent's density. Not for life.
-        bool share = false;
-        double inherit_velocity = 1.0;  ///< part of the parent's velocity that a child begins with; 1 when sharing
-        double inherit_color = 0.0;     ///< 0..1, part of the parent's colour in the child's own
-    };
+/// The rule by which an emitter's particles come from other particles.
+struct ParentRule {
+    std::uint32_t emitter = 0;  ///< whose particles are the parents, as its number in the scene
+    bool recursive = false;     ///< the children are parents in the same way too
+    BirthEvent on = BirthEvent::life;
+    MeanSpread count{1.0, 0.0};      ///< children of a death or impact; rounded, negative draws count as 0
+    double threshold_impulse = 0.0;  ///< N s, >= 0: least impulse of an impact that gives birth
+    /// The parent ends and its children share its mass and momentum: description.mass is the weight of a share,
+    /// radii follow from masses at the parent's density. Not for life.
+    bool share = false;
+    double inherit_velocity = 1.0;  ///< part of the parent's velocity that a child begins with; 1 when sharing
+    double inherit_color = 0.0;     ///< 0..1, part of the parent's colour in the child's own
+};
 
-    // Attributes that change with a particle's age: factors keyed over its life, worked out when a state is shown and
-    // never stored, so that they do not depend on the time step.
+// Attributes that change with a particle's age: factors keyed over its life, worked out when a state is shown and
+// never stored, so that they do not depend on the time step.
 
-    /// A factor for one attribute over a particle's life.
-    struct LifeCurve {
-        std::string name;         ///< of the attribute
-        KeyedCurve<Vec3> factor;  ///< of each component; of one component: x
-        bool of_lifetime =
-            true;  ///< the curve's time is the part of the lifetime that has passed, 0..1; false: the age, s
-    };
+/// A factor for one attribute over a particle's life.
+struct LifeCurve {
+    std::string name;         ///< of the attribute
+    KeyedCurve<Vec3> factor;  ///< of each component; of one component: x
+    bool of_lifetime = true;  ///< the curve's time is the part of the lifetime that has passed, 0..1; false: the age, s
+};
 
-    /// A value with the factors of all curves of that name at an age (s). A lifetime without end counts as just begun.
-    [[nodiscard]] AttributeValue shown_value(std::span<const LifeCurve> curves, std::string_view name,
-                                             const AttributeValue& value, double age, double lifetime);
+/// A value with the factors of all curves of that name at an age (s). A lifetime without end counts as just begun.
+[[nodiscard]] AttributeValue shown_value(std::span<const LifeCurve> curves, std::string_view name,
+                                         const AttributeValue& value, double age, double lifetime);
 
-    // Where particles are born: points, surfaces and volumes, each filled uniformly.
+// Where particles are born: points, surfaces and volumes, each filled uniformly.
 
-    /// All births at one point.
-    struct PointShape {
-        Vec3 center;
-    };
-    /// Uniform on a flat disk.
-    struct DiskShape {
-        Vec3 center;
-        Vec3 normal{0, 0, 1};  ///< not zero
-        double radius = 1.0;   ///< m, > 0
-    };
-    /// Uniform in an axis-aligned box.
-    struct BoxShape {
-        Vec3 center;
-        Vec3 size{1, 1, 1};  ///< full edge lengths, m, >= 0
-    };
-    /// Uniform in a ball, or on its surface.
-    struct SphereShape {
-        Vec3 center;
-        double radius = 1.0;   ///< m, > 0
-        bool surface = false;  ///< true: births on the sphere itself, launched along the outward normal
-    };
-    /// Uniform by area on a triangle mesh, launched along the triangle normals.
-    struct MeshSurfaceShape {
-        std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates (placement already applied)
-    };
-    /// Uniform in a cone, launched along the line from the apex.
-    struct ConeShape {
-        Vec3 apex;
-        Vec3 axis{0, 0, 1};           ///< from the apex into the cone, not zero
-        double angle_degrees = 20.0;  ///< between the axis and the side, 0 (a line) to below 90
-        double height = 1.0;          ///< m, > 0
-    };
-    /// Uniform in the inside of a closed mesh, decided exactly (MeshInterior).
-    struct MeshVolumeShape {
-        std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates
-    };
-    using EmitterShape =
-        std::variant<PointShape, DiskShape, BoxShape, SphereShape, MeshSurfaceShape, ConeShape, MeshVolumeShape>;
+/// All births at one point.
+struct PointShape {
+    Vec3 center;
+};
+/// Uniform on a flat disk.
+struct DiskShape {
+    Vec3 center;
+    Vec3 normal{0, 0, 1};  ///< not zero
+    double radius = 1.0;   ///< m, > 0
+};
+/// Uniform in an axis-aligned box.
+struct BoxShape {
+    Vec3 center;
+    Vec3 size{1, 1, 1};  ///< full edge lengths, m, >= 0
+};
+/// Uniform in a ball, or on its surface.
+struct SphereShape {
+    Vec3 center;
+    double radius = 1.0;   ///< m, > 0
+    bool surface = false;  ///< true: births on the sphere itself, launched along the outward normal
+};
+/// Uniform by area on a triangle mesh, launched along the triangle normals.
+struct MeshSurfaceShape {
+    std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates (placement already applied)
+};
+/// Uniform in a cone, launched along the line from the apex.
+struct ConeShape {
+    Vec3 apex;
+    Vec3 axis{0, 0, 1};           ///< from the apex into the cone, not zero
+    double angle_degrees = 20.0;  ///< between the axis and the side, 0 (a line) to below 90
+    double height = 1.0;          ///< m, > 0
+};
+/// Uniform in the inside of a closed mesh, decided exactly (MeshInterior).
+struct MeshVolumeShape {
+    std::shared_ptr<const TriangleMesh> mesh;  ///< in world coordinates
+};
+using EmitterShape =
+    std::variant<PointShape, DiskShape, BoxShape, SphereShape, MeshSurfaceShape, ConeShape, MeshVolumeShape>;
 
-    /// A place of birth.
-    struct LaunchPlace {
-        Vec3 position;
-        Vec3 direction;  ///< the shape's own, of unit length
-    };
+/// A place of birth.
+struct LaunchPlace {
+    Vec3 position;
+    Vec3 direction;  ///< the shape's own, of unit length
+};
 
-    /// Draws places of a shape.
-    class ShapeSampler {
-    public:
-        /// Throws InputError, with a sentence on what is wrong, for a shape outside the ranges stated there, for a mesh
-        /// without area, and for a volume that is not closed or fills less than kSmallestFill of its box.
-        explicit ShapeSampler(const EmitterShape& shape);
+/// Draws places of a shape.
+class ShapeSampler {
+public:
+    /// Throws InputError, with a sentence on what is wrong, for a shape outside the ranges stated there, for a mesh
+    /// without area, and for a volume that is not closed or fills less than kSmallestFill of its box.
+    explicit ShapeSampler(const EmitterShape& shape);
 
-        /// radius: of the particle, m; on mesh surfaces it is born so far off the surface.
-        [[nodiscard]] LaunchPlace draw(double radius, RandomSequence& random) const;
+    /// radius: of the particle, m; on mesh surfaces it is born so far off the surface.
+    [[nodiscard]] LaunchPlace draw(double radius, RandomSequence& random) const;
 
-        /// Inside test by rejection must come to an end: least part of its box that a mesh's volume has to fill.
-        static constexpr double kSmallestFill = 1e-4;
+    /// Inside test by rejection must come to an end: least part of its box that a mesh's volume has to fill.
+    static constexpr double kSmallestFill = 1e-4;
 
-    private:
-        [[nodiscard]] LaunchPlace on_disk(const DiskShape& disk, RandomSequence& random) const;
-        [[nodiscard]] LaunchPlace in_cone(const ConeShape& cone, RandomSequence& random) const;
-        [[nodiscard]] LaunchPlace on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const;
-        [[nodiscard]] LaunchPlace in_mesh(RandomSequence& random) const;
+private:
+    [[nodiscard]] LaunchPlace on_disk(const DiskShape& disk, RandomSequence& random) const;
+    [[nodiscard]] LaunchPlace in_cone(const ConeShape& cone, RandomSequence& random) const;
+    [[nodiscard]] LaunchPlace on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const;
+    [[nodiscard]] LaunchPlace in_mesh(RandomSequence& random) const;
 
-        EmitterShape shape_;
-        std::vector<double> cumulative_area_;         // of a mesh surface's triangles
-        std::shared_ptr<const MeshInterior> inside_;  // of a mesh volume
-        double cone_slope_ = 0.0;                     // tangent of a cone's angle
-    };
+    EmitterShape shape_;
+    std::vector<double> cumulative_area_;         // of a mesh surface's triangles
+    std::shared_ptr<const MeshInterior> inside_;  // of a mesh volume
+    double cone_slope_ = 0.0;                     // tangent of a cone's angle
+};
 
-    /// Points whose convex hull is that of the shape; round shapes by `segments` points a circle that touches from
-    /// inside. seen_from: of a ball only the outline seen from there counts.
-    [[nodiscard]] std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments);
-    /// A box around the shape.
-    [[nodiscard]] Box3 bounds(const EmitterShape& shape);
+/// Points whose convex hull is that of the shape; round shapes by `segments` points a circle that touches from
+/// inside. seen_from: of a ball only the outline seen from there counts.
+[[nodiscard]] std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments);
+/// A box around the shape.
+[[nodiscard]] Box3 bounds(const EmitterShape& shape);
 
-    // How large an emitter is on the screen of a reference camera: the second way of W. T. Reeves to say how many
-    // particles a frame gives birth to ("Particle Systems", ACM TOG 2(2), 1983, section 2.1: so many a unit of screen
-    // area, so that what is far away costs little). The camera belongs to the scene and never depends on how pictures
-    // are made.
+// How large an emitter is on the screen of a reference camera: the second way of W. T. Reeves to say how many
+// particles a frame gives birth to ("Particle Systems", ACM TOG 2(2), 1983, section 2.1: so many a unit of screen
+// area, so that what is far away costs little). The camera belongs to the scene and never depends on how pictures
+// are made.
 
-    /// A pinhole camera with square pixels.
-    struct ReferenceCamera {
-        Vec3 position;                        ///< m
-        Vec3 target{0, 0, -1};                ///< m, different from position
-        double field_of_view_degrees = 35.0;  ///< from the lower to the upper edge, 1..170
-        double image_height = 720.0;          ///< pixels from the lower to the upper edge, > 0
-    };
+/// A pinhole camera with square pixels.
+struct ReferenceCamera {
+    Vec3 position;                        ///< m
+    Vec3 target{0, 0, -1};                ///< m, different from position
+    double field_of_view_degrees = 35.0;  ///< from the lower to the upper edge, 1..170
+    double image_height = 720.0;          ///< pixels from the lower to the upper edge, > 0
+};
 
-    /// Area of the convex hull of the shape's picture, in pixels; what lies beside the picture counts too. With s the
-    /// distance of the picture's plane, in pixels, s = image_height / (2 tan(field_of_view / 2)), a point at depth d
-    /// and distance r from the view's axis is seen at s r / d. Round shapes are taken as polygons of 256 corners.
-    /// Throws InputError when a part of the shape is not in front of the camera.
-    [[nodiscard]] double screen_area(const EmitterShape& shape, const ReferenceCamera& camera);
+/// Area of the convex hull of the shape's picture, in pixels; what lies beside the picture counts too. With s the
+/// distance of the picture's plane, in pixels, s = image_height / (2 tan(field_of_view / 2)), a point at depth d
+/// and distance r from the view's axis is seen at s r / d. Round shapes are taken as polygons of 256 corners.
+/// Throws InputError when a part of the shape is not in front of the camera.
+[[nodiscard]] double screen_area(const EmitterShape& shape, const ReferenceCamera& camera);
 
-    // Particles that are let go from a moving frame.
+// Particles that are let go from a moving frame.
 
-    /// The particle as it stands in the world when it is let go from a frame at its birth time: position, velocity and
-    /// spin are given in the frame's coordinates, relative to the frame. With the frame's rotation R, origin o and
-    /// motion (v, w) at that time: position o + R p, velocity R u + v + w x (R p); a sphere was carried round by the
-    /// frame until then, so its spin is R s + w; a point has none. All else stays. frame < frames.size().
-    [[nodiscard]] Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle);
+/// The particle as it stands in the world when it is let go from a frame at its birth time: position, velocity and
+/// spin are given in the frame's coordinates, relative to the frame. With the frame's rotation R, origin o and
+/// motion (v, w) at that time: position o + R p, velocity R u + v + w x (R p); a sphere was carried round by the
+/// frame until then, so its spin is R s + w; a point has none. All else stays. frame < frames.size().
+[[nodiscard]] Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle);
 
-    // Emitters: where, when and how particles are born. The schedule of births depends on the emitter alone, never on
-    // the time step; each birth has its own random numbers, keyed by the particle's number within the emitter. Method:
-    // W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983 (mean and
-    // spread for every attribute).
+// Emitters: where, when and how particles are born. The schedule of births depends on the emitter alone, never on
+// the time step; each birth has its own random numbers, keyed by the particle's number within the emitter. Method:
+// W. T. Reeves, "Particle Systems: A Technique for Modeling a Class of Fuzzy Objects", ACM TOG 2(2), 1983 (mean and
+// spread for every attribute).
 
-    /// Mean and spread of an attribute, for each component.
-    struct AttributeSpread {
-        std::string name;  ///< of one of the scene's attributes, those for looks included
-        Vec3 mean;         ///< of one component: x
-        Vec3 spread;       ///< each component >= 0
-    };
+/// Mean and spread of an attribute, for each component.
+struct AttributeSpread {
+    std::string name;  ///< of one of the scene's attributes, those for looks included
+    Vec3 mean;         ///< of one component: x
+    Vec3 spread;       ///< each component >= 0
+};
 
-    /// One emitter, as a scene describes it.
-    struct EmitterDescription {
-        std::string name;
-        EmitterShape shape;
-        std::uint64_t burst = 0;  ///< particles born at once at `start`
-        MeanSpread rate;          ///< particles per second from `start` to `stop`; redrawn for every second
-        /// Instead: particles a frame (EmitterSurroundings::frame_rate), redrawn for every frame. Reeves's first
-        /// method.
-        MeanSpread rate_per_frame;
-        /// Instead: particles a frame for every pixel of the shape's screen_area(). Reeves's second method.
-        MeanSpread rate_per_area;
-        double start = 0.0;                                     ///< s
-        double stop = std::numeric_limits<double>::infinity();  ///< s, end of the rate
-        /// Launch direction; zero means the shape's own (disk normal, sphere or mesh normal; for point, box and ball a
-        /// uniform random direction).
-        Vec3 direction;
-        double cone_degrees = 0.0;  ///< half angle of the cone about the direction, uniform in solid angle, 0..180
-        MeanSpread speed;           ///< m/s
-        Vec3 velocity;              ///< m/s, added to direction * speed
-        MeanSpread mass{1.0, 0.0};  ///< kg, mean - spread > 0
-        MeanSpread radius;          ///< m, mean - spread >= 0; 0 is a point
-        MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
-        std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
-        /// Null pointer: shape, direction and velocity are in world coordinates. Otherwise they are in those of the
-        /// frame of that number at the time of birth, and particles are let go from it, see launched_from().
-        std::shared_ptr<const FrameTree> frames = nullptr;
-        std::size_t frame = 0;
-        std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
-        std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
-        std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's place in the scene
-        std::optional<ParentRule> parent;  ///< particles give birth here; shape, burst, start and stop are not used
-    };
+/// One emitter, as a scene describes it.
+struct EmitterDescription {
+    std::string name;
+    EmitterShape shape;
+    std::uint64_t burst = 0;  ///< particles born at once at `start`
+    MeanSpread rate;          ///< particles per second from `start` to `stop`; redrawn for every second
+    /// Instead: particles a frame (EmitterSurroundings::frame_rate), redrawn for every frame. Reeves's first
+    /// method.
+    MeanSpread rate_per_frame;
+    /// Instead: particles a frame for every pixel of the shape's screen_area(). Reeves's second method.
+    MeanSpread rate_per_area;
+    double start = 0.0;                                     ///< s
+    double stop = std::numeric_limits<double>::infinity();  ///< s, end of the rate
+    /// Launch direction; zero means the shape's own (disk normal, sphere or mesh normal; for point, box and ball a
+    /// uniform random direction).
+    Vec3 direction;
+    double cone_degrees = 0.0;  ///< half angle of the cone about the direction, uniform in solid angle, 0..180
+    MeanSpread speed;           ///< m/s
+    Vec3 velocity;              ///< m/s, added to direction * speed
+    MeanSpread mass{1.0, 0.0};  ///< kg, mean - spread > 0
+    MeanSpread radius;          ///< m, mean - spread >= 0; 0 is a point
+    MeanSpread lifetime{std::numeric_limits<double>::infinity(), 0.0};  ///< s
+    std::uint64_t limit = std::numeric_limits<std::uint64_t>::max();    ///< most particles ever born here
+    /// Null pointer: shape, direction and velocity are in world coordinates. Otherwise they are in those of the
+    /// frame of that number at the time of birth, and particles are let go from it, see launched_from().
+    std::shared_ptr<const FrameTree> frames = nullptr;
+    std::size_t frame = 0;
+    std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
+    std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
+    std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's place in the scene
+    std::optional<ParentRule> parent;         ///< particles give birth here; shape, burst, start and stop are not used
+};
 
-    /// What of its scene an emitter needs.
-    struct EmitterSurroundings {
-        double frame_rate = 24.0;  ///< frames a second of rates per frame, > 0; neither output nor time step
-        std::optional<ReferenceCamera> camera = std::nullopt;   ///< of rates per screen area
-        std::span<const AttributeDescription> attributes = {};  ///< columns of the particles
-    };
+/// What of its scene an emitter needs.
+struct EmitterSurroundings {
+    double frame_rate = 24.0;  ///< frames a second of rates per frame, > 0; neither output nor time step
+    std::optional<ReferenceCamera> camera = std::nullopt;   ///< of rates per screen area
+    std::span<const AttributeDescription> attributes = {};  ///< columns of the particles
+};
 
-    /// The births of one emitter in time order.
-    class Emitter {
-    public:
-        /// seed: the scene's seed; number: this emitter's number in the scene, below 2^24 - 1.
-        /// Throws InputError when the description is outside the ranges stated there, naming the member.
-        Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
-                const EmitterSurroundings& surroundings = {});
+/// The births of one emitter in time order.
+class Emitter {
+public:
+    /// seed: the scene's seed; number: this emitter's number in the scene, below 2^24 - 1.
+    /// Throws InputError when the description is outside the ranges stated there, naming the member.
+    Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
+            const EmitterSurroundings& surroundings = {});
 
-        /// Particles born in [from, to), in birth order, with everything set but the id, which is left 0. None for an
-        /// emitter with a parent (child_emitter.h). Calls must go on where the last one ended, the first one begins at
-        /// 0. How the time is cut into calls changes no bit. The burst is born at `start`; after that birth k happens
-        /// when the integral of the rate since `start` passes k + 1/2. The rate is drawn anew for every whole second
-        /// (or frame) since `start` (negative draws count as 0).
-        [[nodiscard]] std::vector<Particle> births(double from, double to);
+    /// Particles born in [from, to), in birth order, with everything set but the id, which is left 0. None for an
+    /// emitter with a parent (child_emitter.h). Calls must go on where the last one ended, the first one begins at
+    /// 0. How the time is cut into calls changes no bit. The burst is born at `start`; after that birth k happens
+    /// when the integral of the rate since `start` passes k + 1/2. The rate is drawn anew for every whole second
+    /// (or frame) since `start` (negative draws count as 0).
+    [[nodiscard]] std::vector<Particle> births(double from, double to);
 
-        [[nodiscard]] const EmitterDescription& description() const { return description_; }
-        /// Number of the emitter in its scene.
-        [[nodiscard]] std::uint32_t number() const { return number_; }
+    [[nodiscard]] const EmitterDescription& description() const { return description_; }
+    /// Number of the emitter in its scene.
+    [[nodiscard]] std::uint32_t number() const { return number_; }
 
-        /// The particle that the random numbers of (seed, number) make, born at time 0: a pure function. Every
-        /// attribute that the description does not name is missing_attribute().
-        [[nodiscard]] Particle draw(std::uint64_t seed, std::uint64_t number) const;
-        /// A uniform number in [mean - spread, mean + spread) from a stream of its own, for draws that are about no
-        /// single particle. purpose: 0..255.
-        [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
-        /// Number of the attribute's column; nothing when there is none.
-        [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
-        /// True when the description says what the attribute of a column is.
-        [[nodiscard]] bool sets(std::size_t column) const;
+    /// The particle that the random numbers of (seed, number) make, born at time 0: a pure function. Every
+    /// attribute that the description does not name is missing_attribute().
+    [[nodiscard]] Particle draw(std::uint64_t seed, std::uint64_t number) const;
+    /// A uniform number in [mean - spread, mean + spread) from a stream of its own, for draws that are about no
+    /// single particle. purpose: 0..255.
+    [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
+    /// Number of the attribute's column; nothing when there is none.
+    [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
+    /// True when the description says what the attribute of a column is.
+    [[nodiscard]] bool sets(std::size_t column) const;
 
-    private:
-        [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
-        void set_rate(const EmitterSurroundings& surroundings);
-        [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
-        [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
-        [[nodiscard]] double rate_in_period(std::uint64_t period) const;
-        void append_births(std::uint64_t count, double time, std::vector<Particle>& births);
-        void append_steady_births(double to, std::vector<Particle>& births);
-        void append_redrawn_births(double to, std::vector<Particle>& births);
+private:
+    [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
+    void set_rate(const EmitterSurroundings& surroundings);
+    [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
+    [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
+    [[nodiscard]] double rate_in_period(std::uint64_t period) const;
+    void append_births(std::uint64_t count, double time, std::vector<Particle>& births);
+    void append_steady_births(double to, std::vector<Particle>& births);
+    void append_redrawn_births(double to, std::vector<Particle>& births);
 
-        EmitterDescription description_;
-        std::uint64_t seed_;
-        std::uint32_t number_;
-        std::uint32_t stream_;  ///< of its random numbers: its number, or one of those with a seed of their own
-        ShapeSampler shape_;
-        std::vector<AttributeDescription> columns_;
-        std::vector<std::size_t> attribute_columns_;  ///< of the description's attributes
-        double cone_height_ = 0.0;                    ///< 1 - cos(cone angle)
-        MeanSpread period_rate_;                      ///< particles a period
-        double periods_per_second_ = 1.0;             ///< 1, or the frame rate
-        std::uint64_t born_ = 0;
-        bool burst_done_ = false;
-        std::uint64_t period_ = 0;  ///< whole periods since start that are accounted for in expected_
-        double expected_ = 0.0;     ///< integral of the rate up to period_
-        std::uint64_t rate_born_ = 0;
-    };
+    EmitterDescription description_;
+    std::uint64_t seed_;
+    std::uint32_t number_;
+    std::uint32_t stream_;  ///< of its random numbers: its number, or one of those with a seed of their own
+    ShapeSampler shape_;
+    std::vector<AttributeDescription> columns_;
+    std::vector<std::size_t> attribute_columns_;  ///< of the description's attributes
+    double cone_height_ = 0.0;                    ///< 1 - cos(cone angle)
+    MeanSpread period_rate_;                      ///< particles a period
+    double periods_per_second_ = 1.0;             ///< 1, or the frame rate
+    std::uint64_t born_ = 0;
+    bool burst_done_ = false;
+    std::uint64_t period_ = 0;  ///< whole periods since start that are accounted for in expected_
+    double expected_ = 0.0;     ///< integral of the rate up to period_
+    std::uint64_t rate_born_ = 0;
+};
 
 }  // namespace ricochet

@@ -1,3 +1,5 @@
+/// \file
+/// The light of a picture: a sun and a sky. Colours are linear light; brightness is in units of the picture's exposure.
 #include "ricochet/render/picture.h"
 
 #include <algorithm>
@@ -9,10 +11,96 @@
 #include <numbers>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/render/camera.h"
 #include "ricochet/render/color_map.h"
-#include "ricochet/render/light.h"
 
 namespace ricochet {
+
+/// Sun and sky over a picture.
+struct Daylight {
+    Vec3 up{0, 0, 1};
+    Vec3 to_sun{0, 0, 1};         ///< of unit length
+    Vec3 sun{3.4, 2.98, 2.42};    ///< light on a surface that faces the sun
+    double sky_brightness = 1.0;  ///< factor of what comes from the sky
+    Vec3 backdrop_tint{1, 1, 1};  ///< factors of what the picture shows behind everything
+    double sun_size = 0.025;  ///< tangent of half the sun's apparent size; larger than the real one for soft shadows
+
+    /// Light from a direction with nothing in the way.
+    [[nodiscard]] Vec3 sky(const Vec3& direction) const;
+    /// What the picture shows behind everything: brighter than the light that comes from there, and pale below.
+    [[nodiscard]] Vec3 backdrop(const Vec3& direction) const;
+    /// A direction towards a point of the sun's disk; u and v in 0..1.
+    [[nodiscard]] Vec3 sun_direction(double u, double v) const;
+};
+
+/// Daylight with the sun behind the camera's left shoulder.
+[[nodiscard]] Daylight daylight_for(const Camera& camera);
+/// A dark night with a little moonlight from there.
+[[nodiscard]] Daylight night_for(const Camera& camera);
+
+/// A direction about the normal with the density of the cosine law; u and v in 0..1.
+[[nodiscard]] Vec3 cosine_direction(const Vec3& normal, double u, double v);
+
+namespace {
+
+constexpr Vec3 kZenith{0.20, 0.36, 0.68};
+constexpr Vec3 kHorizon{0.62, 0.70, 0.80};
+constexpr Vec3 kBelow{0.36, 0.34, 0.32};
+
+Vec3 mix(const Vec3& a, const Vec3& b, double t) { return (1.0 - t) * a + t * b; }
+
+}  // namespace
+
+Vec3 Daylight::sky(const Vec3& direction) const {
+    const double height = dot(direction, up);
+    if (height < 0.0) return sky_brightness * mix(kHorizon, kBelow, std::min(1.0, -2.5 * height));
+    return sky_brightness * mix(kHorizon, kZenith, std::pow(std::min(1.0, height), 0.6));
+}
+
+Vec3 Daylight::backdrop(const Vec3& direction) const {
+    constexpr Vec3 kTop{0.60, 1.10, 2.10};
+    constexpr Vec3 kLevel{2.30, 2.55, 2.80};
+    constexpr Vec3 kBottom{1.70, 1.70, 1.68};
+    const double height = dot(direction, up);
+    const Vec3 light = height < 0.0 ? mix(kLevel, kBottom, std::min(1.0, -1.6 * height))
+                                    : mix(kLevel, kTop, std::pow(std::min(1.0, height), 0.7));
+    return {light.x * backdrop_tint.x, light.y * backdrop_tint.y, light.z * backdrop_tint.z};
+}
+
+Vec3 Daylight::sun_direction(double u, double v) const {
+    const auto [first, second] = tangent_frame(to_sun);
+    const double radius = sun_size * std::sqrt(u);
+    const double angle = 2.0 * std::numbers::pi * v;
+    return normalized(to_sun + radius * std::cos(angle) * first + radius * std::sin(angle) * second);
+}
+
+Daylight daylight_for(const Camera& camera) {
+    Daylight light;
+    light.up = camera.up;
+    const CameraFrame frame = camera_frame(camera);
+    Vec3 ahead = frame.forward - dot(frame.forward, camera.up) * camera.up;
+    ahead = length(ahead) > 1e-6 ? normalized(ahead) : frame.up;
+    light.to_sun = normalized(-0.78 * frame.right - 0.25 * ahead + 0.72 * camera.up);
+    return light;
+}
+
+Daylight night_for(const Camera& camera) {
+    Daylight light = daylight_for(camera);
+    light.sun = {0.10, 0.13, 0.20};
+    light.sky_brightness = 0.05;
+    light.backdrop_tint = {0.003, 0.0045, 0.008};
+    return light;
+}
+
+Vec3 cosine_direction(const Vec3& normal, double u, double v) {
+    const auto [first, second] = tangent_frame(normal);
+    const double radius = std::sqrt(u);
+    const double angle = 2.0 * std::numbers::pi * v;
+    const double height = std::sqrt(std::max(0.0, 1.0 - u));
+    return normalized(radius * std::cos(angle) * first + radius * std::sin(angle) * second + height * normal);
+}
+
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();

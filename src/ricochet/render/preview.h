@@ -95,4 +95,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+// Normals that make a mesh look as smooth as it is meant.
+
+/// Unit normals for the three corners of every triangle: the area-weighted mean of the faces around the vertex that
+/// lean less than crease_degrees away from the triangle itself, so that sharp edges stay sharp.
+[[nodiscard]] std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double crease_degrees);
+
 }  // namespace ricochet

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "ricochet/verify/detail/meeting.h"
-#include "ricochet/verify/detail/signs.h"
+#include "ricochet/verify/signs.h"
+#include "ricochet/verify/triangle_tests.h"
 
 namespace ricochet {
 namespace {

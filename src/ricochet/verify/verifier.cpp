@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/verify/detail/checked_shape.h"
-#include "ricochet/verify/detail/meeting.h"
-#include "ricochet/verify/detail/nearness.h"
-#include "ricochet/verify/detail/signs.h"
-#include "ricochet/verify/detail/triangle_tree.h"
+#include "ricochet/verify/checked_shape.h"
+#include "ricochet/verify/signs.h"
+#include "ricochet/verify/triangle_tests.h"
+#include "ricochet/verify/triangle_tree.h"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/verify/detail/triangle_tree.h"
+#include "ricochet/verify/triangle_tree.h"
 
 #include <algorithm>
 #include <utility>

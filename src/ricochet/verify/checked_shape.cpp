@@ -1,4 +1,4 @@
-#include "ricochet/verify/detail/checked_shape.h"
+#include "ricochet/verify/checked_shape.h"
 
 #include <algorithm>
 #include <array>

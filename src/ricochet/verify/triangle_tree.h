@@ -11,7 +11,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/verify/detail/meeting.h"
+#include "ricochet/verify/triangle_tests.h"
 
 namespace ricochet::verify {
 

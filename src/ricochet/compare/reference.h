@@ -4,10 +4,10 @@
 
 #include <span>
 
-#include "ricochet/compare/detail/measured_run.h"
 #include "ricochet/compare/figures.h"
+#include "ricochet/compare/measured_run.h"
 
-namespace ricochet::detail {
+namespace ricochet {
 
 /// Value at `time` of a series given at ascending times, linear between them and constant beyond both ends. Not empty.
 [[nodiscard]] double interpolate(std::span<const double> times, std::span<const double> values, double time);
@@ -19,4 +19,4 @@ namespace ricochet::detail {
 /// A particle is the same one where the ids are: the schedule of births does not depend on the time step.
 [[nodiscard]] ReferenceErrors errors_against(const RunTrace& run, const RunTrace& reference);
 
-}  // namespace ricochet::detail
+}  // namespace ricochet

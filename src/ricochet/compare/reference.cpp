@@ -1,13 +1,13 @@
-#include "ricochet/compare/detail/reference.h"
+#include "ricochet/compare/reference.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "ricochet/compare/detail/error_spread.h"
+#include "ricochet/compare/figures.h"
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 /// True for the steps that a series of at most kMostEnergyPoints keeps: the first, the last, evenly between.
@@ -84,4 +84,4 @@ ReferenceErrors errors_against(const RunTrace& run, const RunTrace& reference) {
     return errors;
 }
 
-}  // namespace ricochet::detail
+}  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "ricochet/compare/detail/tunnel_judge.h"
+#include "ricochet/compare/tunnel_judge.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/parity.h"
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 bool same_place(const Vec3& a, const Vec3& b) {
@@ -121,4 +121,4 @@ TunnelCounts TunnelJudge::verdict(const std::function<bool(std::uint64_t)>& is_p
     return counts;
 }
 
-}  // namespace ricochet::detail
+}  // namespace ricochet

@@ -1,10 +1,10 @@
-#include "ricochet/compare/detail/error_spread.h"
+#include "ricochet/compare/figures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-namespace ricochet::detail {
+namespace ricochet {
 namespace {
 
 constexpr double kHighShare = 0.95;
@@ -48,4 +48,4 @@ ErrorSpread spread_of(const std::vector<double>& errors) {
     return spread;
 }
 
-}  // namespace ricochet::detail
+}  // namespace ricochet

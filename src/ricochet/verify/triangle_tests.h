@@ -22,4 +22,14 @@ struct Corners {
 /// About where [p, q] meets the triangle's plane (rounded); p when it runs in that plane.
 [[nodiscard]] Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& triangle);
 
+// Is a place nearer to a surface than it may be? In doubles with their error where that leaves no doubt, with a
+// hundred digits otherwise.
+
+/// True when the distance of p from the triangle is below `least` (m, > 0).
+[[nodiscard]] bool is_nearer(const Vec3& p, const Corners& triangle, double least);
+
+/// True when the distance of p from the plane through `point` across `normal` (not zero, of any length) is below
+/// `least` (m, > 0).
+[[nodiscard]] bool is_nearer(const Vec3& p, const Vec3& point, const Vec3& normal, double least);
+
 }  // namespace ricochet::verify

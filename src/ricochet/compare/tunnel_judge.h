@@ -15,7 +15,7 @@
 #include "ricochet/simulation.h"
 #include "ricochet/verify/violation.h"
 
-namespace ricochet::detail {
+namespace ricochet {
 
 /// What the verifier can say of a collider.
 enum class ColliderKind : std::uint8_t {
@@ -57,4 +57,4 @@ private:
     std::set<std::uint64_t> passed_;
 };
 
-}  // namespace ricochet::detail
+}  // namespace ricochet

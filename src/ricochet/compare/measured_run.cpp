@@ -1,0 +1,245 @@
+/// \file
+/// Which way a collider's surface faces where a particle met it, as well as a report of the verifier says where.
+#include "ricochet/compare/measured_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "ricochet/compare/figures.h"
+#include "ricochet/compare/measured_run.h"
+#include "ricochet/compare/tunnel_judge.h"
+#include "ricochet/core/transform.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/simulation.h"
+#include "ricochet/verify/violation.h"
+
+namespace ricochet {
+
+/// Keeps the surfaces of a simulation.
+class SurfaceNormals {
+public:
+    explicit SurfaceNormals(const Simulation& simulation);
+    /// Of any length, for a crossing. Of a triangle by the counter-clockwise rule; of a ball or cylinder outward, for
+    /// the place where the segment ended, since that is what is reported. Zero where there is none: planes.
+    [[nodiscard]] Vec3 at(const Violation& crossing) const;
+
+private:
+    struct Shape {
+        AffineMap world_from_unit;
+        bool is_cylinder = false;
+    };
+    struct Surface {
+        std::optional<TriangleMesh> mesh;
+        std::optional<Shape> shape;
+    };
+    [[nodiscard]] static Vec3 shape_normal(const Shape& shape, const Vec3& place);
+
+    std::vector<Surface> surfaces_;
+};
+
+SurfaceNormals::SurfaceNormals(const Simulation& simulation) {
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        const ColliderShape& shape = simulation.colliders()[i].shape;
+        Surface& surface = surfaces_.emplace_back();
+        if (const auto* ball = std::get_if<BallShape>(&shape)) {
+            surface.shape = Shape{world_from_unit(*ball), false};
+        } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+            surface.shape = Shape{world_from_unit(*cylinder), true};
+        } else if (!std::holds_alternative<PlaneShape>(shape)) {
+            surface.mesh = simulation.collider_mesh(i);
+        }
+    }
+}
+
+Vec3 SurfaceNormals::at(const Violation& crossing) const {
+    const Surface& surface = surfaces_[*crossing.collider];
+    if (surface.shape) return shape_normal(*surface.shape, crossing.place);
+    if (!surface.mesh || !crossing.triangle) return {};
+    const auto [a, b, c] = surface.mesh->triangles[*crossing.triangle];
+    const auto& vertices = surface.mesh->vertices;
+    return cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+}
+
+// Normals go into the world by the transposed inverse, whose columns are the cross products of the map's own.
+Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& place) {
+    const AffineMap& map = shape.world_from_unit;
+    const Vec3 x{map.row_x.x, map.row_y.x, map.row_z.x};
+    const Vec3 y{map.row_x.y, map.row_y.y, map.row_z.y};
+    const Vec3 z{map.row_x.z, map.row_y.z, map.row_z.z};
+    const double determinant = map.determinant();
+    const Vec3 along_x = cross(y, z) / determinant;
+    const Vec3 along_y = cross(z, x) / determinant;
+    const Vec3 along_z = cross(x, y) / determinant;
+    const Vec3 from_centre = place - map.translation;
+    Vec3 unit{dot(along_x, from_centre), dot(along_y, from_centre), dot(along_z, from_centre)};
+    if (shape.is_cylinder) {
+        const double to_side = std::fabs(1.0 - std::hypot(unit.x, unit.y)) * length(x);
+        const double to_cap = std::fabs(1.0 - std::fabs(unit.z)) * length(z);
+        unit = to_cap < to_side ? Vec3{0.0, 0.0, unit.z} : Vec3{unit.x, unit.y, 0.0};
+    }
+    return unit.x * along_x + unit.y * along_y + unit.z * along_z;
+}
+
+namespace {
+
+/// Watches a run from step to step.
+class Measurement {
+public:
+    explicit Measurement(const Simulation& simulation)
+        : normals_(simulation),
+          judge_(collider_kinds(simulation), [this](const Violation& crossing) { return normals_.at(crossing); }) {
+        note_energy(simulation);
+    }
+    Measurement(const Measurement&) = delete;  // the judge asks the normals of this one
+    Measurement& operator=(const Measurement&) = delete;
+    ~Measurement() = default;
+
+    void note_step(const Simulation& simulation) {
+        judge_.add_step(simulation.last_violations());
+        note_impacts(simulation);
+        note_penetrating(simulation);
+        note_energy(simulation);
+    }
+
+    [[nodiscard]] MeasuredRun finish(const Simulation& simulation) {
+        note_end(simulation);
+        MeasuredRun run;
+        run.figures.statistics = simulation.statistics();
+        run.figures.tunnel = judge_.verdict([this](std::uint64_t id) { return penetrating_[id] != 0; });
+        run.figures.alive = simulation.particles().size();
+        run.figures.state_hash = simulation.state_hash();
+        run.figures.warnings = simulation.warnings();
+        run.trace = std::move(trace_);
+        return run;
+    }
+
+private:
+    void note_energy(const Simulation& simulation) {
+        const double kinetic = simulation.kinetic_energy();
+        trace_.times.push_back(simulation.time());
+        trace_.kinetic.push_back(kinetic);
+        if (!trace_.has_potential) return;
+        const std::optional<double> potential = simulation.potential_energy();
+        trace_.has_potential = potential.has_value();
+        if (potential) trace_.total.push_back(kinetic + *potential);
+    }
+
+    void note_impacts(const Simulation& simulation) {
+        trace_.first_impact.resize(simulation.statistics().emitted, kNoNumber);
+        for (const ContactRecord& record : simulation.contact_records()) {
+            double& first = trace_.first_impact[record.particle];
+            if (std::isnan(first)) first = record.time;
+        }
+    }
+
+    void note_penetrating(const Simulation& simulation) {
+        penetrating_.resize(simulation.statistics().emitted, 0);
+        const Particles& particles = simulation.particles();
+        for (std::size_t i = 0; i < particles.size(); ++i) {
+            penetrating_[particles.id[i]] = simulation.is_penetrating(i) ? 1 : 0;
+        }
+    }
+
+    void note_end(const Simulation& simulation) {
+        const std::size_t born = simulation.statistics().emitted;
+        trace_.first_impact.resize(born, kNoNumber);
+        trace_.alive.assign(born, 0);
+        trace_.end_position.assign(born, Vec3{});
+        const Particles& particles = simulation.particles();
+        for (std::size_t i = 0; i < particles.size(); ++i) {
+            trace_.alive[particles.id[i]] = 1;
+            trace_.end_position[particles.id[i]] = particles.position[i];
+        }
+    }
+
+    SurfaceNormals normals_;
+    TunnelJudge judge_;
+    RunTrace trace_;
+    std::vector<std::uint8_t> penetrating_;
+};
+
+}  // namespace
+
+std::optional<MeasuredRun> measure_run(SimulationSetup setup, const StepHook& go_on) {
+    setup.options.verify = true;
+    setup.options.record_contacts = true;
+    Simulation simulation(std::move(setup));
+    Measurement measurement(simulation);
+    while (!simulation.finished()) {
+        simulation.step();
+        measurement.note_step(simulation);
+        if (!go_on(simulation)) return std::nullopt;
+    }
+    return measurement.finish(simulation);
+}
+
+namespace {
+
+constexpr double kNanoseconds = 1e9;
+
+double per_count(double seconds, std::uint64_t count) {
+    return count == 0 ? kNoNumber : kNanoseconds * seconds / static_cast<double>(count);
+}
+
+bool is_as_good(const ReferenceErrors& exact, const ReferenceErrors& row) {
+    if (row.position.count > 0 && exact.position.count > 0) {
+        return exact.position.root_mean_square <= row.position.root_mean_square;
+    }
+    return exact.impact.median <= row.impact.median;  // false where there is none
+}
+
+}  // namespace
+
+std::optional<TimedRun> time_run(SimulationSetup setup, const StepHook& go_on) {
+    using Clock = std::chrono::steady_clock;
+    setup.options.verify = false;
+    setup.options.record_contacts = false;
+    Simulation simulation(std::move(setup));
+    bool goes_on = true;
+    Clock::duration asked{};
+    const auto ask = [&] {
+        const Clock::time_point start = Clock::now();
+        goes_on = go_on(simulation);
+        asked += Clock::now() - start;
+        return goes_on;
+    };
+    const Clock::time_point start = Clock::now();
+    simulation.advance(simulation.step_count(), ask);
+    const Clock::duration spent = Clock::now() - start - asked;
+    if (!goes_on) return std::nullopt;
+    return TimedRun{std::chrono::duration<double>(spent).count(), simulation.state_hash()};
+}
+
+double ratio_of_times(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> ratios;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) ratios.push_back(a[k] / b[k]);
+    return median(ratios);
+}
+
+const ComparisonRow* equally_good(const ComparisonRow& row, const std::vector<const ComparisonRow*>& exact) {
+    const auto found = std::find_if(exact.begin(), exact.end(), [&](const ComparisonRow* candidate) {
+        return is_as_good(candidate->errors, row.errors);
+    });
+    return found == exact.end() ? nullptr : *found;
+}
+
+void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
+                 const std::vector<const ComparisonRow*>& exact) {
+    RunCost& cost = row.cost;
+    cost.seconds = median(cost.seconds_each);
+    cost.ns_per_particle_step = per_count(cost.seconds, row.figures.statistics.particle_steps);
+    cost.ns_per_contact = per_count(cost.seconds, row.figures.statistics.contacts);
+    cost.ratio_at_equal_step = ratio_of_times(cost.seconds_each, at_equal_step.cost.seconds_each);
+    if (const ComparisonRow* const equal = equally_good(row, exact)) {
+        cost.ratio_at_equal_error = ratio_of_times(cost.seconds_each, equal->cost.seconds_each);
+        row.equal_error_step = equal->time_step;
+    }
+}
+
+}  // namespace ricochet

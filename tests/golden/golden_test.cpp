@@ -1,0 +1,217 @@
+// Golden hashes: the final state, and every impact on the way to it, of the shipped scenes (shortened) and of random
+// scenes, as hashes.csv holds them. They are the same for any number of threads, with every optimisation on or off, for
+// every compiler, instruction set and version of Embree. A change of a value needs a reason in its commit.
+//
+// To print the table as the code now is: RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Golden*' (the lines that
+// begin with "golden,"). Nothing writes it by itself.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "golden/random_scene.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+
+namespace ricochet::golden {
+namespace {
+
+const std::filesystem::path kRoot = RICOCHET_SOURCE_DIR;
+
+/// A shipped scene and how much of it is run.
+struct ShippedScene {
+    const char* name;
+    const char* duration;  ///< s; empty: all of it
+};
+
+constexpr ShippedScene kShippedScenes[] = {
+    {"bouncing_ball", ""},
+    {"debris", "1.6"},
+    {"fireworks", "2.2"},
+    {"flow_past_body", "1.6"},
+    {"fountain", "1.2"},
+    {"funnel", "0.7"},
+    {"galaxy", "0.6"},
+    {"galton", "1.2"},
+    {"gear_hail", "0.9"},
+    {"marbles", "2.5"},
+    {"responses/energy", ""},
+    {"responses/gas", "0.25"},
+    {"responses/penetration", ""},
+    {"responses/slope", ""},
+    {"responses/tunnelling", "0.15"},
+    {"responses/wedge", ""},
+    {"robot_arm", "0.9"},
+    {"rope_and_cloth", "0.12"},
+    {"shattering", "1.4"},
+    {"sports_balls", ""},
+    {"staircase", "1.5"},
+    {"torus_knot_gas", "0.12"},
+};
+
+/// FNV-1a over the bits of numbers.
+class Hash {
+public:
+    void add(std::uint64_t bits) {
+        for (int k = 0; k < 8; ++k, bits >>= 8) value_ = (value_ ^ (bits & 0xFFU)) * 0x100000001B3U;
+    }
+    void add(double number) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &number, sizeof bits);
+        add(bits);
+    }
+    void add(const Vec3& v) {
+        add(v.x);
+        add(v.y);
+        add(v.z);
+    }
+    [[nodiscard]] std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = 0xCBF29CE484222325U;
+};
+
+/// What a run has left behind.
+struct Outcome {
+    std::uint64_t state = 0;
+    std::uint64_t contacts = 0;  ///< hash of all contact records
+
+    friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
+    return out << std::hex << outcome.state << ',' << outcome.contacts << std::dec;
+}
+
+void add_records(const Simulation& simulation, Hash& hash) {
+    for (const ContactRecord& record : simulation.contact_records()) {
+        hash.add(record.time);
+        hash.add(record.particle);
+        hash.add(std::uint64_t{record.surface});
+        for (const Vec3& v : {record.position, record.normal, record.velocity_before, record.velocity_after}) {
+            hash.add(v);
+        }
+    }
+}
+
+Outcome run(SimulationSetup setup, int threads) {
+    const ThreadLimit limit(threads);
+    setup.options.record_contacts = true;
+    Simulation simulation(std::move(setup));
+    Hash contacts;
+    while (!simulation.finished()) {
+        simulation.step();
+        add_records(simulation, contacts);
+    }
+    return {simulation.state_hash(), contacts.value()};
+}
+
+/// The state alone, by the calls that make many steps at once.
+std::uint64_t advance(SimulationSetup setup, int threads) {
+    const ThreadLimit limit(threads);
+    Simulation simulation(std::move(setup));
+    simulation.advance(simulation.step_count());
+    return simulation.state_hash();
+}
+
+void switch_optimisations_off(SimulationOptions& options) {
+    options.look_ahead = false;
+    options.spatial_order = false;
+    options.sleeping = false;
+}
+
+const std::map<std::string, Outcome>& table() {
+    static const std::map<std::string, Outcome> rows = [] {
+        std::map<std::string, Outcome> result;
+        std::ifstream file(kRoot / "tests/golden/hashes.csv");
+        for (std::string line; std::getline(file, line);) {
+            const std::size_t first = line.find(',');
+            const std::size_t second = line.find(',', first + 1);
+            if (line.starts_with('#') || second == std::string::npos) continue;
+            const auto hex = [](const std::string& text) { return std::stoull(text, nullptr, 16); };
+            result[line.substr(0, first)] = {hex(line.substr(first + 1, second - first - 1)),
+                                             hex(line.substr(second + 1))};
+        }
+        return result;
+    }();
+    return rows;
+}
+
+/// Compares with the table, or prints the row for it where that was asked for.
+void expect_golden(const std::string& name, const Outcome& outcome) {
+    if (std::getenv("RICOCHET_PRINT_GOLDEN") != nullptr) {
+        std::cout << "golden," << name << ',' << outcome << '\n';
+        return;
+    }
+    const auto row = table().find(name);
+    ASSERT_NE(row, table().end()) << name << " is not in tests/golden/hashes.csv";
+    EXPECT_EQ(outcome, row->second) << name;
+}
+
+template <class MakeSetup>
+void check(const std::string& name, const MakeSetup& make_setup) {
+    SCOPED_TRACE(name);
+    const Outcome golden = run(make_setup(), 1);
+    expect_golden(name, golden);
+    EXPECT_EQ(run(make_setup(), 7), golden) << "with 7 threads";
+    EXPECT_EQ(advance(make_setup(), 2), golden.state) << "by advance() with 2 threads";
+    SimulationSetup plain = make_setup();
+    switch_optimisations_off(plain.options);
+    EXPECT_EQ(run(std::move(plain), 2), golden) << "without optimisations, with 2 threads";
+}
+
+class GoldenShippedScene : public ::testing::TestWithParam<ShippedScene> {};
+
+TEST_P(GoldenShippedScene, EndsInTheSameBits) {
+    if (test::kSanitized) GTEST_SKIP() << "long runs, whose parts other tests make under sanitizers";
+    const ShippedScene scene = GetParam();
+    std::vector<std::string> overrides;
+    if (*scene.duration != '\0') overrides.push_back(std::string("simulation.duration=") + scene.duration);
+    check(scene.name,
+          [&] { return read_scene(kRoot / "scenes" / (std::string(scene.name) + ".json"), overrides).setup; });
+}
+
+std::string shipped_name(const ::testing::TestParamInfo<ShippedScene>& info) {
+    std::string name = info.param.name;
+    for (char& c : name) {
+        if (c == '/') c = '_';
+    }
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GoldenShippedScene, ::testing::ValuesIn(kShippedScenes), shipped_name);
+
+/// Random scenes, eight to a test.
+class GoldenRandomScenes : public ::testing::TestWithParam<int> {};
+
+TEST_P(GoldenRandomScenes, EndInTheSameBits) {
+    const int last = test::kSanitized ? 2 : 8;
+    for (int k = 0; k < last; ++k) {
+        const int number = 8 * GetParam() + k;
+        check("random_" + std::to_string(number),
+              [&] { return parse_scene(random_scene(number), kRoot / "scenes" / "random.json").setup; });
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GoldenRandomScenes, ::testing::Range(0, kRandomScenes / 8));
+
+TEST(GoldenTable, NamesEveryShippedScene) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "scenes")) {
+        if (entry.path().extension() != ".json") continue;
+        const std::string name = entry.path().lexically_relative(kRoot / "scenes").replace_extension().generic_string();
+        EXPECT_TRUE(table().contains(name)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::golden

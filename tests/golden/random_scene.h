@@ -1,0 +1,16 @@
+/// \file
+/// Small random scenes that cover what a run can do: every response, integrator, shape and material.
+#pragma once
+
+#include <string>
+
+namespace ricochet::golden {
+
+/// Number of different scenes.
+inline constexpr int kRandomScenes = 96;
+
+/// The text of scene `number` (0 .. kRandomScenes - 1): the same on every system. The number also is the seed; its
+/// residues decide which features meet. Mesh files are named relative to the repository's scenes folder.
+[[nodiscard]] std::string random_scene(int number);
+
+}  // namespace ricochet::golden

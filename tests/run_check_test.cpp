@@ -153,7 +153,7 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
         const std::vector<Segment> segments{{particles.position[i], to, 0.5}};
         ForceInput moved;
         moved.position = to;
-        check.look_at(i, particles, moved, 1.0, segments, violations);
+        check.check(i, particles, moved, 1.0, segments, violations);
         return violations.size();
     };
     EXPECT_EQ(move(0, {2, 2, 2}), 0U);

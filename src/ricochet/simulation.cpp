@@ -16,14 +16,14 @@ Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
-bool Simulation::finished() const { return impl_->statistics.steps >= impl_->steps; }
-double Simulation::time() const { return impl_->time_at(impl_->statistics.steps); }
-std::uint64_t Simulation::step_index() const { return impl_->statistics.steps; }
-std::uint64_t Simulation::step_count() const { return impl_->steps; }
+bool Simulation::finished() const { return impl_->recorder.statistics().steps >= impl_->clock.steps(); }
+double Simulation::time() const { return impl_->clock.time_at(impl_->recorder.statistics().steps); }
+std::uint64_t Simulation::step_index() const { return impl_->recorder.statistics().steps; }
+std::uint64_t Simulation::step_count() const { return impl_->clock.steps(); }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
-const Particles& Simulation::particles() const { return impl_->particles; }
+const Particles& Simulation::particles() const { return impl_->particles(); }
 AttributeTable Simulation::shown_attributes() const {
-    const Particles& particles = impl_->particles;
+    const Particles& particles = impl_->particles();
     AttributeTable shown = particles.attributes;
     if (!particles.keeps_origin || shown.empty()) return shown;
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -39,7 +39,7 @@ AttributeTable Simulation::shown_attributes() const {
     return shown;
 }
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
-const SimulationStatistics& Simulation::statistics() const { return impl_->statistics; }
+const SimulationStatistics& Simulation::statistics() const { return impl_->recorder.statistics(); }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
 const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
@@ -53,7 +53,7 @@ std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
 std::size_t Simulation::triangle_count() const { return impl_->world.triangles().size(); }
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
 
-const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->records; }
+const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->recorder.contact_records(); }
 CollisionWorld::Place Simulation::contact_point(const ContactRecord& record) const {
     return impl_->world.closest_point_on(record.surface, record.position);
 }
@@ -61,24 +61,22 @@ SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->wo
 
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     TriangleTotals result;
-    if (impl_->totals.empty()) return result;
+    if (impl_->recorder.totals().empty()) return result;
     // Sleepers' weight is lent to the totals: it comes out exactly as it went in.
     impl_->add_weights_of_sleepers(1.0);
     const std::size_t first = impl_->world.first_surface_of(i);
     for (std::size_t k = 0; k < impl_->world.surface_count_of(i); ++k) {
-        const SurfaceTotals& total = impl_->totals[first + k];
-        result.hits.push_back(total.hits.load(std::memory_order_relaxed));
-        result.impulse.push_back(
-            {total.x.value(kImpulseUnit), total.y.value(kImpulseUnit), total.z.value(kImpulseUnit)});
+        result.hits.push_back(impl_->recorder.totals().hits(first + k));
+        result.impulse.push_back(impl_->recorder.totals().impulse(first + k));
     }
     impl_->add_weights_of_sleepers(-1.0);
     return result;
 }
 
-const std::vector<Violation>& Simulation::last_violations() const { return impl_->last_violations; }
+const std::vector<Violation>& Simulation::last_violations() const { return impl_->recorder.last_violations(); }
 
 bool Simulation::is_penetrating(std::size_t i) const {
-    const std::span<const SideMemory> sides = impl_->sides_of(i);
+    const std::span<const SideMemory> sides = impl_->store.sides_of(i);
     return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
 }
 
@@ -86,15 +84,22 @@ const std::vector<std::string>& Simulation::warnings() const { return impl_->war
 
 bool Simulation::has_spheres() const { return impl_->has_spheres; }
 
+// An impulse too large for the totals is counted when the weight is added for good.
+void Simulation::Impl::add_weights_of_sleepers(double sign) {
+    const double now = clock.time_at(recorder.statistics().steps);
+    for (std::size_t i = 0; i < store.size(); ++i) (void)mover.add_weight(i, now, sign);
+}
+
 // A state that is not finite and will be frozen by the next step counts as frozen already.
 bool Simulation::Impl::has_energy(std::size_t i) const {
-    return particles.frozen[i] == 0 && is_finite(particles.position[i]) && is_finite(particles.velocity[i]);
+    const Particles& p = particles();
+    return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
 }
-const std::vector<Violation>& Simulation::violations() const { return impl_->violations; }
+const std::vector<Violation>& Simulation::violations() const { return impl_->recorder.violations(); }
 
 double Simulation::kinetic_energy() const {
-    const Particles& particles = impl_->particles;
-    const std::vector<std::uint32_t> order = impl_->particles.order_by_id();
+    const Particles& particles = impl_->particles();
+    const std::vector<std::uint32_t> order = impl_->particles().order_by_id();
     return ordered_sum(order.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
@@ -109,14 +114,14 @@ double Simulation::kinetic_energy() const {
 }
 
 std::optional<double> Simulation::potential_energy() const {
-    const std::vector<std::uint32_t> order = impl_->particles.order_by_id();
+    const std::vector<std::uint32_t> order = impl_->particles().order_by_id();
     std::atomic<bool> defined{true};
     const double now = time();
     const double sum = ordered_sum(order.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
             if (!impl_->has_energy(order[k])) continue;
-            const auto energy = impl_->forces.potential_energy(impl_->input(order[k], now));
+            const auto energy = impl_->forces.potential_energy(impl_->store.force_input(order[k], now));
             if (!energy) defined = false;
             partial += energy.value_or(0.0);
         }
@@ -128,10 +133,10 @@ std::optional<double> Simulation::potential_energy() const {
 
 std::uint64_t Simulation::state_hash() const {
     StateHash hash;
-    for (const std::uint32_t i : impl_->particles.order_by_id()) {
-        hash.add(impl_->particles.id[i]);
-        hash.add(impl_->particles.position[i]);
-        hash.add(impl_->particles.velocity[i]);
+    for (const std::uint32_t i : impl_->particles().order_by_id()) {
+        hash.add(impl_->particles().id[i]);
+        hash.add(impl_->particles().position[i]);
+        hash.add(impl_->particles().velocity[i]);
     }
     return hash.value();
 }

@@ -18,77 +18,6 @@ constexpr std::uint64_t kStateFormat = 0x5249434f53540001ULL;
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
 
-template <class Archive>
-void archive_origins(Archive& a, std::vector<Origin>& origins) {
-    auto count = static_cast<std::uint64_t>(origins.size());
-    a(count);
-    if constexpr (Archive::kReads) origins.resize(count);
-    for (Origin& origin : origins) {
-        a(origin.emitter);
-        a(origin.generation);
-        a(origin.lineage);
-        a(origin.birth_impacts);
-        a(origin.impact_children);
-    }
-}
-
-template <class Archive>
-void archive_particles(Archive& a, Particles& particles) {
-    a(particles.id);
-    a(particles.position);
-    a(particles.velocity);
-    a(particles.spin);
-    a(particles.mass);
-    a(particles.radius);
-    a(particles.birth_time);
-    a(particles.lifetime);
-    a(particles.unsimulated_time);
-    a(particles.contacts);
-    a(particles.frozen);
-    a(particles.resting);
-    a(particles.held);
-    a(particles.absorbed);
-    a(particles.pinned);
-    a(particles.draws);
-    a(particles.support);
-    a(particles.cascade_left);
-    a(particles.accounted_until);
-    particles.attributes.archive(a);
-    archive_origins(a, particles.origin);
-}
-
-template <class Archive>
-void archive_sides(Archive& a, std::vector<SideMemory>& sides) {
-    auto count = static_cast<std::uint64_t>(sides.size());
-    a(count);
-    if constexpr (Archive::kReads) sides.resize(count);
-    for (SideMemory& memory : sides) {
-        a(memory.side);
-        a(memory.penetrating);
-        a(memory.touching);
-        a(memory.depth);
-    }
-}
-
-template <class Archive>
-void archive_sum(Archive& a, FixedPointSum& sum) {
-    auto words = sum.words();
-    a(words);
-    if constexpr (Archive::kReads) sum.set_words(words);
-}
-
-template <class Archive>
-void archive_totals(Archive& a, std::vector<SurfaceTotals>& totals) {
-    for (SurfaceTotals& total : totals) {
-        std::uint64_t hits = total.hits.load(std::memory_order_relaxed);
-        a(hits);
-        if constexpr (Archive::kReads) total.hits.store(hits, std::memory_order_relaxed);
-        archive_sum(a, total.x);
-        archive_sum(a, total.y);
-        archive_sum(a, total.z);
-    }
-}
-
 /// As it lies in memory, so that no counter can be forgotten; the gap behind its one short counter is made zero, since
 /// what it holds is nobody's.
 template <class Archive>
@@ -130,22 +59,21 @@ void Simulation::Impl::archive(Archive& a) {
     expect(a, collider_hash(), "the state belongs to other colliders");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
     expect(a, static_cast<std::uint64_t>(coupled.springs().springs().size()), "the state belongs to other springs");
-    expect(a, static_cast<std::uint64_t>(particles.attributes.columns().size()),
+    expect(a, static_cast<std::uint64_t>(particles().attributes.columns().size()),
            "the state belongs to other attributes");
-    expect(a, static_cast<std::uint64_t>(totals.size()), "the state belongs to another choice of totals");
+    expect(a, static_cast<std::uint64_t>(recorder.totals().size()), "the state belongs to another choice of totals");
     expect(a, options.time_step, "the state belongs to another time step");
-    archive_statistics(a, statistics);
-    a(next_id);
-    archive_particles(a, particles);
-    archive_sides(a, sides);
-    archive_totals(a, totals);
+    archive_statistics(a, recorder.statistics());
+    store.archive(a);
+    recorder.totals().archive(a);
     coupled.archive(a);
 }
 
 // What emitters have emitted does not depend on how time was cut, so they are simply run again.
 void Simulation::Impl::replay_emitters() {
-    const double now = time_at(statistics.steps);
-    const std::uint64_t slices = std::min(statistics.steps, kReplaySlices);
+    const std::uint64_t steps = recorder.statistics().steps;
+    const double now = clock.time_at(steps);
+    const std::uint64_t slices = std::min(steps, kReplaySlices);
     for (Emitter& emitter : emitters) {
         double from = 0.0;
         for (std::uint64_t k = 1; k <= slices; ++k) {
@@ -156,12 +84,12 @@ void Simulation::Impl::replay_emitters() {
     }
 }
 
-// What is known of free ways serves speed only.
+// What is known of queries serves speed only.
 void Simulation::Impl::forget_queries() {
-    next_query_step.resize(particles.size());
-    candidates.assign(particles.size(), ContactCandidates{});
-    for (std::size_t i = 0; i < particles.size(); ++i)
-        next_query_step[i] = stands_still(i) || is_asleep(i) ? kStill : 0;
+    schedule.reset(store.size());
+    for (std::size_t i = 0; i < store.size(); ++i) {
+        if (store.is_fixed(i) || store.is_asleep(i)) schedule.leave_alone(i);
+    }
 }
 
 void Simulation::save(const ByteSink& sink) const {
@@ -171,17 +99,14 @@ void Simulation::save(const ByteSink& sink) const {
 
 void Simulation::restore(const ByteSource& source) {
     BinaryReader reader(source);
-    impl_->deferred.reset();
+    impl_->free_flights.drop_deferred();
     impl_->inside_step = true;  // until all is there
     impl_->archive(reader);
     impl_->forget_queries();
-    for (const double radius : impl_->particles.radius) impl_->world.prepare_radius(radius);
+    for (const double radius : impl_->particles().radius) impl_->world.prepare_radius(radius);
     impl_->replay_emitters();
-    if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles);
-    if (impl_->check) {
-        impl_->check = std::make_unique<RunCheck>(impl_->world);
-        impl_->check->watch_spawned(impl_->particles);
-    }
+    if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles());
+    if (impl_->check) impl_->check->restart(impl_->particles());
     impl_->inside_step = false;
 }
 

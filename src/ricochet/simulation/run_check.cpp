@@ -44,11 +44,16 @@ void RunCheck::watch_spawned(const Particles& particles) {
     });
 }
 
-void RunCheck::look_at(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
-                       std::span<const Segment> segments, std::vector<Violation>& violations) {
+void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+                     std::span<const Segment> segments, std::vector<Violation>& violations) {
     const VerifiedStep step{particles.id[i], particles.position[i], moved.position, particles.radius[i], time,
                             segments};
     verifier_.check(step, watched_[i], violations);
+}
+
+void RunCheck::restart(const Particles& particles) {
+    watched_.clear();
+    watch_spawned(particles);
 }
 
 void RunCheck::compact(const std::vector<std::uint8_t>& keep) {

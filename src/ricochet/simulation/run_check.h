@@ -20,12 +20,14 @@ class RunCheck {
 public:
     explicit RunCheck(const CollisionWorld& world);
 
-    /// Begins to watch the particles that have been appended since the last call. Not while others look.
+    /// Begins to watch the particles that have been appended since the last call. Not while others check.
     void watch_spawned(const Particles& particles);
     /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
-    /// looked at from several threads at once.
-    void look_at(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
-                 std::span<const Segment> segments, std::vector<Violation>& violations);
+    /// checked from several threads at once.
+    void check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+               std::span<const Segment> segments, std::vector<Violation>& violations);
+    /// Begins to watch all particles from where they are.
+    void restart(const Particles& particles);
     /// Keeps what Particles::compact() keeps.
     void compact(const std::vector<std::uint8_t>& keep);
 

@@ -1,4 +1,4 @@
-// How a simulation is made, and how particles come into it.
+// How a simulation is made.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,22 +7,13 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/core/reserve_more.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/springs.h"
-#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
 namespace {
-
-/// A final step shorter than this fraction of a step is not made: duration / time_step is meant to be whole.
-constexpr double kStepRounding = 1e-6;
-
-std::uint64_t count_steps(const SimulationOptions& options) {
-    return static_cast<std::uint64_t>(std::max(0.0, std::ceil(options.duration / options.time_step - kStepRounding)));
-}
 
 SimulationOptions checked(const SimulationOptions& options) {
     if (!(options.time_step > 0.0) || !std::isfinite(options.time_step)) {
@@ -122,7 +113,8 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
                     setup.options.time_step, bound, name_of(kind))};
 }
 
-double room_beside_chords(const SimulationOptions& options, const ForceField& forces) {
+/// By how much paths may leave their chords: more where parabolas are looked ahead along.
+double chord_margin(const SimulationOptions& options, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
     return options.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;
 }
@@ -133,92 +125,56 @@ std::vector<std::string> warnings_of(const SimulationSetup& setup) {
     return warnings;
 }
 
+std::vector<Emitter> make_emitters(SimulationSetup& setup) {
+    std::vector<Emitter> emitters;
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        emitters.emplace_back(std::move(setup.emitters[k]), setup.options.seed, static_cast<std::uint32_t>(k),
+                              EmitterSurroundings{setup.options.frame_rate, setup.reference_camera, setup.attributes});
+    }
+    return emitters;
+}
+
+/// Null where no emitter has a parent.
+std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, const SimulationOptions& options) {
+    auto offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
+    if (offspring->empty()) offspring.reset();
+    return offspring;
+}
+
+bool keeps_origin(const std::vector<Emitter>& emitters) {
+    return std::any_of(emitters.begin(), emitters.end(), [](const Emitter& emitter) {
+        return emitter.description().parent || !emitter.description().curves.empty();
+    });
+}
+
 }  // namespace
 
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(checked(setup.options)),
+      clock(options.time_step, options.duration),
       warnings(warnings_of(setup)),
+      has_spheres(makes_spheres(setup)),
       forces(std::move(setup.forces)),
       materials(checked_materials(std::move(setup.materials), setup.colliders)),
-      world(std::move(setup.colliders), room_beside_chords(options, forces)),
+      world(std::move(setup.colliders), chord_margin(options, forces)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
+      emitters(make_emitters(setup)),
+      offspring(make_offspring(emitters, options)),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, response_settings(options)})),
-      totals(options.triangle_totals ? world.surface_count() : 0),
-      steps(count_steps(options)),
-      may_sleep(options.sleeping && forces.is_steady()) {
+      store(setup.attributes, keeps_origin(emitters), options.sleeping && forces.is_steady(),
+            response->keeps_sides() ? world.colliders().size() : 0),
+      spring_faces(std::move(setup.spring_faces)),
+      schedule(clock),
+      check(options.verify ? std::make_unique<RunCheck>(world) : nullptr),
+      recorder(options.triangle_totals ? world.surface_count() : 0, options.record_contacts, offspring != nullptr),
+      free_flights(store, schedule, forces, options.integrator, check.get()),
+      mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
+      retirement(store, schedule, bounds) {
     world.set_culling(options.culling);
-    has_spheres = makes_spheres(setup);
-    particles.attributes = AttributeTable(setup.attributes);
-    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
-        const EmitterDescription& emitter = setup.emitters[k];
-        particles.keeps_origin = particles.keeps_origin || emitter.parent || !emitter.curves.empty();
-        emitters.emplace_back(std::move(setup.emitters[k]), options.seed, static_cast<std::uint32_t>(k),
-                              EmitterSurroundings{options.frame_rate, setup.reference_camera, setup.attributes});
-    }
-    offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
-    if (offspring->empty()) offspring.reset();
-    make_room(setup.particles.size());
+    reserve(setup.particles.size());
     for (const Particle& particle : setup.particles) add(particle);
-    spring_faces = std::move(setup.spring_faces);
-    if (coupled.is_active()) coupled.bind(particles);
-    if (options.verify) check = std::make_unique<RunCheck>(world);
-}
-
-void Simulation::Impl::make_room(std::size_t births) {
-    particles.reserve(births);
-    reserve_more(next_query_step, births);
-    reserve_more(candidates, births);
-    if (deferred) deferred->reserve(births);
-    if (response->keeps_sides()) reserve_more(sides, births * world.colliders().size());
-}
-
-void Simulation::Impl::add(Particle particle) {
-    particle.id = next_id++;
-    particle.position = flush_tiny(particle.position);
-    const auto size = particles.attributes.find(kSizeAttribute);
-    if (size) {
-        particle.attributes.resize(particles.attributes.columns().size(), missing_attribute());
-        if (is_missing(particle.attributes[*size])) particle.attributes[*size] = {particle.radius, 0.0, 0.0};
-    }
-    if (particle.pinned) particle.velocity = particle.spin = Vec3{};
-    world.prepare_radius(particle.radius);
-    if (starts_in_overlap(particle)) ++statistics.started_inside;
-    particles.append(particle);
-    next_query_step.push_back(particle.pinned ? kStill : 0);
-    candidates.emplace_back();
-    if (deferred) deferred->append();
-    if (response->keeps_sides()) {
-        sides.resize(particles.size() * world.colliders().size());
-        if (is_finite(particle.position)) response->first_sides(particle.position, sides_of(particles.size() - 1));
-    }
-    ++statistics.emitted;
-}
-
-bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
-    if (!is_finite(particle.position) || max_abs(particle.position) > kLargestCoordinate) return false;
-    ContactScratch scratch;
-    ContactSearch search(world, scratch);
-    (void)search.search(line_path(particle.position, Vec3{}, 0.0), particle.radius);
-    return search.starts_in_overlap();
-}
-
-// Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
-void Simulation::Impl::emit(double from, double to) {
-    std::vector<Particle> born;
-    for (Emitter& emitter : emitters) {
-        const std::vector<Particle> births = emitter.births(from, to);
-        born.insert(born.end(), births.begin(), births.end());
-    }
-    std::stable_sort(born.begin(), born.end(),
-                     [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    const std::uint64_t room =
-        options.most_particles - std::min<std::uint64_t>(options.most_particles, particles.size());
-    const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
-    statistics.births_refused_by_population += born.size() - allowed;
-    make_room(allowed);
-    for (std::size_t k = 0; k < allowed; ++k) add(born[k]);
-    if (allowed > 0 && coupled.is_active()) coupled.bind(particles);
+    if (coupled.is_active()) coupled.bind(particles());
 }
 
 }  // namespace ricochet

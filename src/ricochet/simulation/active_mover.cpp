@@ -1,0 +1,189 @@
+#include "ricochet/simulation/active_mover.h"
+
+#include <algorithm>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/rollback.h"
+
+namespace ricochet {
+namespace {
+
+/// Particles from the prefetch of one, of its candidates and of their corners to its move.
+constexpr std::size_t kPrefetchDistance = 6;
+constexpr std::size_t kTrianglePrefetchDistance = 4;
+constexpr std::size_t kVertexPrefetchDistance = 2;
+
+/// It flies on, in contact with nothing.
+bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
+    return moved.support.count == 0 && moved.support.cascade_left == 0.0 && !outcome.resting && !outcome.frozen &&
+           !outcome.absorbed;
+}
+
+}  // namespace
+
+void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    blocks.resize(std::max(blocks.size(), active.blocks()));
+    parallel_for_blocks(active.blocks(), 1, [&](std::size_t block, std::size_t, std::size_t) {
+        move_block(active.block(block), step, blocks[block]);
+    });
+}
+
+void ActiveMover::move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record) {
+    thread_local MoveScratch scratch;
+    prepare(scratch);
+    for (std::size_t k = 0; k < active.size(); ++k) {
+        prefetch(active, k);
+        move_one(active[k], step, scratch, record);
+    }
+    record_lists(scratch, record);
+}
+
+void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record) {
+    const TimeSpan life = life_in(i, step);
+    if (life.end <= life.begin) return;
+    MovingParticle particle = load(i, life.begin);
+    scratch.segments.clear();
+    // A planned flight's duration need not be the difference of the clock's times to the last bit.
+    const bool as_planned = particle.planned != nullptr && life.begin == step.begin && life.end == step.end;
+    const double duration = as_planned ? particle.planned->path.duration : life.end - life.begin;
+    const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
+    if (parts_.check != nullptr) {
+        parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations);
+    }
+    take_over(i, particle, outcome, life.end, record);
+}
+
+void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    std::vector<SystemParticle> system(range.size());
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = range.begin + k;
+        const TimeSpan life = life_in(i, step);
+        system[k].particle = load(i, life.begin);
+        system[k].start = life.begin;
+        system[k].stop = life.end;
+        system[k].is_out = parts_.store.is_fixed(i);
+    }
+    blocks.resize(std::max(blocks.size(), blocks_of(system.size())));
+    std::vector<MoveScratch> scratch(blocks.size());
+    for (MoveScratch& block : scratch) prepare(block);
+    move_together(parts_.response.rules(), system, step.begin, step.end, scratch, kParticleBlock);
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        const std::size_t i = range.begin + k;
+        const SystemParticle& moved = system[k];
+        if (parts_.store.is_fixed(i) || moved.stop <= moved.start) continue;
+        BlockRecord& record = blocks[k / kParticleBlock];
+        if (parts_.check != nullptr) {
+            parts_.check->check(i, parts_.store.particles(), moved.particle.state, moved.stop, moved.segments,
+                                record.violations);
+        }
+        take_over(i, moved.particle, moved.outcome, moved.stop, record);
+    }
+    for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
+}
+
+// The part of the step in which it lives.
+TimeSpan ActiveMover::life_in(std::size_t i, const TimeSpan& step) const {
+    const Particles& particles = parts_.store.particles();
+    return {std::max(step.begin, particles.birth_time[i]),
+            std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
+}
+
+MovingParticle ActiveMover::load(std::size_t i, double start) {
+    MovingParticle particle = parts_.store.load(i, start, !parts_.schedule.is_without_contact(i));
+    particle.candidates = parts_.schedule.candidates(i);
+    if (parts_.offspring != nullptr) {
+        particle.shatter_impulse = parts_.offspring->shatter_impulse(parts_.store.particles(), i);
+    }
+    particle.planned = parts_.coupled.flight_of(i);
+    particle.state.coupling = parts_.coupled.coupling_of(i);
+    return particle;
+}
+
+void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                            BlockRecord& record) {
+    Particles& particles = parts_.store.particles();
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
+    const bool was_fast = is_fast();
+    const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
+    parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i));
+    if (!was_fast && is_fast()) record.note_runaway(i);
+    if (outcome.held) particles.accounted_until[i] = until;
+    if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
+    schedule_query(i, moved, outcome, until);
+    record.add(outcome);
+}
+
+void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until) {
+    if (parts_.store.is_fixed(i) || parts_.store.is_asleep(i)) {
+        parts_.schedule.leave_alone(i);
+    } else if (!flies_on(moved, outcome) || parts_.coupled.is_active()) {
+        parts_.schedule.forget(i);
+    } else {
+        FreeFlightForecast forecast;
+        if (outcome.free_for > 0.0) {
+            const Particles& particles = parts_.store.particles();
+            forecast.free_until = std::min(until + outcome.free_for, particles.birth_time[i] + particles.lifetime[i]);
+        }
+        if (outcome.candidates_for != 0.0) {
+            forecast.candidates_until = until + outcome.candidates_for;
+            forecast.candidates = outcome.candidates;
+        }
+        parts_.schedule.set_flying(i, forecast);
+    }
+}
+
+std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) {
+    SurfaceTotals& totals = parts_.recorder.totals();
+    const double elapsed = until - parts_.store.particles().accounted_until[i];
+    if (totals.empty() || !parts_.store.is_asleep(i) || !(elapsed > 0.0)) return 0;
+    std::vector<SurfaceHit> hits;
+    parts_.response.add_weight(load(i, until), elapsed, hits);
+    for (SurfaceHit& hit : hits) hit.impulse *= sign;
+    return totals.add(hits);
+}
+
+void ActiveMover::prepare(MoveScratch& scratch) const {
+    scratch.hits.clear();
+    scratch.records.clear();
+    scratch.record_contacts = parts_.recorder.collects_contacts();
+    scratch.record_segments = parts_.check != nullptr;
+}
+
+void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) {
+    record.lost_impulses += parts_.recorder.totals().add(scratch.hits);
+    record.contact_records.insert(record.contact_records.end(), scratch.records.begin(), scratch.records.end());
+}
+
+// Neighbours in space lie anywhere in memory. What load() and store() use first, then the candidates, then their
+// corners.
+void ActiveMover::prefetch(std::span<const std::uint32_t> active, std::size_t k) const {
+    if (k + kPrefetchDistance < active.size()) {
+        const std::size_t i = active[k + kPrefetchDistance];
+        parts_.store.prefetch(i);
+        parts_.schedule.prefetch(i);
+    }
+    if (k + kTrianglePrefetchDistance < active.size()) prefetch_triangles(active[k + kTrianglePrefetchDistance]);
+    if (k + kVertexPrefetchDistance < active.size()) prefetch_vertices(active[k + kVertexPrefetchDistance]);
+}
+
+void ActiveMover::prefetch_triangles(std::size_t i) const {
+    const ContactCandidates& candidates = parts_.schedule.candidates(i);
+    if (!candidates.is_known()) return;
+    const CollisionWorld& world = parts_.response.rules().world;
+    for (const std::uint32_t triangle : candidates.triangles()) __builtin_prefetch(&world.triangles()[triangle]);
+}
+
+void ActiveMover::prefetch_vertices(std::size_t i) const {
+    const ContactCandidates& candidates = parts_.schedule.candidates(i);
+    if (!candidates.is_known()) return;
+    const CollisionWorld& world = parts_.response.rules().world;
+    for (const std::uint32_t triangle : candidates.triangles()) {
+        for (const std::uint32_t vertex : world.triangles()[triangle]) {
+            __builtin_prefetch(&world.vertices()[vertex].x);
+            __builtin_prefetch(&world.vertices()[vertex].z);
+        }
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,131 @@
+#include "ricochet/simulation/free_flights.h"
+
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+/// Particles from the prefetch of one to its turn.
+constexpr std::size_t kPrefetchDistance = 6;
+
+}  // namespace
+
+ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    if (deferred_ && deferred_->is_full()) catch_up_all();
+    const std::optional<Vec3>& common = forces_.common_acceleration();
+    const FreeFlight shared(integrator_, common.value_or(Vec3{}), step.end - step.begin);
+    std::vector<std::size_t> sizes(blocks_of(range.size()));
+    if (check_ != nullptr) blocks.resize(std::max(blocks.size(), sizes.size()));
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        begin += range.begin;
+        end += range.begin;
+        sizes[block] = schedule_.count_active(begin, end);
+        if (deferred_) return;
+        if (common && check_ == nullptr) {
+            advance_together(begin, end, shared);
+        } else {
+            advance_each(begin, end, step, check_ != nullptr ? &blocks[block].violations : nullptr);
+        }
+    });
+    ActiveSet active(std::move(sizes));
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        std::uint32_t* next = active.block(block).data();
+        schedule_.visit_active(range.begin + begin, range.begin + end,
+                               [&](std::size_t i) { *next++ = static_cast<std::uint32_t>(i); });
+        if (deferred_) catch_up_active(active.block(block));
+    });
+    if (deferred_) deferred_->add(shared);
+    return active;
+}
+
+// The loop that most particles of most steps go through: nothing but what they need.
+void FreeFlights::advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight) {
+    Particles& particles = store_.particles();
+    for (std::size_t i = begin; i < end; ++i) {
+        if (!schedule_.is_in_free_flight(i)) continue;
+        const PhaseState state = flight.step(particles.position[i], particles.velocity[i]);
+        particles.position[i] = state.position;
+        particles.velocity[i] = state.velocity;
+    }
+}
+
+void FreeFlights::advance_each(std::size_t begin, std::size_t end, const TimeSpan& step,
+                               std::vector<Violation>* violations) {
+    for (std::size_t i = begin; i < end; ++i) {
+        if (schedule_.is_in_free_flight(i)) advance_one(i, flight_of(i, step), step, violations);
+    }
+}
+
+FreeFlight FreeFlights::flight_of(std::size_t i, const TimeSpan& step) const {
+    const std::optional<Vec3>& common = forces_.common_acceleration();
+    return {integrator_, common ? *common : forces_.acceleration(store_.force_input(i, step.begin)),
+            step.end - step.begin};
+}
+
+void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step,
+                              std::vector<Violation>* violations) {
+    Particles& particles = store_.particles();
+    const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
+    if (check_ != nullptr) {
+        const Segment segment{particles.position[i], end.position, step.begin};
+        ForceInput moved = store_.force_input(i, step.end);
+        moved.position = end.position;
+        moved.velocity = end.velocity;
+        check_->check(i, particles, moved, step.end, {&segment, 1}, *violations);
+    }
+    particles.position[i] = end.position;
+    particles.velocity[i] = end.velocity;
+}
+
+void FreeFlights::begin_deferring() {
+    if (!deferred_ && forces_.common_acceleration()) deferred_.emplace(store_.size());
+}
+
+void FreeFlights::end_deferring() {
+    if (deferred_) catch_up_all();
+    deferred_.reset();
+}
+
+void FreeFlights::catch_up(std::size_t i) {
+    Particles& particles = store_.particles();
+    const PhaseState state = deferred_->after(i, {particles.position[i], particles.velocity[i]});
+    particles.position[i] = state.position;
+    particles.velocity[i] = state.velocity;
+}
+
+// Their deferred steps are made while the next ones are on their way from memory.
+void FreeFlights::catch_up_active(std::span<const std::uint32_t> active) {
+    const Particles& particles = store_.particles();
+    for (std::size_t k = 0; k < active.size(); ++k) {
+        if (k + kPrefetchDistance < active.size()) {
+            prefetch_vector(particles.position[active[k + kPrefetchDistance]]);
+            prefetch_vector(particles.velocity[active[k + kPrefetchDistance]]);
+        }
+        catch_up(active[k]);
+        deferred_->make_next(active[k]);
+    }
+}
+
+void FreeFlights::catch_up_all() {
+    if (deferred_->is_empty()) return;
+    parallel_for_blocks(store_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!schedule_.is_left_alone(i)) catch_up(i);
+        }
+    });
+    deferred_->clear();
+}
+
+void FreeFlights::append() {
+    if (deferred_) deferred_->append();
+}
+
+void FreeFlights::reserve(std::size_t more) {
+    if (deferred_) deferred_->reserve(more);
+}
+
+void FreeFlights::compact(const std::vector<std::uint8_t>& keep) {
+    if (deferred_) deferred_->compact(keep);
+}
+
+}  // namespace ricochet

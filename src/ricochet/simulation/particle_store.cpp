@@ -1,0 +1,116 @@
+#include "ricochet/simulation/particle_store.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/reserve_more.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+std::uint32_t saturating_sum(std::uint32_t a, std::uint32_t b) {
+    return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
+}
+
+}  // namespace
+
+ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
+                             std::size_t colliders)
+    : colliders_(colliders), may_sleep_(may_sleep) {
+    particles_.attributes = AttributeTable(std::move(attributes));
+    particles_.keeps_origin = keeps_origin;
+}
+
+void ParticleStore::append(Particle particle) {
+    particle.id = next_id_++;
+    particle.position = flush_tiny(particle.position);
+    const auto size = particles_.attributes.find(kSizeAttribute);
+    if (size) {
+        particle.attributes.resize(particles_.attributes.columns().size(), missing_attribute());
+        if (is_missing(particle.attributes[*size])) particle.attributes[*size] = {particle.radius, 0.0, 0.0};
+    }
+    if (particle.pinned) particle.velocity = particle.spin = Vec3{};
+    particles_.append(particle);
+    sides_.resize(particles_.size() * colliders_);
+}
+
+void ParticleStore::reserve(std::size_t more) {
+    particles_.reserve(more);
+    reserve_more(sides_, more * colliders_);
+}
+
+void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
+    const auto colliders = static_cast<std::ptrdiff_t>(colliders_);
+    auto kept = sides_.begin();
+    for (std::size_t i = 0; colliders > 0 && i < keep.size(); ++i) {
+        const auto first = sides_.begin() + static_cast<std::ptrdiff_t>(i) * colliders;
+        if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
+    }
+    sides_.erase(kept, sides_.end());
+    particles_.compact(keep);
+}
+
+std::span<SideMemory> ParticleStore::sides_of(std::size_t i) {
+    return std::span(sides_).subspan(i * colliders_, colliders_);
+}
+
+std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
+    return std::span(sides_).subspan(i * colliders_, colliders_);
+}
+
+MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
+    MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
+    if (in_contact) load_contact(i, particle.support);
+    particle.sides = sides_of(i);
+    return particle;
+}
+
+void ParticleStore::load_contact(std::size_t i, Support& support) const {
+    for (const SurfaceId surface : particles_.support[i]) {
+        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
+    }
+    support.cascade_left = particles_.cascade_left[i];
+}
+
+void ParticleStore::store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
+                          bool may_be_held) {
+    particles_.position[i] = moved.state.position;
+    particles_.velocity[i] = moved.state.velocity;
+    if (particles_.spin[i] != moved.spin) particles_.spin[i] = moved.spin;
+    if (particles_.draws[i] != moved.draws) particles_.draws[i] = moved.draws;
+    if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
+    if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
+    if (in_contact) store_contact(i, moved, outcome, may_be_held);
+}
+
+void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                  bool may_be_held) {
+    particles_.resting[i] = outcome.resting ? 1 : 0;
+    particles_.held[i] = outcome.held && may_be_held ? 1 : 0;
+    particles_.frozen[i] = outcome.frozen ? 1 : 0;
+    particles_.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
+    particles_.support[i].fill(kNoSupport);
+    std::copy_n(moved.support.surfaces.begin(), moved.support.count, particles_.support[i].begin());
+    particles_.cascade_left[i] = moved.support.cascade_left;
+}
+
+void ParticleStore::prefetch(std::size_t i) const {
+    prefetch_vector(particles_.position[i]);
+    prefetch_vector(particles_.velocity[i]);
+    __builtin_prefetch(&particles_.mass[i]);
+    __builtin_prefetch(&particles_.radius[i]);
+    __builtin_prefetch(&particles_.id[i]);
+    __builtin_prefetch(&particles_.spin[i]);
+    __builtin_prefetch(&particles_.draws[i]);
+    __builtin_prefetch(&particles_.birth_time[i]);
+    __builtin_prefetch(&particles_.lifetime[i]);
+    __builtin_prefetch(&particles_.frozen[i]);
+    __builtin_prefetch(&particles_.pinned[i]);
+    __builtin_prefetch(&particles_.absorbed[i]);
+    __builtin_prefetch(&particles_.held[i]);
+    __builtin_prefetch(&particles_.contacts[i], 1);
+}
+
+}  // namespace ricochet

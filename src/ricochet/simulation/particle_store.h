@@ -1,0 +1,102 @@
+/// \file
+/// Private to the simulation: the particles with what the response remembers of each, and how one is handed to the
+/// response and taken back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// The particles of a simulation. Particles are appended at the end and keep their order.
+class ParticleStore {
+public:
+    /// may_sleep: what holds a particle now holds it for good, so it need not be asked for again.
+    /// colliders: how many have sides that the response keeps; 0 where it keeps none.
+    ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
+                  std::size_t colliders);
+
+    [[nodiscard]] const Particles& particles() const { return particles_; }
+    [[nodiscard]] Particles& particles() { return particles_; }
+    [[nodiscard]] std::size_t size() const { return particles_.size(); }
+
+    /// Gives the particle its id and takes it in. Its sides are not known yet.
+    void append(Particle particle);
+    void reserve(std::size_t more);
+    /// Keeps the particles whose flag is not 0.
+    void compact(const std::vector<std::uint8_t>& keep);
+
+    [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
+    [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
+    /// Nothing moves it, or an earlier part of the step has removed it.
+    [[nodiscard]] bool is_fixed(std::size_t i) const {
+        return particles_.frozen[i] != 0 || particles_.pinned[i] != 0 || particles_.absorbed[i] != 0;
+    }
+    [[nodiscard]] bool is_asleep(std::size_t i) const { return particles_.held[i] != 0 && may_sleep_; }
+    [[nodiscard]] bool may_sleep() const { return may_sleep_; }
+    /// What forces see of it at a time, s.
+    [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
+        return {particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
+                particles_.id[i]};
+    }
+
+    /// Particle i as the response moves it from `start`, s. in_contact: the arrays may hold a contact of it; where they
+    /// do not, they are not read, since for particles in arbitrary order each costs a cache miss.
+    [[nodiscard]] MovingParticle load(std::size_t i, double start, bool in_contact);
+    /// Takes over where it has gone. in_contact: the arrays may hold a contact of it, or it has one now; may_be_held:
+    /// false for one that others pull at.
+    void store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
+               bool may_be_held);
+
+    /// Begins to fetch from memory what load() and store() use.
+    void prefetch(std::size_t i) const;
+
+    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a);
+
+private:
+    void load_contact(std::size_t i, Support& support) const;
+    void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_held);
+
+    Particles particles_;
+    std::vector<SideMemory> sides_;  // one a collider for every particle, for responses that keep sides
+    std::size_t colliders_;
+    std::uint64_t next_id_ = 0;
+    bool may_sleep_;
+};
+
+/// Begins to fetch a vector from memory; it may lie across two cache lines.
+inline void prefetch_vector(const Vec3& v) {
+    __builtin_prefetch(&v.x, 1);
+    __builtin_prefetch(&v.z, 1);
+}
+
+template <class Archive>
+void ParticleStore::archive(Archive& a) {
+    a(next_id_);
+    Particles& p = particles_;
+    a(p.id), a(p.position), a(p.velocity), a(p.spin), a(p.mass), a(p.radius), a(p.birth_time), a(p.lifetime);
+    a(p.unsimulated_time), a(p.contacts), a(p.frozen), a(p.resting), a(p.held), a(p.absorbed), a(p.pinned);
+    a(p.draws), a(p.support), a(p.cascade_left), a(p.accounted_until);
+    p.attributes.archive(a);
+    auto origins = static_cast<std::uint64_t>(p.origin.size());
+    a(origins);
+    if constexpr (Archive::kReads) p.origin.resize(origins);
+    for (Origin& origin : p.origin) {
+        a(origin.emitter), a(origin.generation), a(origin.lineage), a(origin.birth_impacts), a(origin.impact_children);
+    }
+    auto sides = static_cast<std::uint64_t>(sides_.size());
+    a(sides);
+    if constexpr (Archive::kReads) sides_.resize(sides);
+    for (SideMemory& memory : sides_) {
+        a(memory.side), a(memory.penetrating), a(memory.touching), a(memory.depth);
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,55 @@
+#include "ricochet/simulation/query_schedule.h"
+
+#include <algorithm>
+
+#include "ricochet/core/reserve_more.h"
+
+namespace ricochet {
+
+void QuerySchedule::begin_step(std::uint64_t step) {
+    step_ = step;
+    now_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(step + 1, kLeftAlone - 1));
+}
+
+void QuerySchedule::set_flying(std::size_t i, const FreeFlightForecast& forecast) {
+    const double now = clock_.time_at(step_);
+    const std::uint64_t step =
+        forecast.free_until > now ? clock_.last_step_before(forecast.free_until, kLeftAlone - 2) : 0;
+    const auto next = static_cast<std::uint32_t>(step + 1);
+    set(i, next, candidates_for(next, forecast));
+}
+
+// They must be all that is near in the whole step of the query, which the last step may exceed by rounding.
+ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const {
+    const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // of that step, as a number of steps
+    if (end >= clock_.steps() && !clock_.last_is_whole()) return {};
+    return forecast.candidates_until >= clock_.time_at(end) ? forecast.candidates : ContactCandidates{};
+}
+
+void QuerySchedule::append(bool is_left_alone) {
+    next_.push_back(is_left_alone ? kLeftAlone : kUnknown);
+    candidates_.emplace_back();
+}
+
+void QuerySchedule::reserve(std::size_t more) {
+    reserve_more(next_, more);
+    reserve_more(candidates_, more);
+}
+
+void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (keep[i] == 0) continue;
+        next_[kept] = next_[i];
+        candidates_[kept++] = candidates_[i];
+    }
+    next_.resize(kept);
+    candidates_.resize(kept);
+}
+
+void QuerySchedule::reset(std::size_t count) {
+    next_.assign(count, kUnknown);
+    candidates_.assign(count, ContactCandidates{});
+}
+
+}  // namespace ricochet

@@ -1,0 +1,118 @@
+/// \file
+/// Private to the simulation: which particles need a query in a step, and what is known of their next one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "ricochet/collision/contact_candidates.h"
+#include "ricochet/core/visit_few.h"
+#include "ricochet/simulation/step_clock.h"
+
+namespace ricochet {
+
+/// What a particle does in the step that is made.
+enum class QueryState : std::uint8_t {
+    unknown,      ///< nothing is known: it is queried, and may be in contact
+    flying,       ///< it is queried; it was in contact with nothing at the end of its last step
+    free_flight,  ///< it certainly meets nothing: no query
+    left_alone,   ///< nothing moves it (pinned, frozen, asleep) or it is about to be removed: no query
+};
+
+/// What the look-ahead of a particle's last query has found out about a particle that flies on.
+struct FreeFlightForecast {
+    double free_until = 0.0;            ///< s: it certainly meets nothing before; up to now: not found out
+    double candidates_until = 0.0;      ///< s: no triangles but the candidates come near its path before
+    ContactCandidates candidates = {};  ///< only when candidates_until is later than now
+};
+
+/// The state of every particle, in four bytes each, so that a scan finds the active set of a step in a fraction of the
+/// time that it takes to move it; and the candidates of its next query. It serves speed only: with every particle
+/// unknown a run has the same bits.
+class QuerySchedule {
+public:
+    /// clock must outlive it.
+    explicit QuerySchedule(const StepClock& clock) : clock_(clock) {}
+
+    /// The states below are those of this step from now on.
+    void begin_step(std::uint64_t step);
+
+    [[nodiscard]] QueryState state(std::size_t i) const {
+        if (is_left_alone(i)) return QueryState::left_alone;
+        if (is_in_free_flight(i)) return QueryState::free_flight;
+        return next_[i] == kUnknown ? QueryState::unknown : QueryState::flying;
+    }
+    [[nodiscard]] bool is_left_alone(std::size_t i) const { return next_[i] == kLeftAlone; }
+    [[nodiscard]] bool is_in_free_flight(std::size_t i) const { return is_free(next_[i], now_); }
+    /// True when the particles' arrays hold no contact of it: nothing of them needs to be read.
+    [[nodiscard]] bool is_without_contact(std::size_t i) const {
+        return next_[i] != kLeftAlone && next_[i] != kUnknown;
+    }
+    /// The triangles that come near its path in its next query, where they are known.
+    [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
+
+    /// How many of [begin, end) need a query.
+    [[nodiscard]] std::size_t count_active(std::size_t begin, std::size_t end) const {
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) count += is_active(next_[i], now_) ? 1 : 0;
+        return count;
+    }
+    /// Calls visit(i) for those of [begin, end) that need a query, in ascending order.
+    template <class Visit>
+    void visit_active(std::size_t begin, std::size_t end, const Visit& visit) const {
+        const std::uint32_t* next = next_.data();
+        visit_few(
+            begin, end, [next, now = now_](std::size_t i) { return is_active(next[i], now); }, visit);
+    }
+    /// The same for those that are not in free flight.
+    template <class Visit>
+    void visit_all_but_free_flights(std::size_t begin, std::size_t end, const Visit& visit) const {
+        const std::uint32_t* next = next_.data();
+        visit_few(
+            begin, end, [next, now = now_](std::size_t i) { return !is_free(next[i], now); }, visit);
+    }
+
+    /// What is known of a particle that has just been moved. Different particles from any number of threads.
+    void leave_alone(std::size_t i) { set(i, kLeftAlone, {}); }
+    void forget(std::size_t i) { set(i, kUnknown, {}); }
+    void set_flying(std::size_t i, const FreeFlightForecast& forecast);
+
+    /// A particle more, of which nothing is known or which is left alone.
+    void append(bool is_left_alone);
+    void reserve(std::size_t more);
+    /// Keeps the particles whose flag is not 0.
+    void compact(const std::vector<std::uint8_t>& keep);
+    /// `count` particles, of none of which anything is known.
+    void reset(std::size_t count);
+
+    /// Begins to fetch from memory what is kept of a particle.
+    void prefetch(std::size_t i) const {
+        __builtin_prefetch(&next_[i], 1);
+        __builtin_prefetch(&candidates_[i], 1);
+    }
+
+private:
+    // Of every particle one more than the number of the step of its next query, or one of two marks. They are at the
+    // ends of the range, so that a particle is active when its number is at most that of the step made, and not in free
+    // flight when that holds for numbers with 1 added, which makes the upper mark 0.
+    static constexpr std::uint32_t kUnknown = 0;
+    static constexpr std::uint32_t kLeftAlone = std::numeric_limits<std::uint32_t>::max();
+
+    [[nodiscard]] static bool is_active(std::uint32_t next, std::uint32_t now) { return next <= now; }
+    [[nodiscard]] static bool is_free(std::uint32_t next, std::uint32_t now) { return next + 1U > now + 1U; }
+    void set(std::size_t i, std::uint32_t next, const ContactCandidates& candidates) {
+        next_[i] = next;
+        candidates_[i] = candidates;
+    }
+    [[nodiscard]] ContactCandidates candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const;
+
+    const StepClock& clock_;
+    std::uint64_t step_ = 0;
+    std::uint32_t now_ = 1;  ///< one more than step_; no run has so many steps that anything flies freely beyond
+    std::vector<std::uint32_t> next_;
+    std::vector<ContactCandidates> candidates_;
+};
+
+}  // namespace ricochet

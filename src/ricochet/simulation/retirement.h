@@ -1,0 +1,54 @@
+/// \file
+/// Private to the simulation: which particles leave at the end of a step, and why.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/simulation/particle_store.h"
+#include "ricochet/simulation/query_schedule.h"
+
+namespace ricochet {
+
+/// Why a particle leaves.
+enum class Departure : std::uint8_t {
+    none,           ///< it stays
+    expired,        ///< its lifetime is over
+    absorbed,       ///< by a surface
+    shattered,      ///< fragments take its place
+    out_of_bounds,  ///< it is outside the bounds
+};
+
+/// What there is at the end of a step. Particles that leave count as leaving only.
+struct EndOfStepCounts {
+    std::uint64_t leaving = 0;
+    std::uint64_t resting = 0;
+    std::uint64_t held = 0;  ///< of the resting ones those that friction and support hold
+};
+
+/// Looks at all particles once a step, at those in free flight only where there are bounds.
+class Retirement {
+public:
+    /// All must outlive it.
+    Retirement(const ParticleStore& store, const QuerySchedule& schedule, const std::optional<Box3>& bounds)
+        : store_(store), schedule_(schedule), bounds_(bounds) {}
+
+    /// time: of the end of the step, s.
+    [[nodiscard]] Departure departure_of(std::size_t i, double time) const;
+    /// All particles, by all threads.
+    [[nodiscard]] EndOfStepCounts count(double time) const;
+
+private:
+    [[nodiscard]] bool is_outside(std::size_t i) const {
+        return bounds_ && !bounds_->contains(store_.particles().position[i]);
+    }
+    [[nodiscard]] EndOfStepCounts count_block(std::size_t begin, std::size_t end, double time) const;
+
+    const ParticleStore& store_;
+    const QuerySchedule& schedule_;
+    const std::optional<Box3>& bounds_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,88 @@
+/// \file
+/// Private to the simulation: statistics, contact records, totals per surface and violations of a run.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "ricochet/simulation.h"
+#include "ricochet/simulation/surface_totals.h"
+
+namespace ricochet {
+
+/// Time of a particle that its bounce budget has cut off.
+struct CutOff {
+    std::size_t particle = 0;
+    double time = 0.0;  ///< s
+};
+
+/// What one block of particles has done: written by the thread that moves the block.
+struct BlockRecord {
+    std::uint64_t contacts = 0;
+    std::uint64_t stayed = 0;
+    std::uint64_t frozen = 0;
+    std::uint64_t lost_impulses = 0;
+    std::uint32_t bounces_max = 0;
+    std::uint64_t trials = 0;
+    std::uint64_t penetrations = 0;
+    double penetration_sum = 0.0;
+    double penetration_deepest = 0.0;
+    std::vector<CutOff> cut_off;
+    std::vector<ContactRecord> contact_records;
+    std::vector<Violation> violations;
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
+
+    void add(const MoveOutcome& outcome);
+    void note_runaway(std::size_t i) { runaway = runaway ? std::min(*runaway, i) : i; }
+    void add_to(SimulationStatistics& statistics) const;
+};
+
+/// The first particle of all blocks that forces have brought beyond kFastestSpeed.
+[[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);
+
+/// What a run leaves behind besides the particles. Blocks are added in their order, sums over particles in the order of
+/// particles, so that everything is the same for any number of threads.
+class RunRecorder {
+public:
+    /// surfaces: how many have totals. With `shows_contacts` the contact records of a step are kept for its end; with
+    /// `collects_contacts` at least those of a batch of particles, for their children.
+    RunRecorder(std::size_t surfaces, bool shows_contacts, bool collects_contacts)
+        : totals_(surfaces), shows_contacts_(shows_contacts), collects_contacts_(shows_contacts || collects_contacts) {}
+
+    void begin_step();
+    /// The particles that are moved next.
+    void begin_batch() { batch_contacts_.clear(); }
+    /// Takes over what blocks have done in a part of the step.
+    void record(const std::vector<BlockRecord>& blocks);
+    /// particles: how many were moved.
+    void end_batch(std::size_t particles);
+    /// Puts the contact records in the order of (time, particle, order of events).
+    void end_step();
+
+    [[nodiscard]] bool collects_contacts() const { return collects_contacts_; }
+    [[nodiscard]] const std::vector<ContactRecord>& contact_records() const { return contacts_; }
+    [[nodiscard]] const std::vector<ContactRecord>& batch_contacts() const { return batch_contacts_; }
+    [[nodiscard]] const std::vector<Violation>& violations() const { return violations_; }
+    [[nodiscard]] const std::vector<Violation>& last_violations() const { return last_violations_; }
+    [[nodiscard]] const SimulationStatistics& statistics() const { return statistics_; }
+    [[nodiscard]] SimulationStatistics& statistics() { return statistics_; }
+    [[nodiscard]] const SurfaceTotals& totals() const { return totals_; }
+    [[nodiscard]] SurfaceTotals& totals() { return totals_; }
+
+private:
+    void record_cut_off(const std::vector<BlockRecord>& blocks);
+    void record_violations(const std::vector<BlockRecord>& blocks);
+
+    SimulationStatistics statistics_;
+    SurfaceTotals totals_;
+    std::vector<ContactRecord> contacts_;        // of the step
+    std::vector<ContactRecord> batch_contacts_;  // of the particles that were moved last
+    std::vector<Violation> violations_;
+    std::vector<Violation> last_violations_;  // of the step
+    bool shows_contacts_;
+    bool collects_contacts_;
+};
+
+}  // namespace ricochet

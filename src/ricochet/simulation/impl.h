@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/core/fixed_point_sum.h"
-#include "ricochet/core/visit_few.h"
+#include "ricochet/core/algorithms.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/free_flight.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/coupled_motion.h"
@@ -80,7 +80,7 @@ struct BlockCounts {
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> records;
     std::vector<Violation> violations;
-    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kMaxSpeed
 
     void add(const MoveOutcome& outcome) {
         contacts += outcome.bounces;
@@ -151,14 +151,14 @@ struct Simulation::Impl {
     void visit_active(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t next = next_step();
         const std::uint32_t* again = next_query_step.data();
-        visit_few(
+        for_each_if(
             begin, end, [=](std::size_t i) { return again[i] <= next; }, visit);
     }
     template <class Visit>
     void visit_all_but_free_flights(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t next = next_step();
         const std::uint32_t* again = next_query_step.data();
-        visit_few(
+        for_each_if(
             begin, end, [=](std::size_t i) { return again[i] + 1U <= next + 1U; }, visit);
     }
     // It flies, and what the arrays keep of contact is empty.

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "ricochet/core/morton.h"
+#include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impl.h"
@@ -227,7 +227,7 @@ void Simulation::Impl::move_active(std::span<const std::uint32_t> due, double fr
 // Takes over what came out of a particle's move, and notices one that forces have brought beyond all bounds.
 void Simulation::Impl::book(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                             BlockCounts& counts) {
-    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
     const bool was_fast = is_fast();
     store(i, moved, outcome);
     if (!was_fast && is_fast() && (!counts.runaway || i < *counts.runaway)) counts.runaway = i;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "ricochet/core/algorithms.h"
 #include "ricochet/core/error.h"
-#include "ricochet/core/reserve_more.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/predicates/predicates.h"
@@ -167,10 +167,10 @@ Simulation::Impl::Impl(SimulationSetup setup)
 
 void Simulation::Impl::make_room(std::size_t births) {
     particles.reserve(births);
-    reserve_more(next_query_step, births);
-    reserve_more(candidates, births);
+    grow_capacity_by(next_query_step, births);
+    grow_capacity_by(candidates, births);
     if (deferred) deferred->reserve(births);
-    if (response->keeps_sides()) reserve_more(sides, births * world.colliders().size());
+    if (response->keeps_sides()) grow_capacity_by(sides, births * world.colliders().size());
 }
 
 void Simulation::Impl::add(Particle particle) {

@@ -51,10 +51,10 @@ void time_paths(benchmark::State& state, int side, const Call& call) {
 }
 
 void clears_from_outside(benchmark::State& state) {
-    time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.clears(path, 0.01); });
+    time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.can_cull(path, 0.01); });
 }
 void clears_from_inside(benchmark::State& state) {
-    time_paths(state, -1, [](const AnalyticShape& s, const Path& path) { return s.clears(path, 0.01); });
+    time_paths(state, -1, [](const AnalyticShape& s, const Path& path) { return s.can_cull(path, 0.01); });
 }
 void point_from_outside(benchmark::State& state) {
     time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.first_contact(path, 0.0); });
@@ -71,13 +71,13 @@ void sphere_from_inside(benchmark::State& state) {
 void closest_point(benchmark::State& state) {
     time_paths(state, +1, [](const AnalyticShape& s, const Path& path) { return s.closest_point(path.end); });
 }
-void segment_is_free(benchmark::State& state) {
+void segment_is_clear(benchmark::State& state) {
     time_paths(state, +1,
-               [](const AnalyticShape& s, const Path& path) { return s.segment_is_free(path.c[0], path.end); });
+               [](const AnalyticShape& s, const Path& path) { return s.segment_is_clear(path.c[0], path.end); });
 }
-void distance_of_segment(benchmark::State& state) {
+void distance_to_segment(benchmark::State& state) {
     time_paths(state, +1,
-               [](const AnalyticShape& s, const Path& path) { return s.distance_of_segment(path.c[0], path.end); });
+               [](const AnalyticShape& s, const Path& path) { return s.distance_to_segment(path.c[0], path.end); });
 }
 
 void each_shape_and_degree(benchmark::internal::Benchmark* benchmark) {
@@ -98,8 +98,8 @@ BENCHMARK(point_from_inside)->Apply(each_shape_and_degree);
 BENCHMARK(sphere_from_outside)->Apply(each_shape_and_degree);
 BENCHMARK(sphere_from_inside)->Apply(each_shape_and_degree);
 BENCHMARK(closest_point)->Apply(each_shape);
-BENCHMARK(segment_is_free)->Apply(each_shape);
-BENCHMARK(distance_of_segment)->Apply(each_shape);
+BENCHMARK(segment_is_clear)->Apply(each_shape);
+BENCHMARK(distance_to_segment)->Apply(each_shape);
 
 }  // namespace
 }  // namespace ricochet

@@ -56,7 +56,7 @@ void visit(benchmark::State& state, double length, double narrowed) {
     std::size_t proposed = 0;
     for ([[maybe_unused]] auto _ : state) {
         const Segment& s = list[i++ % list.size()];
-        g.bvh.visit(s.from, s.to, [&](std::uint32_t) {
+        g.bvh.query_segment(s.from, s.to, [&](std::uint32_t) {
             ++proposed;
             return narrowed;
         });
@@ -85,7 +85,7 @@ void look_at_clusters(benchmark::State& state, double bend) {
     std::size_t i = 0;
     std::size_t near = 0;
     for ([[maybe_unused]] auto _ : state) {
-        TubeStretches stretches;
+        TubeIntervals stretches;
         near += clusters[i].near(tubes[i], stretches) != 0 ? 1 : 0;
         i = i + 1 == clusters.size() ? 0 : i + 1;
     }
@@ -106,7 +106,7 @@ void look_up_clearance(benchmark::State& state) {
     std::vector<Vec3> places(4096);
     for (Vec3& place : places) place = 1.5 * random.in_unit_ball();
     std::size_t i = 0;
-    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(grid.at(places[i++ % places.size()]));
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(grid.lower_bound(places[i++ % places.size()]));
 }
 BENCHMARK(look_up_clearance)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 

@@ -44,7 +44,7 @@ private:
 
 const auto kUnchanged = [](SegmentTriangle&, RandomSequence&) {};
 const auto kAny = [](const SegmentTriangle&) { return true; };
-const auto kMeets = [](const SegmentTriangle& s) { return segment_meets_triangle(s.p, s.q, s.a, s.b, s.c); };
+const auto kMeets = [](const SegmentTriangle& s) { return segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c); };
 
 bool on_one_side(const SegmentTriangle& s) { return orient3d(s.a, s.b, s.c, s.p) == orient3d(s.a, s.b, s.c, s.q); }
 

@@ -2,7 +2,7 @@
 /// Time of the first contact with one triangle, for points and spheres on lines, parabolas and cubics: paths that hit
 /// it, pass it and graze it.
 
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 #include <benchmark/benchmark.h>
 

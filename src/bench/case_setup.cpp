@@ -23,10 +23,10 @@ Insides::Insides(const TriangleMesh& mesh, const Vec3& heart)
 
 bool Insides::contains(const Vec3& p) const {
     bool is_seen = true;
-    bvh_.visit(heart_, p, [&](std::uint32_t triangle) {
+    bvh_.query_segment(heart_, p, [&](std::uint32_t triangle) {
         const Triangle& t = mesh_.triangles[triangle];
         const auto& v = mesh_.vertices;
-        if (!segment_meets_triangle(heart_, p, v[t[0]], v[t[1]], v[t[2]])) return 1.0;
+        if (!segment_intersects_triangle(heart_, p, v[t[0]], v[t[1]], v[t[2]])) return 1.0;
         is_seen = false;
         return 0.0;
     });
@@ -37,7 +37,7 @@ bool Insides::contains_ball(const Vec3& middle, double radius) const {
     if (!contains(middle)) return false;
     if (radius == 0.0) return true;
     bool is_clear = true;
-    bvh_.visit_near(middle, radius, [&](std::uint32_t triangle) {
+    bvh_.query_point(middle, radius, [&](std::uint32_t triangle) {
         const Triangle& t = mesh_.triangles[triangle];
         const auto& v = mesh_.vertices;
         const auto nearest = closest_point_on_triangle(middle, v[t[0]], v[t[1]], v[t[2]]);

@@ -1,8 +1,10 @@
 #include "cli/run_command.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -18,7 +20,6 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/core/peak_memory.h"
 #include "ricochet/io/checkpoint.h"
 #include "ricochet/io/output_directory.h"
 #include "ricochet/io/run_files.h"
@@ -201,6 +202,13 @@ SceneDescription load_scene(const RunArguments& arguments) {
     SceneDescription scene = load_scene(wanted);
     scene.setup.options.verify = arguments.verify;
     return scene;
+}
+
+// Largest resident set of this process so far.
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;  // Linux counts in kilobytes
 }
 
 void complete(RunSummary& summary, const RunInfo& info, const RunPlan& plan) {

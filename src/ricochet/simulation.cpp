@@ -7,7 +7,7 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shapes/shape_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {

@@ -11,8 +11,8 @@
 
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/core/binary_archive.h"
 #include "ricochet/core/box3.h"
-#include "ricochet/core/byte_stream.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"

@@ -47,8 +47,8 @@ std::vector<std::uint32_t> first_by_brute_force(const TriangleMesh& mesh, const 
         const Vec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
         const double fraction = dot(corner(0) - from, normal) / dot(along, normal);
         // The segment made longer at both ends where it is allowed to.
-        const bool meets =
-            segment_meets_triangle(from - grow * along, from + (1.0 + grow) * along, corner(0), corner(1), corner(2));
+        const bool meets = segment_intersects_triangle(from - grow * along, from + (1.0 + grow) * along, corner(0),
+                                                       corner(1), corner(2));
         return meets ? fraction : INFINITY;
     };
     double surely = INFINITY;

@@ -131,12 +131,12 @@ TEST_P(Determinism, TheStateDoesNotDependOnTheInstructionSetOfTheRayLibrary) {
     if (__builtin_cpu_supports("avx512dq") != 0) settings.push_back("isa=avx512");
     std::vector<std::uint64_t> hashes;
     for (const char* setting : settings) {
-        set_embree_settings(setting);
+        set_embree_config(setting);
         Simulation simulation(debris(mesh, GetParam()));
         run(simulation);
         hashes.push_back(simulation.state_hash());
     }
-    set_embree_settings("");
+    set_embree_config("");
     for (std::size_t k = 1; k < hashes.size(); ++k) EXPECT_EQ(hashes[k], hashes[0]) << settings[k];
 }
 

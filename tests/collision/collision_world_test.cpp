@@ -9,7 +9,7 @@
 #include "collision/worlds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/mesh/placed_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -47,7 +47,7 @@ TEST(CollisionWorld, BakesEveryVertexOfLargeMeshesToTheSameBitsForAnyNumberOfThr
     }
     for (std::uint32_t i = 0; i + 2 < kVertices; ++i) large.triangles.push_back({i, i + 1, i + 2});
     const Placement placement{{0.3, -2, 5}, {1, 2, 3}, 40.0, {-1, 2, 0.5}};
-    const TriangleMesh expected = placed(large, placement);
+    const TriangleMesh expected = transformed(large, placement);
     for (const int threads : {1, 0}) {
         const ThreadLimit limit(threads);
         const auto world = world_of(mesh_collider(large, placement));

@@ -12,7 +12,7 @@
 #include "ricochet/collision/contact_search.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

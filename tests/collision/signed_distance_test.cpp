@@ -272,9 +272,9 @@ TEST(SignedDistance, NearListsWhatClosestFindsInTheOrderOfTheColliders) {
 
 TEST(SignedDistance, HasTheSameBitsWithAndWithoutCullingOnAnyInstructionSetAndThread) {
     const auto run = [](bool culls, const char* instructions) {
-        set_embree_settings(instructions);
+        set_embree_config(instructions);
         auto world = mixed_world();
-        set_embree_settings("");
+        set_embree_config("");
         world.set_culling(culls);
         const SignedDistance distance(world);
         std::vector<std::vector<SurfacePoint>> found(200);

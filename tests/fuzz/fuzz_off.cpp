@@ -1,5 +1,5 @@
 #include "fuzz/fuzz_reader.h"
-#include "ricochet/geometry/mesh/off_reader.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 // libFuzzer's entry point.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

@@ -155,7 +155,7 @@ TEST(AnalyticShape, KnowsPointsThatLieOnIt) {
         EXPECT_EQ(ball.side(p), 0);
         EXPECT_EQ(ball.closest_point(p).distance, 0.0);
         EXPECT_EQ(ball.closest_point(p).point, p);
-        EXPECT_FALSE(ball.segment_is_free(p, p));
+        EXPECT_FALSE(ball.segment_is_clear(p, p));
     }
     const AnalyticShape can = AnalyticShape::cylinder(world_from_local({.position = {5, 6, 7}, .scale = {2, 2, 0.25}}));
     for (const Vec3& p : {Vec3{7, 6, 7}, Vec3{5, 6, 7.25}, Vec3{5, 8, 6.75}}) EXPECT_EQ(can.side(p), 0);
@@ -267,7 +267,7 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
             q = p - below.distance * (1.0 - draws.power_of_ten(-15, -1)) * below.normal +
                 c.smallest * draws.power_of_ten(-8, 1) * aside;
         }
-        const bool is_free = c.shape.segment_is_free(p, q);
+        const bool is_free = c.shape.segment_is_clear(p, q);
         const bool meets = c.oracle.meets(real(p), real(q));
         EXPECT_FALSE(is_free && meets);
         // Refused without need only where the segment passes within rounding, which random segments do not.
@@ -285,8 +285,8 @@ TEST(AnalyticShape, BoundsTheDistanceOfALegFromBelowTightly) {
         const Case c = random_case(draws);
         const Vec3 p = random_point(draws, c);
         const Vec3 q = random_point(draws, c);
-        const double bound = c.shape.distance_of_segment(p, q);
-        if (!c.shape.segment_is_free(p, q)) {
+        const double bound = c.shape.distance_to_segment(p, q);
+        if (!c.shape.segment_is_clear(p, q)) {
             EXPECT_EQ(bound, 0.0);
             continue;
         }
@@ -540,7 +540,7 @@ TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
                 least = std::min(least, side * c.shape.closest_point(q).distance);
             }
         }
-        const bool is_clear = c.shape.clears(path, reach);
+        const bool is_clear = c.shape.can_cull(path, reach);
         if (is_clear) {
             EXPECT_GT(least, reach);
         }
@@ -640,7 +640,7 @@ void bounce_about(std::uint32_t stream, bool with_radius) {
             bounces += static_cast<int>(particle.follow(path));
             ASSERT_EQ(c.shape.side(particle.p), is_inside ? -1 : 1) << segment;
             if (path.degree == 1) {
-                ASSERT_TRUE(c.shape.segment_is_free(before, particle.p)) << segment;
+                ASSERT_TRUE(c.shape.segment_is_clear(before, particle.p)) << segment;
             }
             ASSERT_GE(std::fabs(c.shape.closest_point(particle.p).distance), radius - tolerance) << segment;
             if (length(particle.p - c.placement.position) > 10.0 * c.largest) {

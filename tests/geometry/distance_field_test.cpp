@@ -51,12 +51,12 @@ TEST(DistanceField, NeverSaysMoreThanTheDistanceFromTheNearestTriangle) {
         ASSERT_GT(grid.cell(), 0.0);
         for (int k = 0; k < 100; ++k) {
             const Vec3 p = origin + (k % 4 == 0 ? 10.0 : 1.5) * random.in_unit_ball();
-            const double clearance = grid.at(p);
+            const double clearance = grid.lower_bound(p);
             ASSERT_GE(clearance, 0.0);
             ASSERT_LE(clearance, distance_from(mesh, p) * (1.0 + 1e-12)) << k;
             told += clearance > 0.0 ? 1 : 0;
         }
-        for (const Vec3& v : mesh.vertices) ASSERT_EQ(grid.at(v), 0.0);
+        for (const Vec3& v : mesh.vertices) ASSERT_EQ(grid.lower_bound(v), 0.0);
     }
     EXPECT_GT(told, test::scaled(30) * 50);
 }
@@ -75,21 +75,21 @@ TEST(DistanceField, TellsMostOfTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
             // Counted along one axis a distance may be short by the square root of three; outside the box it is that
             // from the box or that from where one enters it.
             const double least = distance_from(mesh, p) / std::sqrt(3.0) / (is_inside ? 1.0 : 2.0);
-            EXPECT_GT(grid.at(p) + 3.0 * grid.cell(), least);
+            EXPECT_GT(grid.lower_bound(p) + 3.0 * grid.cell(), least);
         }
     }
 }
 
 TEST(DistanceField, KnowsNothingWithoutTrianglesAndWhereRoundingIsLargerThanCells) {
-    EXPECT_EQ(DistanceField().at({1, 2, 3}), 0.0);
-    EXPECT_EQ(DistanceField({}, {}, {}).at({1, 2, 3}), 0.0);
+    EXPECT_EQ(DistanceField().lower_bound({1, 2, 3}), 0.0);
+    EXPECT_EQ(DistanceField({}, {}, {}).lower_bound({1, 2, 3}), 0.0);
     const TriangleMesh far = testing::moved(testing::sphere_mesh({}, 1.0, 2), {1e12, 0, 0});
     EXPECT_EQ(grid_of(far).cell(), 0.0);
-    EXPECT_EQ(grid_of(far).at({1e12, 5, 0}), 0.0);
+    EXPECT_EQ(grid_of(far).lower_bound({1e12, 5, 0}), 0.0);
     TriangleMesh point;
     point.vertices.assign(3, {1, 1, 1});
     point.triangles.push_back({0, 1, 2});
-    EXPECT_EQ(grid_of(point).at({5, 5, 5}), 0.0);
+    EXPECT_EQ(grid_of(point).lower_bound({5, 5, 5}), 0.0);
 }
 
 TEST(DistanceField, TakesCoarserCellsWhereLargeTrianglesLieInHeaps) {
@@ -101,7 +101,7 @@ TEST(DistanceField, TakesCoarserCellsWhereLargeTrianglesLieInHeaps) {
     }
     const DistanceField grid = grid_of(heap);
     EXPECT_LT(grid.memory_bytes(), 10'000U);  // of two cells a triangle
-    EXPECT_GT(grid.at({4, 0, 0}), 2.9);
+    EXPECT_GT(grid.lower_bound({4, 0, 0}), 2.9);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(SegmentMeetsTriangle, AgreesWithLinearEquationsAndInequalities) {
     std::array<int, 2> count{};
     for_cases(kCases, [&count](const SegmentTriangle& s) {
         const bool meets = testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c);
-        ASSERT_EQ(segment_meets_triangle(s.p, s.q, s.a, s.b, s.c), meets);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c), meets);
         ++count[meets ? 1U : 0U];
     });
     // Both answers must be common, or the cases test nothing.
@@ -102,33 +102,33 @@ TEST(SegmentMeetsTriangle, AgreesWithLinearEquationsAndInequalities) {
 
 TEST(SegmentMeetsTriangle, DoesNotDependOnTheOrderOfEndsAndCorners) {
     for_cases(kCases, [](const SegmentTriangle& s) {
-        const bool meets = segment_meets_triangle(s.p, s.q, s.a, s.b, s.c);
-        ASSERT_EQ(segment_meets_triangle(s.q, s.p, s.a, s.b, s.c), meets);
-        ASSERT_EQ(segment_meets_triangle(s.p, s.q, s.b, s.c, s.a), meets);
-        ASSERT_EQ(segment_meets_triangle(s.p, s.q, s.c, s.a, s.b), meets);
-        ASSERT_EQ(segment_meets_triangle(s.p, s.q, s.b, s.a, s.c), meets);
-        ASSERT_EQ(segment_meets_triangle(s.q, s.p, s.c, s.b, s.a), meets);
+        const bool meets = segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
+        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.a, s.b, s.c), meets);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.c, s.a), meets);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.c, s.a, s.b), meets);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.a, s.c), meets);
+        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.c, s.b, s.a), meets);
     });
 }
 
 TEST(SegmentMeetsTriangle, CountsTheTrianglesOwnCornersAndEdgePoints) {
     const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
-    EXPECT_TRUE(segment_meets_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));
-    EXPECT_TRUE(segment_meets_triangle({2, 2, -1}, {2, 2, 1}, a, b, c));
-    EXPECT_TRUE(segment_meets_triangle({1, 1, 0}, {1, 1, 1}, a, b, c));
-    EXPECT_TRUE(segment_meets_triangle({1, 1, 0}, {1, 1, 0}, a, b, c));
-    EXPECT_FALSE(segment_meets_triangle({1, 1, 0x1p-280}, {1, 1, 1}, a, b, c));
-    EXPECT_FALSE(segment_meets_triangle({2, 2 + 0x1p-51, -1}, {2, 2 + 0x1p-51, 1}, a, b, c));
+    EXPECT_TRUE(segment_intersects_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));
+    EXPECT_TRUE(segment_intersects_triangle({2, 2, -1}, {2, 2, 1}, a, b, c));
+    EXPECT_TRUE(segment_intersects_triangle({1, 1, 0}, {1, 1, 1}, a, b, c));
+    EXPECT_TRUE(segment_intersects_triangle({1, 1, 0}, {1, 1, 0}, a, b, c));
+    EXPECT_FALSE(segment_intersects_triangle({1, 1, 0x1p-280}, {1, 1, 1}, a, b, c));
+    EXPECT_FALSE(segment_intersects_triangle({2, 2 + 0x1p-51, -1}, {2, 2 + 0x1p-51, 1}, a, b, c));
 }
 
 TEST(SegmentMeetsTriangle, DecidesCoplanarSegmentsInThePlane) {
     const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
-    EXPECT_TRUE(segment_meets_triangle({-1, 1, 0}, {5, 1, 0}, a, b, c)) << "right across";
-    EXPECT_TRUE(segment_meets_triangle({1, 1, 0}, {2, 1, 0}, a, b, c)) << "inside";
-    EXPECT_TRUE(segment_meets_triangle({5, 0, 0}, {3, 0, 0}, a, b, c)) << "along an edge";
-    EXPECT_TRUE(segment_meets_triangle({-1, 1, 0}, {1, -1, 0}, a, b, c)) << "through a corner";
-    EXPECT_FALSE(segment_meets_triangle({5, 0, 0}, {6, 0, 0}, a, b, c)) << "beyond an edge";
-    EXPECT_FALSE(segment_meets_triangle({3, 3, 0}, {0, 5, 0}, a, b, c)) << "past the long edge";
+    EXPECT_TRUE(segment_intersects_triangle({-1, 1, 0}, {5, 1, 0}, a, b, c)) << "right across";
+    EXPECT_TRUE(segment_intersects_triangle({1, 1, 0}, {2, 1, 0}, a, b, c)) << "inside";
+    EXPECT_TRUE(segment_intersects_triangle({5, 0, 0}, {3, 0, 0}, a, b, c)) << "along an edge";
+    EXPECT_TRUE(segment_intersects_triangle({-1, 1, 0}, {1, -1, 0}, a, b, c)) << "through a corner";
+    EXPECT_FALSE(segment_intersects_triangle({5, 0, 0}, {6, 0, 0}, a, b, c)) << "beyond an edge";
+    EXPECT_FALSE(segment_intersects_triangle({3, 3, 0}, {0, 5, 0}, a, b, c)) << "past the long edge";
 }
 
 TEST(PointOnTriangle, AgreesWithASegmentThatIsAPoint) {

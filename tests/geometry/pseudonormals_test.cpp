@@ -68,7 +68,7 @@ void expect_cube(const TriangleMesh& mesh) {
             const double faces = std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z);  // 2 edge, 1 diagonal
             expect_near(normals.of(t, kEdges[k]), middle / faces);
             expect_near(normals.of(t, kVertices[k]), from / 3.0);
-            EXPECT_FALSE(normals.is_on_rim(t, kEdges[k]) || normals.is_on_rim(t, kVertices[k]));
+            EXPECT_FALSE(normals.is_on_boundary(t, kEdges[k]) || normals.is_on_boundary(t, kVertices[k]));
         }
     }
 }
@@ -171,24 +171,24 @@ TEST(Pseudonormals, SayWhereASurfaceEnds) {
     // Two triangles over a square: the diagonal (0, 2) is inside, the four sides and all vertices are not.
     const TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     const Pseudonormals normals(square.vertices, square.triangles);
-    EXPECT_TRUE(normals.is_on_rim(0, TriangleFeature::kEdgeAB));
-    EXPECT_TRUE(normals.is_on_rim(0, TriangleFeature::kEdgeBC));
-    EXPECT_FALSE(normals.is_on_rim(0, TriangleFeature::kEdgeCA));
-    EXPECT_FALSE(normals.is_on_rim(1, TriangleFeature::kEdgeAB));
-    EXPECT_FALSE(normals.is_on_rim(1, TriangleFeature::kFace));
-    for (const auto vertex : kVertices) EXPECT_TRUE(normals.is_on_rim(1, vertex));
+    EXPECT_TRUE(normals.is_on_boundary(0, TriangleFeature::kEdgeAB));
+    EXPECT_TRUE(normals.is_on_boundary(0, TriangleFeature::kEdgeBC));
+    EXPECT_FALSE(normals.is_on_boundary(0, TriangleFeature::kEdgeCA));
+    EXPECT_FALSE(normals.is_on_boundary(1, TriangleFeature::kEdgeAB));
+    EXPECT_FALSE(normals.is_on_boundary(1, TriangleFeature::kFace));
+    for (const auto vertex : kVertices) EXPECT_TRUE(normals.is_on_boundary(1, vertex));
     EXPECT_EQ(normals.of(0, TriangleFeature::kEdgeAB), (Vec3{0, 0, 1}));
     // A vertex in the middle of a fan is none, nor is an edge of four triangles; one of three is.
     const TriangleMesh fan = sphere_mesh({}, 1.0, 0);
     const TriangleMesh half{fan.vertices, {fan.triangles[0], fan.triangles[1], fan.triangles[2], fan.triangles[3]}};
     const Pseudonormals cap(half.vertices, half.triangles);
-    EXPECT_FALSE(cap.is_on_rim(0, TriangleFeature::kVertexC));
-    EXPECT_TRUE(cap.is_on_rim(0, TriangleFeature::kVertexA));
+    EXPECT_FALSE(cap.is_on_boundary(0, TriangleFeature::kVertexC));
+    EXPECT_TRUE(cap.is_on_boundary(0, TriangleFeature::kVertexA));
     TriangleMesh fins{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
                       {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {1, 0, 5}}};
-    EXPECT_FALSE(Pseudonormals(fins.vertices, fins.triangles).is_on_rim(2, TriangleFeature::kEdgeAB));
+    EXPECT_FALSE(Pseudonormals(fins.vertices, fins.triangles).is_on_boundary(2, TriangleFeature::kEdgeAB));
     fins.triangles.pop_back();
-    EXPECT_TRUE(Pseudonormals(fins.vertices, fins.triangles).is_on_rim(2, TriangleFeature::kEdgeAB));
+    EXPECT_TRUE(Pseudonormals(fins.vertices, fins.triangles).is_on_boundary(2, TriangleFeature::kEdgeAB));
 }
 
 TEST(Pseudonormals, VanishOnSheetsBackToBack) {

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sweep/separation.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 #include <gtest/gtest.h>
 
@@ -59,10 +59,10 @@ TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles)
         const auto& [a, b, c] = triangle;
         SCOPED_TRACE("case " + std::to_string(index) + " of seed " + std::to_string(kSeed));
         const auto true_distance = static_cast<double>(testing::distance(testing::digits(p), triangle));
-        const double claimed = distance_along(direction_away(p, a, b, c), p, a, b, c);
+        const double claimed = distance_lower_bound(separating_direction(p, a, b, c), p, a, b, c);
         ASSERT_FALSE(claimed > true_distance) << claimed / true_distance - 1.0;
         RandomSequence random(kSeed, 2, index);
-        const double by_any_direction = distance_along(random.unit_vector(), p, a, b, c);
+        const double by_any_direction = distance_lower_bound(random.unit_vector(), p, a, b, c);
         ASSERT_FALSE(by_any_direction > true_distance);
         if (!is_plain) continue;
         ++plain;
@@ -78,8 +78,9 @@ TEST(Separation, HoldsBetweenTwoPlacesOfTheSameDirection) {
         const auto& [a, b, c] = triangle;
         RandomSequence random(kSeed, 3, index);
         const Vec3 q = p + length(p - a) * random.unit_vector();
-        const Vec3 direction = direction_away(p, a, b, c);
-        const double bound = std::fmin(distance_along(direction, p, a, b, c), distance_along(direction, q, a, b, c));
+        const Vec3 direction = separating_direction(p, a, b, c);
+        const double bound =
+            std::fmin(distance_lower_bound(direction, p, a, b, c), distance_lower_bound(direction, q, a, b, c));
         const Vec3 between = p + random.uniform() * (q - p);
         const auto true_distance = static_cast<double>(testing::distance(testing::digits(between), triangle));
         ASSERT_FALSE(bound > true_distance * (1.0 + 0x1p-50) + 0x1p-50 * length(p - a))
@@ -98,8 +99,8 @@ TEST(Separation, ClaimsNothingWhereTheDirectionTellsNothing) {
                                 Vec3{1e-200, 0, 1e-200},
                                 Vec3{0, 0, 5e-324},
                                 Vec3{infinite, -infinite, 1}};
-    for (const Vec3& direction : directions) EXPECT_FALSE(distance_along(direction, p, a, b, c) > 0.0);
-    EXPECT_GT(distance_along({0, 0, 1e-100}, p, a, b, c), 2.999);
+    for (const Vec3& direction : directions) EXPECT_FALSE(distance_lower_bound(direction, p, a, b, c) > 0.0);
+    EXPECT_GT(distance_lower_bound({0, 0, 1e-100}, p, a, b, c), 2.999);
 }
 
 }  // namespace

@@ -550,16 +550,16 @@ TEST(SphereSweepClears, NeverDiscardsATriangleThatIsTouched) {
         const auto found = contact_of(s);
         if (!found) continue;
         ++touched;
-        EXPECT_FALSE(SphereSweep(s.path, s.radius).clears(s.triangle[0], s.triangle[1], s.triangle[2]));
+        EXPECT_FALSE(SphereSweep(s.path, s.radius).can_cull(s.triangle[0], s.triangle[1], s.triangle[2]));
     }
     EXPECT_GT(touched, static_cast<int>(kCases));
 }
 
 TEST(SphereSweepClears, DiscardsWhatIsBeyondTheBoxOrThePlane) {
     const SphereSweep sweep(line_path({1, 1, 3}, {0, 0, -1}, 2.0), 0.5);
-    EXPECT_TRUE(sweep.clears(kA, kB, kC));
-    EXPECT_TRUE(sweep.clears(kA + Vec3{2, 0, 0}, kB + Vec3{2, 0, 0}, kC + Vec3{2, 0, 0}));
-    EXPECT_FALSE(SphereSweep(line_path({1, 1, 3}, {0, 0, -1}, 2.6), 0.5).clears(kA, kB, kC));
+    EXPECT_TRUE(sweep.can_cull(kA, kB, kC));
+    EXPECT_TRUE(sweep.can_cull(kA + Vec3{2, 0, 0}, kB + Vec3{2, 0, 0}, kC + Vec3{2, 0, 0}));
+    EXPECT_FALSE(SphereSweep(line_path({1, 1, 3}, {0, 0, -1}, 2.6), 0.5).can_cull(kA, kB, kC));
 }
 
 // Certificates.
@@ -631,11 +631,11 @@ TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOv
         const auto& [a, b, c] = s.triangle;
         const SphereSweep sweep(s.path, s.radius);
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(s.path.c[0], a, b, c);
-        if (sweep.starts_apart_from(a, b, c)) {
+        if (sweep.starts_separated_from(a, b, c)) {
             ASSERT_GT(nearest.distance_squared, s.radius * s.radius);
             ++apart;
         }
-        if (sweep.recedes_from(nearest, a, b, c)) {
+        if (sweep.is_separating_from(nearest, a, b, c)) {
             ASSERT_FALSE(contact_of(s).has_value());
             ++receding;
         }
@@ -656,11 +656,11 @@ TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const auto& [a, b, c] = s.triangle;
         const SphereSweep sweep(s.path, s.radius);
-        const bool is_left = sweep.speed_of_leaving(a, b, c) > 0.0;
-        const bool stays_apart = sweep.stays_apart(a, b, c);
+        const bool is_left = sweep.separating_speed(a, b, c) > 0.0;
+        const bool can_cull_at_end = sweep.can_cull_at_end(a, b, c);
         left += is_left ? 1 : 0;
-        apart += stays_apart ? 1 : 0;
-        if (!is_left && !stays_apart) continue;
+        apart += can_cull_at_end ? 1 : 0;
+        if (!is_left && !can_cull_at_end) continue;
         ASSERT_GT(closest_point_on_triangle(s.path.c[0], a, b, c).distance_squared, s.radius * s.radius);
         ASSERT_FALSE(contact_of(s).has_value());
     }
@@ -680,11 +680,11 @@ TEST(SphereSweep, FindsTheSameBitsWhenNarrowedAndNothingEarlier) {
         const double random = RandomSequence(kSeed, 5, index).uniform();
         const double latest = whole && index % 3 == 0 ? whole->time : random * s.path.duration;
         SphereSweep sweep(s.path, s.radius);
-        sweep.narrow(latest);
+        sweep.shorten_to(latest);
         const auto found = sweep.first_contact(a, b, c);
         if (whole && whole->time <= latest) {
-            ASSERT_FALSE(sweep.clears(a, b, c));
-            ASSERT_FALSE(sweep.stays_apart(a, b, c));
+            ASSERT_FALSE(sweep.can_cull(a, b, c));
+            ASSERT_FALSE(sweep.can_cull_at_end(a, b, c));
             ASSERT_TRUE(found.has_value());
             ++kept;
         }

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -310,11 +310,11 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
                                      : parabola_path(s.p, s.q - s.p, length(s.q - s.p) * random.unit_vector(), 1.0);
         // As the search has it; the second part is for coordinates that safe_position places replace by zero.
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
-        if (!clears_plane_of(path, s.a, s.b, s.c, slack)) continue;
+        if (!stays_on_one_side(path, s.a, s.b, s.c, slack)) continue;
         ++cleared;
         const Vec3 from = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();
         const Vec3 to = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();
-        ASSERT_FALSE(segment_meets_triangle(flush_tiny(from), flush_tiny(to), s.a, s.b, s.c))
+        ASSERT_FALSE(segment_intersects_triangle(flush_tiny(from), flush_tiny(to), s.a, s.b, s.c))
             << testing::description(s);
     }
     EXPECT_GT(cleared, 0);
@@ -322,12 +322,12 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
 
 TEST(TimeOverTriangle, EndsWhereThePathPassesTheRim) {
     const Vec3 up{0, 0, 1};
-    EXPECT_DOUBLE_EQ(time_over_triangle(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0);
-    EXPECT_DOUBLE_EQ(time_over_triangle(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);
-    EXPECT_DOUBLE_EQ(time_over_triangle(line_path({1, 1, 0}, {-1, 0, 0}, 0.25), kA, kB, kC, up, 0.0), 0.25);
-    EXPECT_EQ(time_over_triangle(line_path({-1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.5), 0.0);
+    EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0);
+    EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);
+    EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 0.25), kA, kB, kC, up, 0.0), 0.25);
+    EXPECT_EQ(triangle_exit_time(line_path({-1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.5), 0.0);
     const Path braking = parabola_path({1, 1, 0}, {0, 2, 0}, {0, -2, 0}, 2.0);  // turns at y = 2, before the rim at 3
-    EXPECT_DOUBLE_EQ(time_over_triangle(braking, kA, kB, kC, up, 0.0), 2.0);
+    EXPECT_DOUBLE_EQ(triangle_exit_time(braking, kA, kB, kC, up, 0.0), 2.0);
 }
 
 TEST(SignedDistance, HasTheRightSignAndSizeNextToThePlane) {

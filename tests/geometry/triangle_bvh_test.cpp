@@ -20,7 +20,7 @@ namespace {
 
 std::vector<std::uint32_t> visited(const TriangleBvh& bvh, const Vec3& from, const Vec3& to) {
     std::vector<std::uint32_t> triangles;
-    bvh.visit(from, to, [&](std::uint32_t triangle) {
+    bvh.query_segment(from, to, [&](std::uint32_t triangle) {
         triangles.push_back(triangle);
         return 1.0;
     });
@@ -33,7 +33,7 @@ void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec
     const std::vector<std::uint32_t> seen = visited(bvh, from, to);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto& [a, b, c] = mesh.triangles[t];
-        if (!segment_meets_triangle(from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
+        if (!segment_intersects_triangle(from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
         ++met;
         ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << "triangle " << t;
     }
@@ -139,7 +139,7 @@ TEST(TriangleBvh, VisitsWhatComesWithinTheReachAndTheSlack) {
     for (const double reach_of_boxes : {0.0, 1e-3, 0.1}) {
         SCOPED_TRACE(reach_of_boxes);
         const TriangleBvh bvh(mesh.vertices, mesh.triangles, reach_of_boxes);
-        EXPECT_EQ(bvh.reach(), reach_of_boxes);
+        EXPECT_EQ(bvh.margin(), reach_of_boxes);
         const double reach = reach_of_boxes + bvh.slack();
         RandomSequence random(4, 0, 0);
         int near = 0;
@@ -175,9 +175,9 @@ TEST(TriangleBvh, NarrowingLosesNothingInFrontOfIt) {
         const auto fraction_of = [&](std::uint32_t t) {
             const auto& [a, b, c] = mesh.triangles[t];
             const Vec3 &pa = mesh.vertices[a], &pb = mesh.vertices[b], &pc = mesh.vertices[c];
-            return segment_meets_triangle(from, to, pa, pb, pc) ? crossing_fraction(from, to, pa, pb, pc) : 2.0;
+            return segment_intersects_triangle(from, to, pa, pb, pc) ? crossing_fraction(from, to, pa, pb, pc) : 2.0;
         };
-        bvh.visit(from, to, [&](std::uint32_t t) {
+        bvh.query_segment(from, to, [&](std::uint32_t t) {
             first = std::min(first, fraction_of(t));
             return std::min(first, 1.0);
         });
@@ -225,7 +225,7 @@ TEST(TriangleBvh, LooksAtFewTrianglesOfALargeMesh) {
 
 std::vector<std::uint32_t> visited_near(const TriangleBvh& bvh, const Vec3& p, double within) {
     std::vector<std::uint32_t> triangles;
-    bvh.visit_near(p, within, [&](std::uint32_t triangle) {
+    bvh.query_point(p, within, [&](std::uint32_t triangle) {
         triangles.push_back(triangle);
         return within;
     });
@@ -288,7 +288,7 @@ TEST(TriangleBvh, NarrowingToTheNearestSoFarFindsTheNearestAndAllItsTies) {
         const Vec3 p = i % 2 == 0 ? (1.0 + 0.3 * random.uniform()) * corner : 2.0 * random.in_unit_ball();
         std::vector<double> seen;
         double nearest = HUGE_VAL;
-        bvh.visit_near(p, HUGE_VAL, [&](std::uint32_t t) {
+        bvh.query_point(p, HUGE_VAL, [&](std::uint32_t t) {
             seen.push_back(distance_of(mesh, t, p));
             return nearest = std::min(nearest, seen.back());
         });
@@ -330,7 +330,7 @@ TEST(TriangleBvh, LooksAtFewTrianglesAroundAPoint) {
         const Vec3 p = 1.01 * random.unit_vector();
         within_reach += visited_near(bvh, p, 0.02).size();
         double nearest = HUGE_VAL;
-        bvh.visit_near(p, HUGE_VAL, [&](std::uint32_t t) {
+        bvh.query_point(p, HUGE_VAL, [&](std::uint32_t t) {
             ++narrowed;
             return nearest = std::min(nearest, distance_of(mesh, t, p));
         });

@@ -62,7 +62,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
         const Vec3 shift = aimed * (1.0 - aimed) * curve;
         const Tube tube(from + shift, to + shift, margin, curve);
         for (const TriangleCluster& cluster : clusters) {
-            TubeStretches stretches;
+            TubeIntervals stretches;
             const unsigned bits = cluster.near(tube, stretches);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if (cluster.triangle[lane] == kNoTriangle) continue;
@@ -94,7 +94,7 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     const std::vector<TriangleCluster> clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
         for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
-            TubeStretches stretches;
+            TubeIntervals stretches;
             EXPECT_EQ(clusters[0].near(Tube({}, size * direction, 1e-12), stretches), 1U) << size;
         }
     }
@@ -111,7 +111,7 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
         const Vec3 to = random.in_unit_ball();
         const Tube tube(from, to, 1e-9);
         for (const TriangleCluster& cluster : clusters) {
-            TubeStretches stretches;
+            TubeIntervals stretches;
             const unsigned bits = cluster.near(tube, stretches);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if ((bits & (1U << lane)) == 0) continue;

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sweep/triangle_plane.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/segment_triangle_cases.h"
@@ -34,8 +34,8 @@ TEST(TrianglePlane, DecidesAsTheExactOracleDoes) {
         const TrianglePlane plane(s.a, s.b, s.c);
         const int side = testing::sign_of(testing::exact_orient3d(s.a, s.b, s.c, s.p));
         ASSERT_EQ(plane.side(s.p), side);
-        ASSERT_TRUE(plane.likely_side(s.p) == side || plane.likely_side(s.p) == 0);
-        ASSERT_EQ(plane.is_met_by(s.p, s.q), testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c));
+        ASSERT_TRUE(plane.filtered_side(s.p) == side || plane.filtered_side(s.p) == 0);
+        ASSERT_EQ(plane.intersects_segment(s.p, s.q), testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c));
     });
 }
 

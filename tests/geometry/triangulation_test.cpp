@@ -12,7 +12,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
-#include "ricochet/geometry/predicates/orient2d.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 
 namespace ricochet {

@@ -9,7 +9,7 @@
 
 #include "io/sample_scene.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh/placed_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "support/counts.h"
 
 namespace ricochet {

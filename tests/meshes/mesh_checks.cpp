@@ -47,8 +47,8 @@ bool edge_meets(const TriangleMesh& mesh, const Triangle& from, const Triangle& 
         const std::uint32_t a = from[corner];
         const std::uint32_t b = from[(corner + 1) % 3];
         if (uses(other, a) || uses(other, b)) continue;
-        if (segment_meets_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[other[0]], mesh.vertices[other[1]],
-                                   mesh.vertices[other[2]])) {
+        if (segment_intersects_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[other[0]],
+                                        mesh.vertices[other[1]], mesh.vertices[other[2]])) {
             return true;
         }
     }

@@ -65,7 +65,7 @@ TEST(PenaltySpring, RestitutionHasTheKnownLimits) {
     }
     EXPECT_EQ(damping_ratio(1.0), 0.0);
     EXPECT_NEAR(damping_ratio(std::exp(-2.0)), 1.0, 1e-12);
-    EXPECT_EQ(damping_ratio(0.0), damping_ratio(kLeastPenaltyRestitution));
+    EXPECT_EQ(damping_ratio(0.0), damping_ratio(kMinPenaltyRestitution));
     // e = 1 - pi zeta + O(zeta^2)
     EXPECT_NEAR((1.0 - restitution_of_damping(1e-6)) / 1e-6, kPi, 1e-5);
 }

@@ -8,8 +8,8 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/shapes/shape_mesh.h"
 
 namespace ricochet {
 namespace {
@@ -311,18 +311,18 @@ double CollisionWorld::time_over(SurfaceId surface, const Path& path, double sla
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind != Kind::mesh) return path.duration;
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
-    return time_over_triangle(path, a, b, c, unit_normal(a, b, c), slack);
+    return triangle_exit_time(path, a, b, c, unit_normal(a, b, c), slack);
 }
 
 bool CollisionWorld::segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.kind == Kind::shape) return !shapes_[range.index].shape.segment_is_free(p, q);
+    if (range.kind == Kind::shape) return !shapes_[range.index].shape.segment_is_clear(p, q);
     if (range.kind == Kind::plane) {
         const Plane& plane = planes_[range.index].plane;
         return side_of(plane, p) * side_of(plane, q) <= 0;
     }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
-    return segment_meets_triangle(p, q, a, b, c);
+    return segment_intersects_triangle(p, q, a, b, c);
 }
 
 std::size_t CollisionWorld::surface_count_of(std::size_t collider) const {

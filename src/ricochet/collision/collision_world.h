@@ -14,7 +14,7 @@
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/geometry/shapes/analytic_shape.h"
 #include "ricochet/geometry/sweep/closest_point.h"
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
 
@@ -124,7 +124,7 @@ public:
     [[nodiscard]] bool is_flat(SurfaceId surface) const { return ranges_[collider_of(surface)].kind != Kind::shape; }
     /// Exact side of a surface's plane: +1 where its normal points to, -1 behind, 0 in the plane.
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
-    /// Time that a path along a surface stays over it, see time_over_triangle(); the whole duration for a plane.
+    /// Time that a path along a surface stays over it, see triangle_exit_time(); the whole duration for a plane.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
     /// Exact: does the closed segment [p, q] meet the surface?
     [[nodiscard]] bool segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const;

@@ -5,7 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/sweep/separation.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet {
 namespace {
@@ -84,7 +84,7 @@ void ContactSearch::begin(const Path& path, double radius) {
     sphere_.reset();
     if (radius > 0.0) sphere_.emplace(path, radius);
     bvh_ = &world_.bvh_for(radius);
-    bulge_ = bvh_->reach() - radius;
+    bulge_ = bvh_->margin() - radius;
     largest_ = largest;
     all_triangles_ = false;
     free_until_ = candidates_until_ = 0.0;
@@ -124,7 +124,7 @@ void ContactSearch::look_past_planes_and_shapes(const LookAhead& look_ahead) {
         free_until_ = std::min(free_until_, time_free_of_plane(look_ahead.path, plane, margin));
     }
     for (const auto& [shape, surface] : world_.shapes()) {
-        while (free_until_ >= look_ahead.least && !shape.clears(shortened(look_ahead.path, free_until_), margin)) {
+        while (free_until_ >= look_ahead.least && !shape.can_cull(shortened(look_ahead.path, free_until_), margin)) {
             free_until_ *= 0.5;
         }
     }
@@ -190,7 +190,7 @@ void ContactSearch::look_along_stretch(const Path& path, const LookAhead& look_a
     const double span = to - from;
     const Tube tube(look_ahead.path.position(from), look_ahead.path.position(to), margin_of(look_ahead, to),
                     span * span * look_ahead.path.c[2]);
-    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
+    bvh_->query_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
         if (!world_.is_left_out(triangle)) {
             const bool is_near = from + enter * span <= path.duration;
             const double speed = is_near ? look_at_triangle(path, triangle) : 0.0;
@@ -243,8 +243,8 @@ double ContactSearch::time_of_approach(std::uint32_t triangle, const LookAhead& 
     double time = enter;
     for (int look = 0; look < kLooksAtDistance && time <= last; ++look) {
         const Vec3 place = path.position(time);
-        const Vec3 away = direction_away(place, a, b, c);
-        const double distance = distance_along(away, place, a, b, c);
+        const Vec3 away = separating_direction(place, a, b, c);
+        const double distance = distance_lower_bound(away, place, a, b, c);
         if (!(distance > near)) break;
         const double approach = -std::min(dot(away, path.velocity(time)), dot(away, last_velocity)) / length(away);
         if (!(approach > 0.0)) return std::numeric_limits<double>::infinity();
@@ -270,7 +270,7 @@ void ContactSearch::note(const ContactScratch::Found& found) {
     scratch_.found.push_back(found);
     if (!(found.time < first_time_)) return;
     first_time_ = found.time;
-    if (sphere_) sphere_->narrow(latest_with(first_time_));
+    if (sphere_) sphere_->shorten_to(latest_with(first_time_));
 }
 
 void ContactSearch::note_overlap(SurfaceId surface, double distance) {
@@ -281,7 +281,7 @@ void ContactSearch::search_planes(const Path& path) {
     const auto planes = world_.planes();
     for (std::uint32_t k = 0; k < planes.size(); ++k) {
         const auto& [plane, surface] = planes[k];
-        if (clears_plane(path, plane, radius_ + slack_)) continue;
+        if (stays_on_one_side(path, plane, radius_ + slack_)) continue;
         scratch_.planes.push_back(k);
         if (radius_ == 0.0) {
             if (const auto crossing = first_crossing(path, plane))
@@ -298,7 +298,7 @@ void ContactSearch::search_shapes(const Path& path) {
     const auto shapes = world_.shapes();
     for (std::uint32_t k = 0; k < shapes.size(); ++k) {
         const auto& [shape, surface] = shapes[k];
-        if (shape.clears(path, radius_ + slack_)) continue;
+        if (shape.can_cull(path, radius_ + slack_)) continue;
         scratch_.shapes.push_back(k);
         if (radius_ > 0.0) note_overlap(surface, std::fabs(shape.closest_point(start_).distance));
         const auto contact = shape.first_contact(path, radius_);
@@ -357,7 +357,7 @@ void ContactSearch::search_triangles(const Path& path, double from, double to, i
     const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
     const double margin = margin_of(path) + beside_piece;
     const Tube tube(path.position(from), path.position(to), margin, is_parabola ? span * span * path.c[2] : Vec3{});
-    bvh_->visit_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
+    bvh_->query_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
         (void)look_at_triangle(path, triangle);
         return first_time_ < to ? std::max(0.0, (first_time_ - from) / span) : 1.0;
     });
@@ -378,7 +378,7 @@ double ContactSearch::look_at_triangle(const Path& path, std::uint32_t triangle)
 
 void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
     const TrianglePlane& plane = plane_of(triangle);
-    if (clears_plane_of(path, plane, slack_)) return;
+    if (stays_on_one_side(path, plane, slack_)) return;
     scratch_.triangles.push_back(triangle);
     const auto crossing = first_crossing(path, plane, latest_with(first_time_));
     if (crossing) note({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
@@ -386,21 +386,21 @@ void ContactSearch::look_with_point(const Path& path, std::uint32_t triangle) {
 
 double ContactSearch::look_with_sphere(std::uint32_t triangle) {
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (sphere_->clears(a, b, c)) return 0.0;
-    const bool starts_near = !sphere_->starts_apart_from(a, b, c);
-    const double speed = starts_near ? sphere_->speed_of_leaving(a, b, c) : 0.0;
-    if (sphere_->stays_apart(a, b, c)) return speed;
+    if (sphere_->can_cull(a, b, c)) return 0.0;
+    const bool starts_near = !sphere_->starts_separated_from(a, b, c);
+    const double speed = starts_near ? sphere_->separating_speed(a, b, c) : 0.0;
+    if (sphere_->can_cull_at_end(a, b, c)) return speed;
     scratch_.triangles.push_back(triangle);
     if (speed > 0.0) return speed;
     const SurfaceId surface = world_.surface_of_triangle(triangle);
     if (starts_near) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(start_, a, b, c);
         note_overlap(surface, std::sqrt(nearest.distance_squared));
-        if (sphere_->recedes_from(nearest, a, b, c)) {
+        if (sphere_->is_separating_from(nearest, a, b, c)) {
             return dot(nearest.offset, sphere_->path().c[1]) / std::sqrt(nearest.distance_squared);
         }
     }
-    const auto contact = sphere_->first_contact_nearby(plane_of(triangle));
+    const auto contact = sphere_->narrow_phase_contact(plane_of(triangle));
     if (contact) note({contact->time, surface, 0, contact->feature == TriangleFeature::kFace, contact->normal});
     return 0.0;
 }
@@ -471,15 +471,15 @@ bool ContactSearch::plane_blocks(const CollisionWorld::PlaneSurface& plane, cons
 }
 
 bool ContactSearch::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
-    if (!shape.shape.segment_is_free(p, q)) return true;
+    if (!shape.shape.segment_is_clear(p, q)) return true;
     if (radius_ == 0.0 || is_overlapped(shape.surface)) return false;
-    return shape.shape.distance_of_segment(p, q) < radius_ - tolerance_;
+    return shape.shape.distance_to_segment(p, q) < radius_ - tolerance_;
 }
 
 bool ContactSearch::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
-    if (radius_ == 0.0) return plane_of(triangle).is_met_by(p, q);
+    if (radius_ == 0.0) return plane_of(triangle).intersects_segment(p, q);
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
-    if (segment_meets_triangle(p, q, a, b, c)) return true;
+    if (segment_intersects_triangle(p, q, a, b, c)) return true;
     if (sphere_segment_is_clear(p, q, radius_, tolerance_, a, b, c)) return false;
     return !is_overlapped(world_.surface_of_triangle(triangle));
 }

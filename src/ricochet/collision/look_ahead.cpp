@@ -62,7 +62,7 @@ double time_clear_of_field(const Path& path, const DistanceField& grid, double m
     const double bend = 2.0 * length(path.c[2]);
     double time = from;
     for (int stride = 0; stride < kMostTracingSteps && time < path.duration; ++stride) {
-        const double room = grid.at(path.position(time)) - margin;
+        const double room = grid.lower_bound(path.position(time)) - margin;
         if (!(room > 0.0)) break;
         const double speed = length(path.velocity(time));
         const double way = speed + std::sqrt(speed * speed + 2.0 * bend * room);

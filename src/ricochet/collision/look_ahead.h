@@ -8,7 +8,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/acceleration/distance_field.h"
 #include "ricochet/geometry/sweep/path.h"
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
 

@@ -39,7 +39,7 @@ void Obstacles::for_each_blocker(const Vec3& to, Found&& found) const {
         if (blocks(shape.surface, to) && !found(shape.surface)) return;
     }
     if (world_.triangles().empty()) return;
-    bvh_.visit(from_, to, [&](std::uint32_t triangle) {
+    bvh_.query_segment(from_, to, [&](std::uint32_t triangle) {
         if (world_.is_left_out(triangle)) return 1.0;
         const SurfaceId surface = world_.surface_of_triangle(triangle);
         return blocks(surface, to) && !found(surface) ? 0.0 : 1.0;

@@ -66,7 +66,7 @@ std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
 template <class Visit>
 void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) const {
     if (world_.culls()) {
-        world_.bvh_for(0.0).visit_near(p, within, visit);
+        world_.bvh_for(0.0).query_point(p, within, visit);
         return;
     }
     for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) (void)visit(triangle);
@@ -196,7 +196,7 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& can
     found.side = mesh.normals.side(triangle, nearest, p);
     found.surface = world_.surface_of_triangle(candidate.triangle);
     found.collider = mesh.collider;
-    found.on_rim = mesh.normals.is_on_rim(triangle, nearest.feature);
+    found.on_rim = mesh.normals.is_on_boundary(triangle, nearest.feature);
     return if_within(found, within);
 }
 
@@ -267,7 +267,7 @@ void SignedDistance::visit_met(std::uint32_t collider, const Vec3& p, const Vec3
         return goes_on ? 1.0 : 0.0;
     };
     if (world_.culls()) {
-        world_.bvh_for(0.0).visit(p, q, visit);
+        world_.bvh_for(0.0).query_segment(p, q, visit);
     } else {
         for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle && goes_on; ++t) (void)visit(t);
     }

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/geometry/sweep/triangle_plane.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 
 namespace ricochet {
 

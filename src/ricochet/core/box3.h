@@ -2,6 +2,8 @@
 /// Axis-aligned box.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "ricochet/core/vec3.h"
@@ -32,5 +34,37 @@ struct Box3 {
     /// Length of the space diagonal; 0 when empty.
     [[nodiscard]] double diagonal() const { return empty() ? 0.0 : length(size()); }
 };
+
+/// The lowest 21 bits of x with two zero bits between neighbours.
+[[nodiscard]] constexpr std::uint64_t spread_bits(std::uint64_t x) {
+    x = (x | x << 32U) & 0x001F00000000FFFFULL;
+    x = (x | x << 16U) & 0x001F0000FF0000FFULL;
+    x = (x | x << 8U) & 0x100F00F00F00F00FULL;
+    x = (x | x << 4U) & 0x10C30C30C30C30C3ULL;
+    return (x | x << 2U) & 0x1249249249249249ULL;
+}
+
+/// The cell of a point among 2^21 an axis of the box, 63 bits; points outside belong to the nearest cell, any number
+/// will do for places that are no numbers.
+[[nodiscard]] inline std::uint64_t morton_code(const Vec3& p, const Box3& box) {
+    constexpr double kCells = 1 << 21;
+    const Vec3 size = box.size();
+    const auto cell = [&](int axis) {
+        const double place = (p[axis] - box.lower[axis]) / size[axis] * kCells;
+        return place > 0.0 ? static_cast<std::uint64_t>(std::min(place, kCells - 1.0)) : 0U;
+    };
+    return spread_bits(cell(0)) | spread_bits(cell(1)) << 1U | spread_bits(cell(2)) << 2U;
+}
+
+/// A number to sort by: as much of the code as leaves room for an index below 2^index_bits, then the index.
+[[nodiscard]] inline std::uint64_t morton_key(const Vec3& p, const Box3& box, std::uint32_t index,
+                                              unsigned index_bits) {
+    return morton_code(p, box) << 1U >> index_bits << index_bits | index;
+}
+
+/// The index that a key ends with.
+[[nodiscard]] constexpr std::uint32_t index_of_key(std::uint64_t key, unsigned index_bits) {
+    return static_cast<std::uint32_t>(key & ((std::uint64_t{1} << index_bits) - 1U));
+}
 
 }  // namespace ricochet

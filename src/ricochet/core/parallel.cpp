@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ricochet/core/hand_over.h"
+#include "ricochet/core/thread_sanitizer.h"
 
 namespace ricochet {
 

@@ -3,6 +3,9 @@
 /// borders depend on the amount of work only.
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -43,5 +46,61 @@ void parallel_sort(std::vector<std::uint64_t>& values);
 
 /// The thread library's version, for `--version` and reports.
 [[nodiscard]] const char* tbb_version();
+
+/// A 128-bit two's complement integer counter of `unit`s. Terms are rounded to the unit when they are added; everything
+/// after that is exact, so the total depends on the set of terms alone. Terms beyond 2^126 units and NaN are refused
+/// (the caller is told), totals wrap beyond 2^127 units.
+class FixedPointSum {
+public:
+    /// Adds a term; thread-safe. Returns false, and adds nothing, when the term cannot be represented.
+    bool add(double term, double unit) {
+        const double scaled = term / unit;
+        if (!(std::fabs(scaled) < 0x1p126)) return false;
+        // The magnitude, split into a multiple of 2^64 and the rest, each exact; then its two's complement.
+        const double magnitude = std::nearbyint(std::fabs(scaled));
+        const double high_part = std::floor(magnitude * 0x1p-64);
+        auto high = static_cast<std::uint64_t>(high_part);
+        auto low = static_cast<std::uint64_t>(magnitude - high_part * 0x1p64);
+        if (scaled < 0.0) {
+            low = ~low + 1;
+            high = ~high + (low == 0 ? 1 : 0);
+        }
+        add_words(low, high);
+        return true;
+    }
+    /// The total; not while others are adding.
+    [[nodiscard]] double value(double unit) const {
+        std::uint64_t high = high_.load(std::memory_order_relaxed);
+        std::uint64_t low = low_.load(std::memory_order_relaxed);
+        const bool negative = (high >> 63) != 0;
+        if (negative) {  // as magnitude and sign, so that nothing cancels
+            low = ~low + 1;
+            high = ~high + (low == 0 ? 1 : 0);
+        }
+        const double magnitude = static_cast<double>(high) * 0x1p64 + static_cast<double>(low);
+        return (negative ? -magnitude : magnitude) * unit;
+    }
+
+    /// The counter itself, low word first; not while others are adding.
+    [[nodiscard]] std::array<std::uint64_t, 2> words() const {
+        return {low_.load(std::memory_order_relaxed), high_.load(std::memory_order_relaxed)};
+    }
+    void set_words(const std::array<std::uint64_t, 2>& words) {
+        low_.store(words[0], std::memory_order_relaxed);
+        high_.store(words[1], std::memory_order_relaxed);
+    }
+
+private:
+    static std::uint64_t carry_of(std::uint64_t a, std::uint64_t b) { return a + b < a ? 1 : 0; }
+
+    void add_words(std::uint64_t low, std::uint64_t high) {
+        const std::uint64_t before = low_.fetch_add(low, std::memory_order_relaxed);
+        const std::uint64_t carried = high + carry_of(before, low);
+        if (carried != 0) high_.fetch_add(carried, std::memory_order_relaxed);
+    }
+
+    std::atomic<std::uint64_t> low_{0};
+    std::atomic<std::uint64_t> high_{0};
+};
 
 }  // namespace ricochet

@@ -39,22 +39,22 @@ inline constexpr double kTouchingOffsets = 8.0;
 /// Times that a particle is projected out of what it is behind in one step; after that it goes back to where it came
 /// from. Reason: in a corner of several colliders one projection leads behind the next. Smaller: corners stop particles
 /// more often. Larger: sharp wedges cost more queries.
-inline constexpr int kMostProjections = 16;
+inline constexpr int kMaxProjections = 16;
 
 /// Restitution that a spring and damper can do at least: less would need damping without bound, which no step can
 /// follow. Smaller: the stability bound of dead surfaces shrinks with its root. Larger: they bounce more.
-inline constexpr double kLeastPenaltyRestitution = 0.01;
+inline constexpr double kMinPenaltyRestitution = 0.01;
 
 /// Ways of one time tolerance within which a particle that has gone back to a collision counts as touching the surface.
 /// Reason: bisection leaves it up to one such way off. Smaller than 1: resting contact falls and lands in every step.
 /// Larger: particles rest on air that much further off.
-inline constexpr double kBracketsOfTouch = 2.0;
+inline constexpr double kTouchBrackets = 2.0;
 
 /// Contacts in a row, pressed on and all slower than the resting speed or without time between them, after which a
 /// particle comes to rest for the step. Reason: in a pit of four or more faces a sliding particle circles into the apex
 /// in infinitely many ever shorter stretches. Smaller: slow sliding over many tiny triangles is cut short. Larger:
 /// circling costs more contacts a step.
-inline constexpr int kMostSlowContacts = 32;
+inline constexpr int kMaxSlowContacts = 32;
 
 /// One minus the cosine of the angle between normals below which two surfaces touched together count as one plane.
 /// Smaller: coplanar triangles take up the three places for touched surfaces. Larger: a blunt corner counts as flat.
@@ -81,23 +81,23 @@ inline constexpr double kContactMismatch = 1e-9;
 
 /// Angle, rad, by which the direction of sliding or of slip may turn in one stretch: friction keeps its direction
 /// over a stretch. Smaller: more stretches (each costs a query). Larger: where a slide ends depends on the time step.
-inline constexpr double kHeadingTurn = 0.05;
+inline constexpr double kMaxHeadingTurn = 0.05;
 
 /// Angle, rad, by which a particle turns around a rim or a curved surface in one straight stretch of sliding or
 /// rolling. Smaller: more stretches (each costs a query). Larger: it leaves the surface by more (angle^2 / 2 of the
 /// bend's radius) before it falls back.
-inline constexpr double kStretchAngle = 0.01;
+inline constexpr double kMaxChordAngle = 0.01;
 
 /// Distance, relative to the largest coordinate involved, that is left beside a way that is foreseen for many steps.
-/// Reason: it covers kCandidateSlack and the rounding of kMostLookAheadSteps steps, each of some 2^-52 for the place
+/// Reason: it covers kCandidateSlack and the rounding of kMaxLookAheadSteps steps, each of some 2^-52 for the place
 /// and as much again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could be taken
 /// past a surface that the search would have found. Larger: particles near surfaces are searched for more often.
 inline constexpr double kLookAheadSlack = 0x1p-36;
 
 /// Steps that a particle may go on without a new search, straight on and along a parabola. Larger: kLookAheadSlack must
 /// grow with the first; with the second the slack is taken of a longer way than boxes let one look along.
-inline constexpr int kMostLookAheadSteps = 4096;
-inline constexpr int kMostLookAheadStepsCurved = 256;
+inline constexpr int kMaxLookAheadSteps = 4096;
+inline constexpr int kMaxLookAheadStepsCurved = 256;
 
 /// By how much paths may leave the chords that the broad phase is asked about, in parts of the mean triangle's box: as
 /// a rule, and where particles look ahead along parabolas, for which it decides how far. Smaller: more chords for a
@@ -163,7 +163,7 @@ inline constexpr double kSeamSlack = 0x1p-48;
 /// A sphere that already overlaps a surface counts as approaching only when the distance shrinks faster than this
 /// fraction of its speed. Reason: a velocity along the surface has a normal component of rounding errors, which must
 /// not be stopped again and again. Larger: a sphere that overlaps at birth can sink in by that fraction of its path.
-inline constexpr double kSlowestApproach = 0x1p-48;
+inline constexpr double kMinApproach = 0x1p-48;
 
 /// Rounding of a pseudonormal, relative to the sum of the weights of the normals it is the mean of, and of its scalar
 /// product with a unit vector: a few roundings of 2^-50 and one of 2^-53 for each of some hundred triangles around a
@@ -199,13 +199,13 @@ inline constexpr double kNegligibleStretch = 1e-6;
 
 /// Speed that no particle may be brought to, m/s: that of light (exact by the definition of the metre). Forces that do
 /// so are wrong or the step is too long for them; the run stops. Particles that start faster are let be.
-inline constexpr double kFastestSpeed = 299792458.0;
+inline constexpr double kMaxSpeed = 299792458.0;
 
 /// SafePosition gaps by which a particle may slide beyond a triangle's rim before it leaves that triangle. Reason: at a
 /// gap above one face of a blunt valley the other face is met only 1 / slope gaps beyond the edge, and both must then
 /// hold. Smaller: particles zigzag in blunt valleys until their budget is spent. Larger: they slide on air beyond
 /// convex edges by that distance (some 1e-12 of the coordinates).
-inline constexpr double kRimOffsets = 256.0;
+inline constexpr double kEdgeOffsets = 256.0;
 
 /// Largest coordinate a mesh or plane may have, m, and largest state a particle may reach before it is frozen.
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.

@@ -8,7 +8,6 @@
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
-#include "ricochet/geometry/predicates/orient2d.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "ricochet/core/algorithms.h"
 #include "ricochet/core/error.h"
-#include "ricochet/core/reserve_more.h"
 
 namespace ricochet {
 
@@ -71,7 +71,7 @@ void AttributeTable::append(std::span<const AttributeValue> values) {
 
 void AttributeTable::reserve(std::size_t more) {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-        reserve_more(values_[k], more * static_cast<std::size_t>(columns_[k].components));
+        grow_capacity_by(values_[k], more * static_cast<std::size_t>(columns_[k].components));
     }
 }
 
@@ -163,27 +163,27 @@ void Particles::append(const Particle& particle) {
 }
 
 void Particles::reserve(std::size_t more) {
-    reserve_more(id, more);
-    reserve_more(position, more);
-    reserve_more(velocity, more);
-    reserve_more(spin, more);
-    reserve_more(mass, more);
-    reserve_more(radius, more);
-    reserve_more(birth_time, more);
-    reserve_more(lifetime, more);
-    reserve_more(unsimulated_time, more);
-    reserve_more(contacts, more);
-    reserve_more(frozen, more);
-    reserve_more(resting, more);
-    reserve_more(held, more);
-    reserve_more(absorbed, more);
-    reserve_more(draws, more);
-    reserve_more(support, more);
-    reserve_more(cascade_left, more);
-    reserve_more(pinned, more);
-    reserve_more(accounted_until, more);
+    grow_capacity_by(id, more);
+    grow_capacity_by(position, more);
+    grow_capacity_by(velocity, more);
+    grow_capacity_by(spin, more);
+    grow_capacity_by(mass, more);
+    grow_capacity_by(radius, more);
+    grow_capacity_by(birth_time, more);
+    grow_capacity_by(lifetime, more);
+    grow_capacity_by(unsimulated_time, more);
+    grow_capacity_by(contacts, more);
+    grow_capacity_by(frozen, more);
+    grow_capacity_by(resting, more);
+    grow_capacity_by(held, more);
+    grow_capacity_by(absorbed, more);
+    grow_capacity_by(draws, more);
+    grow_capacity_by(support, more);
+    grow_capacity_by(cascade_left, more);
+    grow_capacity_by(pinned, more);
+    grow_capacity_by(accounted_until, more);
     attributes.reserve(more);
-    if (keeps_origin) reserve_more(origin, more);
+    if (keeps_origin) grow_capacity_by(origin, more);
 }
 
 Particle Particles::at(std::size_t i) const {

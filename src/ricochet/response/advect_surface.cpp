@@ -31,7 +31,7 @@ Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     const CollisionWorld& world = rules_.world;
     Path of_contact_point = path;
     of_contact_point.c[0] -= state_.radius * support.normal;
-    const double reach = kRimOffsets * contact_offset(state_.position);
+    const double reach = kEdgeOffsets * contact_offset(state_.position);
     const double on = world.time_over(support.surface, of_contact_point, reach);
     if (on < path.duration) {
         path.end = path.position(on);
@@ -52,7 +52,7 @@ Path Advector::stretch_on_flat(const ContactSurface& support, Path path) const {
     return path;
 }
 
-/// A straight stretch that turns by at most kStretchAngle: a tangent where the surface bends away, from whose end the
+/// A straight stretch that turns by at most kMaxChordAngle: a tangent where the surface bends away, from whose end the
 /// flow presses the particle on again; a chord where it bends towards the particle.
 Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const {
     const CollisionWorld& world = rules_.world;
@@ -61,7 +61,7 @@ Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const
     const Vec3 along = path.c[1];
     const double speed = length(along);
     double duration = path.duration;
-    if (speed > 0.0) duration = std::min(duration, kStretchAngle * bend / speed);
+    if (speed > 0.0) duration = std::min(duration, kMaxChordAngle * bend / speed);
     if (duration < path.duration) {
         path.end = path.position(duration);
         path.duration = duration;
@@ -93,7 +93,7 @@ std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
     // Half of what a stretch goes beyond the rim, so that at its end the surface is surely left.
     const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
     if (std::fabs(nearest.distance - state_.radius) >
-        (beside_rim ? 0.5 * kRimOffsets / kTouchingOffsets : 1.0) * reach) {
+        (beside_rim ? 0.5 * kEdgeOffsets / kTouchingOffsets : 1.0) * reach) {
         return std::nullopt;
     }
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};

@@ -17,11 +17,11 @@ void brake(Stretch& stretch, double speed, double braking) {
     stretch.stops = true;
 }
 
-/// Time until what points along a unit `heading` at `speed`, and is pulled by `along`, has turned by kHeadingTurn.
+/// Time until what points along a unit `heading` at `speed`, and is pulled by `along`, has turned by kMaxHeadingTurn.
 double time_to_turn(const Vec3& along, const Vec3& heading, double speed, const Grip& grip, double duration) {
     const double across = length(along - dot(along, heading) * heading);
-    if (across * duration <= kHeadingTurn * speed) return duration;
-    return std::min(duration, std::max(grip.shortest, kHeadingTurn * speed / across));
+    if (across * duration <= kMaxHeadingTurn * speed) return duration;
+    return std::min(duration, std::max(grip.shortest, kMaxHeadingTurn * speed / across));
 }
 
 /// With constant pull and friction f > |pull| a point stops after (f v + pull . v) / (f^2 - pull^2): the derivative of

@@ -41,7 +41,7 @@ inline constexpr double kShortestStretches = 32.0;
 /// Plans the contact of a particle under acceleration a with planes of the given unit normals (at most three), for at
 /// most `duration` seconds: velocity and acceleration lose what presses into the planes, friction holds, brakes the
 /// slip, or keeps a sphere rolling (5/7 of the acceleration) where it grips enough for that. Friction keeps its
-/// direction over a stretch, so stretches end before it has turned by kHeadingTurn. Against several planes at once a
+/// direction over a stretch, so stretches end before it has turned by kMaxHeadingTurn. Against several planes at once a
 /// sphere is braked like a point, its spin left alone.
 [[nodiscard]] Stretch plan_stretch(const Motion& motion, double radius, const Vec3& a, std::span<const Vec3> normals,
                                    const Grip& grip, double duration);

@@ -67,7 +67,7 @@ std::optional<LookAhead> Mover::look_ahead_of(const Flight& flight) const {
                              remaining_ <= kWholeStep * time_step;
     if (!is_foreseen) return std::nullopt;
     const double acceleration = length(flight.acceleration);
-    const int steps = acceleration == 0.0 ? kMostLookAheadSteps : kMostLookAheadStepsCurved;
+    const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
     const double left = rules_.settings.end - (state_.time + remaining_);  // of the run, after this step
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining_ + std::min(steps * time_step, left + time_step);
@@ -75,7 +75,7 @@ std::optional<LookAhead> Mover::look_ahead_of(const Flight& flight) const {
                          remaining_ + time_step, kWholeStep * time_step};
     const double speed = length(flight.end_velocity) + acceleration * duration;
     const double largest = max_abs(flight.path.end) + speed * duration + state_.radius;
-    if (!(largest < kLargestCoordinate) || !(speed < kFastestSpeed)) return std::nullopt;
+    if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
     const double clocks = 4.0 * ulp(state_.time + duration) * speed;  // steps are as long as the clock's times say
     look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
     return look_ahead;

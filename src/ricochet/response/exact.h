@@ -6,7 +6,7 @@
 /// What it guarantees: the chain of positions a particle is moved through crosses no surface, exactly; spheres overlap
 /// nothing by more than sphere_tolerance(); the time of impact is accurate to rounding on the path.
 /// What it does not guarantee: that a bounce cascade below the resting speed is resolved impact by impact (it is summed
-/// in closed form), that slow circling in a pit is followed to its end (it becomes rest, kMostSlowContacts), nor that a
+/// in closed form), that slow circling in a pit is followed to its end (it becomes rest, kMaxSlowContacts), nor that a
 /// particle whose bounce budget is spent uses the whole step (the rest is counted).
 #pragma once
 

@@ -18,7 +18,7 @@ std::optional<Contact> Mover::answer(const Flight& flight, const Contact& contac
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (support == nullptr) return std::nullopt;
     gather_touched(contact);
-    if (slow_contacts_ > kMostSlowContacts) {
+    if (slow_contacts_ > kMaxSlowContacts) {
         shares_ = {};
         rest(flight.kick_duration > 0.0 ? Vec3{} : acceleration_now(flight), false);
         return std::nullopt;

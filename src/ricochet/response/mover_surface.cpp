@@ -49,7 +49,7 @@ Vec3 Mover::pull_on(const ContactSurface& surface, const Vec3& a, const Vec3& ve
     return a + (curvature(surface, velocity) * length_squared(along)) * surface.normal;
 }
 
-/// How long a path along a support stays on it. On a round one straight stretches turn by at most kStretchAngle.
+/// How long a path along a support stays on it. On a round one straight stretches turn by at most kMaxChordAngle.
 double Mover::time_on(const ContactSurface& support, const Path& path, double bend) const {
     if (support.flat) {
         Path of_contact_point = path;
@@ -57,7 +57,7 @@ double Mover::time_on(const ContactSurface& support, const Path& path, double be
         return rules_.world.time_over(support.surface, of_contact_point,
                                       kTouchingOffsets * contact_offset(state_.position));
     }
-    const double way = bend != 0.0 ? kStretchAngle / std::fabs(bend) : INFINITY;
+    const double way = bend != 0.0 ? kMaxChordAngle / std::fabs(bend) : INFINITY;
     const double speed = length(path.c[1]);
     const double acceleration = 2.0 * length(path.c[2]);
     const double by_speed = speed > 0.0 ? way / speed : path.duration;

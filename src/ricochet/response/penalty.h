@@ -20,7 +20,7 @@
 /// restitution and friction to better than the first order in sub-steps per contact, which without a stiffness do not
 /// grow as steps shrink; stability beyond longest_stable_step(), for `midpoint`, which feeds springs without damping,
 /// none at all; rest without creep on slopes (friction needs slip, and shakes where a sub-step's friction, mu g h,
-/// exceeds 2 friction_speed); restitution below kLeastPenaltyRestitution; that walls of one collider are felt together
+/// exceeds 2 friction_speed); restitution below kMinPenaltyRestitution; that walls of one collider are felt together
 /// (each collider pushes from its nearest place only).
 #pragma once
 
@@ -36,7 +36,7 @@ struct ContactSpring {
 };
 
 /// Damping over 2 sqrt(k m) with which a contact that ends when the force would begin to pull has the restitution e
-/// (Schwager and Poeschel 2007). e in [0, 1]; below kLeastPenaltyRestitution that value counts.
+/// (Schwager and Poeschel 2007). e in [0, 1]; below kMinPenaltyRestitution that value counts.
 [[nodiscard]] double damping_ratio(double restitution);
 /// The inverse: restitution of a damping ratio >= 0.
 [[nodiscard]] double restitution_of_damping(double ratio);

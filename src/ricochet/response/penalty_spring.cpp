@@ -29,7 +29,7 @@ double restitution_of_damping(double ratio) {
 
 double damping_ratio(double restitution) {
     if (restitution >= 1.0) return 0.0;
-    const double wanted = std::max(restitution, kLeastPenaltyRestitution);
+    const double wanted = std::max(restitution, kMinPenaltyRestitution);
     double low = 0.0;
     double high = kLargestRatio;
     for (int k = 0; k < kHalvings; ++k) {

@@ -66,7 +66,7 @@ private:
 
     /// Out of what the place is behind, the deepest first, again and again; where that does not end, back to the start.
     Vec3 put_back(Vec3 place) {
-        for (int pass = 0; pass < kMostProjections; ++pass) {
+        for (int pass = 0; pass < kMaxProjections; ++pass) {
             watch_.look(place, from_, offset(), seen_);
             ++outcome_.trials;
             for (const Proximity& view : seen_) touch(view);

@@ -15,7 +15,7 @@
 /// side of a plate is projected to the far side, what ends beyond it is not seen); that an impact happens where and
 /// when it does (both are of first order in the step); energy (an elastic bounce gains m g (depth + offset), the lift);
 /// rest without creep (a particle held by friction on a slope creeps by the forces' half step squared, with the
-/// symplectic Euler step by the whole); that a corner of several colliders is solved (kMostProjections passes).
+/// symplectic Euler step by the whole); that a corner of several colliders is solved (kMaxProjections passes).
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"

@@ -101,7 +101,7 @@ private:
     static void rest_in_pit(SystemParticle& p, RollbackMover& mover, double elapsed, double at) {
         const bool idles = mover.in_contact() && elapsed < kLeastProgress * (p.stop - p.start);
         p.idle = idles ? p.idle + 1 : 0;
-        if (p.idle <= kMostSlowContacts) return;
+        if (p.idle <= kMaxSlowContacts) return;
         mover.rest(p.stop - at);
         p.is_out = true;
     }

@@ -18,7 +18,7 @@ std::optional<ContactSurface> RollbackMover::touching(SurfaceId surface) const {
         speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
     }
     const double reach = kTouchingOffsets * contact_offset(state_.position) +
-                         kBracketsOfTouch * rules_.settings.rollback.time_tolerance * speed;
+                         kTouchBrackets * rules_.settings.rollback.time_tolerance * speed;
     if (nearest.distance - state_.radius > reach) return std::nullopt;
     if (dot(state_.velocity, nearest.normal) > rules_.settings.resting_speed) return std::nullopt;
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
@@ -99,7 +99,7 @@ double RollbackMover::time_on_support() const {
         const double slack = kTouchingOffsets * contact_offset(state_.position);
         return is_finite(way.end) ? rules_.world.time_over(support.surface, way, slack) : duration;
     }
-    const double longest = kStretchAngle * 0.25 * rules_.world.size_of(support.surface);
+    const double longest = kMaxChordAngle * 0.25 * rules_.world.size_of(support.surface);
     const double speed = length(v);
     const double pull = 2.0 * length(a);
     return std::min(

@@ -37,7 +37,7 @@ void RollbackMover::run(double duration) {
         if (found.blocked) answer();
         if (outcome_.absorbed) return;
         idle = in_contact() && found.free < kLeastProgress * duration ? idle + 1 : 0;
-        if (idle > kMostSlowContacts) {
+        if (idle > kMaxSlowContacts) {
             rest(remaining);
             break;
         }

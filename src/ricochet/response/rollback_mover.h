@@ -19,7 +19,7 @@ struct CollisionBracket {
     bool blocked = false;  ///< something is in the way right after it; false: the whole piece is free
 };
 
-/// Pieces of contact shorter than this part of the step are no progress; kMostSlowContacts of them in a row are rest.
+/// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
 inline constexpr double kLeastProgress = 0x1p-20;
 
 class RollbackMover {

@@ -103,7 +103,7 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
 void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                             BlockRecord& record) {
     Particles& particles = parts_.store.particles();
-    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kFastestSpeed * kFastestSpeed; };
+    const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
     const bool was_fast = is_fast();
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
     parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i));

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "ricochet/core/morton.h"
+#include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ricochet/core/reserve_more.h"
+#include "ricochet/core/algorithms.h"
 #include "ricochet/dynamics/free_flight.h"
 
 namespace ricochet {
@@ -34,7 +34,7 @@ public:
     /// A particle that is born within the step that is made now: it owes nothing.
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
     /// Makes room for `more` particles.
-    void reserve(std::size_t more) { reserve_more(made_, more); }
+    void reserve(std::size_t more) { grow_capacity_by(made_, more); }
     /// Keeps the particles whose flag is not 0. keep.size() is the number of particles.
     void compact(const std::vector<std::uint8_t>& keep) {
         std::size_t kept = 0;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "ricochet/core/reserve_more.h"
+#include "ricochet/core/algorithms.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -38,7 +38,7 @@ void ParticleStore::append(Particle particle) {
 
 void ParticleStore::reserve(std::size_t more) {
     particles_.reserve(more);
-    reserve_more(sides_, more * colliders_);
+    grow_capacity_by(sides_, more * colliders_);
 }
 
 void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {

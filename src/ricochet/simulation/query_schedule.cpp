@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/core/reserve_more.h"
+#include "ricochet/core/algorithms.h"
 
 namespace ricochet {
 
@@ -32,8 +32,8 @@ void QuerySchedule::append(bool is_left_alone) {
 }
 
 void QuerySchedule::reserve(std::size_t more) {
-    reserve_more(next_, more);
-    reserve_more(candidates_, more);
+    grow_capacity_by(next_, more);
+    grow_capacity_by(candidates_, more);
 }
 
 void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {

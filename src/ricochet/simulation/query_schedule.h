@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_candidates.h"
-#include "ricochet/core/visit_few.h"
+#include "ricochet/core/algorithms.h"
 #include "ricochet/simulation/step_clock.h"
 
 namespace ricochet {
@@ -63,14 +63,14 @@ public:
     template <class Visit>
     void visit_active(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t* next = next_.data();
-        visit_few(
+        for_each_if(
             begin, end, [next, now = now_](std::size_t i) { return is_active(next[i], now); }, visit);
     }
     /// The same for those that are not in free flight.
     template <class Visit>
     void visit_all_but_free_flights(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t* next = next_.data();
-        visit_few(
+        for_each_if(
             begin, end, [next, now = now_](std::size_t i) { return !is_free(next[i], now); }, visit);
     }
 

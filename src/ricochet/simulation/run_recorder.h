@@ -32,14 +32,14 @@ struct BlockRecord {
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> contact_records;
     std::vector<Violation> violations;
-    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kFastestSpeed
+    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kMaxSpeed
 
     void add(const MoveOutcome& outcome);
     void note_runaway(std::size_t i) { runaway = runaway ? std::min(*runaway, i) : i; }
     void add_to(SimulationStatistics& statistics) const;
 };
 
-/// The first particle of all blocks that forces have brought beyond kFastestSpeed.
+/// The first particle of all blocks that forces have brought beyond kMaxSpeed.
 [[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);
 
 /// What a run leaves behind besides the particles. Blocks are added in their order, sums over particles in the order of

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/core/fixed_point_sum.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {

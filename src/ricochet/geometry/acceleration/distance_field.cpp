@@ -176,7 +176,7 @@ void DistanceField::spread_rows(std::size_t z, std::size_t y, int back) {
 
 // Distances are largest differences of coordinates, which are at most the distance. A point outside the box is as far
 // from what is in it, along each axis, as the nearest point of the box, or further.
-double DistanceField::at(const Vec3& p) const {
+double DistanceField::lower_bound(const Vec3& p) const {
     if (cell_ == 0.0) return 0.0;
     const Vec3 outside = max(box_.lower - p, p - box_.upper);
     const double gap = std::max({outside.x, outside.y, outside.z}) * (1.0 - kDistanceFieldRounding);

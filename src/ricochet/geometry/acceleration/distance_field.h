@@ -22,15 +22,15 @@ namespace ricochet {
 /// Immutable after construction; safe from any number of threads.
 class DistanceField {
 public:
-    /// Knows nothing: at() is 0 everywhere.
+    /// Knows nothing: lower_bound() is 0 everywhere.
     DistanceField() = default;
     /// Built with all threads, from triangles with finite corners inside the box. Some two cells a triangle, 2^15 for
     /// small meshes, at most kMostCells, each a byte; fewer where large triangles lie in heaps.
     DistanceField(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box);
 
     /// m: no triangle is nearer to p than this. 0 where they are too near to tell. p must be finite.
-    [[nodiscard]] double at(const Vec3& p) const;
-    /// Edge of a cell, m: at() is 0 within about two of them around the triangles. 0 when nothing is known.
+    [[nodiscard]] double lower_bound(const Vec3& p) const;
+    /// Edge of a cell, m: lower_bound() is 0 within about two of them around the triangles. 0 when nothing is known.
     [[nodiscard]] double cell() const { return cell_; }
     [[nodiscard]] std::size_t memory_bytes() const { return cells_.capacity(); }
 

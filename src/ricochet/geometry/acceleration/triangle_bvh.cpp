@@ -7,7 +7,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "ricochet/core/hand_over.h"
+#include "ricochet/core/thread_sanitizer.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/embree.h"
 
@@ -85,7 +85,7 @@ struct Query {
     void* context;
     const std::vector<TriangleCluster>* clusters;
     TriangleBvh::Visit visit = nullptr;           ///< this one or the next
-    TriangleBvh::VisitTube visit_tube = nullptr;  ///< triangles that the tube may touch
+    TriangleBvh::VisitTube query_tube = nullptr;  ///< triangles that the tube may touch
     Tube tube = {};
     double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
     double ray_per_fraction = 0.0;  ///< ray length of the whole segment
@@ -103,12 +103,12 @@ double Query::look_at(const TriangleCluster& cluster) {
         }
         return limit;
     }
-    TubeStretches stretches;
+    TubeIntervals stretches;
     unsigned bits = cluster.near(tube, stretches);
     for (; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         limit =
-            std::min(limit, visit_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
+            std::min(limit, query_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
     }
     return limit;
 }
@@ -273,7 +273,7 @@ TriangleBvh::~TriangleBvh() = default;
 TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
 TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
 
-double TriangleBvh::reach() const { return impl_->reach; }
+double TriangleBvh::margin() const { return impl_->reach; }
 double TriangleBvh::slack() const { return impl_->slack; }
 std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.bytes.load()); }
 
@@ -298,12 +298,12 @@ void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direct
     embree::intersect1(scene.get(), context, ray);
 }
 
-void TriangleBvh::visit(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
+void TriangleBvh::query_segment(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
     Query query{context, impl_->clusters.get(), visitor};
     impl_->visit_segment(from, to, query);
 }
 
-void TriangleBvh::visit_tube(const Tube& tube, void* context, VisitTube visitor) const {
+void TriangleBvh::query_tube(const Tube& tube, void* context, VisitTube visitor) const {
     Query query{context, impl_->clusters.get(), nullptr, visitor, tube};
     impl_->visit_segment(tube.from, tube.from + tube.along, query);
 }
@@ -337,7 +337,7 @@ void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
     embree::point_query1(scene.get(), around, visit_near_cluster, &query);
 }
 
-void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitNear visitor) const {
+void TriangleBvh::query_point(const Vec3& p, double within, void* context, VisitNear visitor) const {
     // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
     // covered by the factor.
     if (impl_->clusters->empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
@@ -354,7 +354,7 @@ void TriangleBvh::visit_near(const Vec3& p, double within, void* context, VisitN
     impl_->ask_near(query, frame.apply(p));
 }
 
-void set_embree_settings(std::string settings) { ray_library_settings() = std::move(settings); }
+void set_embree_config(std::string settings) { ray_library_settings() = std::move(settings); }
 
 std::string embree_version() {
     const embree::Device device = embree::make_device();

@@ -40,17 +40,18 @@ public:
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
 
-    /// Visits every triangle whose distance from the segment [from, to] is at most reach() + slack() (and
+    /// Visits every triangle whose distance from the segment [from, to] is at most margin() + slack() (and
     /// possibly more), up to the narrowed fraction, in unspecified order. Safe from any number of threads. Both ends
     /// must be finite.
-    void visit(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
+    void query_segment(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle)`.
     template <class Callable>
-    void visit(const Vec3& from, const Vec3& to, Callable&& callable) const {
+    void query_segment(const Vec3& from, const Vec3& to, Callable&& callable) const {
         using Function = std::remove_reference_t<Callable>;
-        visit(from, to, const_cast<void*>(static_cast<const void*>(&callable)),
-              [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
+        query_segment(
+            from, to, const_cast<void*>(static_cast<const void*>(&callable)),
+            [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
     /// Called for a triangle that the tube may touch, with the stretch of its way (fractions of it) outside of which it
@@ -58,14 +59,14 @@ public:
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
     /// Visits every triangle that the tube touches, and few others: TriangleCluster::near() decides, four triangles at
-    /// a time. The tube's margin and sagitta together must be at most reach() + slack().
-    void visit_tube(const Tube& tube, void* context, VisitTube visit) const;
+    /// a time. The tube's margin and sagitta together must be at most margin() + slack().
+    void query_tube(const Tube& tube, void* context, VisitTube visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle, double enter, double leave)`.
     template <class Callable>
-    void visit_tube(const Tube& tube, Callable&& callable) const {
+    void query_tube(const Tube& tube, Callable&& callable) const {
         using Function = std::remove_reference_t<Callable>;
-        visit_tube(tube, const_cast<void*>(static_cast<const void*>(&callable)),
+        query_tube(tube, const_cast<void*>(static_cast<const void*>(&callable)),
                    [](void* context, std::uint32_t triangle, double enter, double leave) {
                        return (*static_cast<Function*>(context))(triangle, enter, leave);
                    });
@@ -75,21 +76,21 @@ public:
     /// pure narrowing: the smallest value returned so far holds.
     using VisitNear = double (*)(void* context, std::uint32_t triangle);
 
-    /// Visits every triangle whose distance from p is at most within + reach() + slack() (and possibly more), where
+    /// Visits every triangle whose distance from p is at most within + margin() + slack() (and possibly more), where
     /// `within` (m, >= 0, may be infinite) is replaced by the narrowed distance; in unspecified order. Safe from any
     /// number of threads. p must be finite.
-    void visit_near(const Vec3& p, double within, void* context, VisitNear visit) const;
+    void query_point(const Vec3& p, double within, void* context, VisitNear visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle)`.
     template <class Callable>
-    void visit_near(const Vec3& p, double within, Callable&& callable) const {
+    void query_point(const Vec3& p, double within, Callable&& callable) const {
         using Function = std::remove_reference_t<Callable>;
-        visit_near(p, within, const_cast<void*>(static_cast<const void*>(&callable)),
-                   [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
+        query_point(p, within, const_cast<void*>(static_cast<const void*>(&callable)),
+                    [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
     /// m, as given.
-    [[nodiscard]] double reach() const;
+    [[nodiscard]] double margin() const;
     /// m, what the boxes allow for places beside the segment (see kBoxSlack).
     [[nodiscard]] double slack() const;
     /// Bytes that the hierarchy holds (without the vertices and triangles).
@@ -102,7 +103,7 @@ private:
 
 /// Settings that hierarchies built from now on hand to the ray library, in its own words ("isa=sse2"); empty: its
 /// defaults. No result depends on them, which is what they are for: to show it. Not while hierarchies are being built.
-void set_embree_settings(std::string settings);
+void set_embree_config(std::string settings);
 
 /// Name, version and instruction sets of the ray library, for `--version` and reports.
 [[nodiscard]] std::string embree_version();

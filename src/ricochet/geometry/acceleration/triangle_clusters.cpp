@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/core/morton.h"
+#include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
@@ -223,7 +223,7 @@ Mask lanes_in_view(const TriangleCluster& cluster, const Vec3& place, const Shea
 // The tube can touch a triangle only while the chord is within the margin of the triangle's plane. Everything is
 // compared without dividing by the normal's length, so slivers only make the bound larger.
 unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& seen,
-                    TubeStretches& stretches) {
+                    TubeIntervals& stretches) {
     const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
     const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
     const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
@@ -369,7 +369,7 @@ Shear::Shear(const Vec3& direction) {
     stretch = std::sqrt(1.0 + right * right + up * up);
 }
 
-unsigned TriangleCluster::near(const Tube& tube, TubeStretches& stretches) const {
+unsigned TriangleCluster::near(const Tube& tube, TubeIntervals& stretches) const {
     if (tube.is_straight) {
         const Vec3 place = per_unit * (tube.from - center);
         const Mask seen = lanes_in_view(*this, place, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);

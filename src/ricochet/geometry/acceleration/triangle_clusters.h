@@ -60,7 +60,7 @@ public:
 };
 
 /// Stretches of a tube's way, in fractions of it, one a lane.
-struct TubeStretches {
+struct TubeIntervals {
     std::array<double, 4> enter;
     std::array<double, 4> leave;
 };
@@ -80,7 +80,7 @@ struct alignas(64) TriangleCluster {
 
     /// Bits of the lanes whose triangle may come within the margin of the tube's way, and for these a stretch outside
     /// of which it certainly does not. Errs on the side of more. Triangles may be degenerate.
-    [[nodiscard]] unsigned near(const Tube& tube, TubeStretches& stretches) const;
+    [[nodiscard]] unsigned near(const Tube& tube, TubeIntervals& stretches) const;
     /// A box about the triangles, m.
     [[nodiscard]] Box3 box() const;
 };

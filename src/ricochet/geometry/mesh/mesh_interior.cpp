@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ricochet/geometry/predicates/orient2d.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

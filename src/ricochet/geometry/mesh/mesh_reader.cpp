@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
 
-#include "ricochet/geometry/mesh/mesh_format.h"
 #include "ricochet/geometry/mesh/mesh_source.h"
-#include "ricochet/geometry/mesh/obj_reader.h"
-#include "ricochet/geometry/mesh/off_reader.h"
 #include "ricochet/geometry/mesh/ply_header.h"
-#include "ricochet/geometry/mesh/ply_reader.h"
-#include "ricochet/geometry/mesh/stl_reader.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {
@@ -80,6 +76,14 @@ ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
     return result;
 }
 
+// Locale-free on purpose: file formats are ASCII.
+std::string ascii_lower(std::string text) {
+    for (char& c : text) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return text;
+}
+
 }  // namespace
 
 ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
@@ -92,6 +96,29 @@ ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
 
 ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes, MeshContent content) {
     return finish(parse_checked(name, bytes), content);
+}
+
+const char* mesh_format_name(MeshFormat format) {
+    switch (format) {
+        case MeshFormat::kObj:
+            return "OBJ";
+        case MeshFormat::kPly:
+            return "PLY";
+        case MeshFormat::kStl:
+            return "STL";
+        case MeshFormat::kOff:
+            break;
+    }
+    return "OFF";
+}
+
+std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path) {
+    const std::string extension = ascii_lower(path.extension().string());
+    if (extension == ".obj") return MeshFormat::kObj;
+    if (extension == ".ply") return MeshFormat::kPly;
+    if (extension == ".stl") return MeshFormat::kStl;
+    if (extension == ".off") return MeshFormat::kOff;
+    return std::nullopt;
 }
 
 }  // namespace ricochet

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "ricochet/geometry/mesh/self_intersection.h"
-
 namespace ricochet {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 
@@ -35,5 +36,10 @@ struct MeshReport {
 
 /// Examines a mesh. Time and memory are close to linear in its size.
 [[nodiscard]] MeshReport report_on(const ImportedMesh& imported);
+
+/// Pairs of triangles that have a point in common besides the vertices and the edge that both name: they cross, touch
+/// or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on the
+/// number of threads. Time is close to linear in the number of triangles and of pairs whose boxes overlap.
+[[nodiscard]] std::size_t count_self_intersections(const TriangleMesh& mesh);
 
 }  // namespace ricochet

@@ -2,6 +2,7 @@
 /// Private to the mesh readers: the bytes of a file, the limits of what is accepted, and how errors read.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,8 +12,11 @@
 #include <string>
 #include <string_view>
 
+#include "ricochet/core/tolerances.h"
+#include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 
@@ -60,5 +64,124 @@ inline void close_face(PolygonMesh& mesh) {
 
 /// Refuses NUL bytes and UTF-16, which no text format here holds.
 void require_plain_text(const MeshSource& source);
+
+/// Walks through a text once. Lines end with LF, CR LF or CR. Numbers are read without any locale.
+///
+/// What is asked for every character or word is inline and answers the common case (a printable character, one blank,
+/// a lone LF) at once; everything else, comments and continuation lines too, is left to the `_slowly` functions, which
+/// hold the whole rule.
+class TextCursor {
+public:
+    /// How a format writes what is not data.
+    struct Syntax {
+        bool hash_comments = false;             ///< '#' starts a comment that ends with the line
+        bool backslash_continues_line = false;  ///< a backslash at the end joins the next line
+    };
+
+    /// Starts at the first line, after a UTF-8 byte order mark if there is one.
+    TextCursor(const MeshSource& source, Syntax syntax)
+        : TextCursor(source, source.bytes.starts_with("\xef\xbb\xbf") ? 3 : 0, 1, syntax) {}
+    /// Starts at a byte that begins the given line.
+    TextCursor(const MeshSource& source, std::size_t first_byte, std::size_t first_line, Syntax syntax)
+        : source_(source),
+          at_(source.bytes.data() + first_byte),
+          end_(source.bytes.data() + source.bytes.size()),
+          line_(first_line),
+          syntax_(syntax) {}
+
+    /// True when nothing but blanks (and a comment) is left on the line.
+    [[nodiscard]] bool at_line_end() {
+        if (comes_next(' ')) ++at_;
+        return !comes_plain() && at_line_end_slowly();
+    }
+    [[nodiscard]] bool at_text_end() const { return at_ == end_; }
+    /// Next word of the line; empty at its end.
+    [[nodiscard]] std::string_view word();
+    /// Rest of the line without blanks at its ends, comments included.
+    [[nodiscard]] std::string_view rest_of_line();
+    /// Goes to the start of the next line.
+    void next_line() {
+        if (!comes_next('\n')) return next_line_slowly();
+        ++at_;
+        ++line_;
+    }
+    /// Goes to the next line that has a word; false when there is none.
+    [[nodiscard]] bool next_filled_line();
+    /// Number of the line the cursor is in; 1 for the first.
+    [[nodiscard]] std::size_t line() const { return line_; }
+    [[nodiscard]] const MeshSource& source() const { return source_; }
+    [[nodiscard]] std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
+
+    /// Next word of the line as a finite number; `what` names it in errors.
+    [[nodiscard]] double number(const char* what);
+    /// The same within the range of coordinates; tiny values become zero.
+    [[nodiscard]] double coordinate(const char* what);
+    [[nodiscard]] Vec3 point(const char* what);
+    /// Next word of the line as an integer.
+    [[nodiscard]] std::int64_t integer(const char* what);
+    /// An integer that may be followed by other characters of the same word (OBJ corners).
+    [[nodiscard]] std::int64_t integer_part(const char* what);
+    /// Takes one character if it comes next, without skipping blanks.
+    [[nodiscard]] bool take(char c);
+    /// True if the character comes next, without skipping blanks.
+    [[nodiscard]] bool comes_next(char c) const { return at_ != end_ && *at_ == c; }
+    /// True at a blank, a line end or the text's end.
+    [[nodiscard]] bool at_word_end() const { return !comes_plain() && at_word_end_slowly(); }
+
+    /// Throws InputError with the file and the line.
+    [[noreturn]] void fail(const std::string& what) const { source_.fail_at_line(line_, what); }
+
+private:
+    // A character that belongs to a word in every syntax.
+    [[nodiscard]] bool comes_plain() const { return at_ != end_ && *at_ > ' ' && *at_ != '#' && *at_ != '\\'; }
+    [[nodiscard]] bool at_line_end_slowly();
+    [[nodiscard]] bool at_word_end_slowly() const;
+    void next_line_slowly();
+    void skip_blanks();
+    [[nodiscard]] bool skip_continuation();
+    [[nodiscard]] std::optional<std::int64_t> small_number();
+    [[nodiscard]] std::string_view word_here() const;
+    [[nodiscard]] double limit_value(const char* word_start, const char* what) const;
+
+    const MeshSource& source_;
+    const char* at_;
+    const char* end_;
+    std::size_t line_;
+    Syntax syntax_;
+};
+
+/// Brings a coordinate into the range in which predicates are exact; nothing when it is too large or not finite.
+[[nodiscard]] inline std::optional<double> accepted_coordinate(double value) {
+    if (!(std::fabs(value) <= kLargestCoordinate)) return std::nullopt;
+    return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
+}
+
+/// Reads OBJ text. Faces are grouped by the name in force at the face: its material (usemtl) if there is one, else its
+/// group (g), else its object (o), else the empty name.
+[[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
+
+/// True when the text's first statement is one that OBJ has.
+[[nodiscard]] bool looks_like_obj(const MeshSource& source);
+
+/// Reads OFF text with any of the prefixes ST, C and N; every vertex and every face stands on a line of its own. Values
+/// after the coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used.
+[[nodiscard]] ParsedMesh read_off(const MeshSource& source);
+
+/// True when the text's first word is the keyword OFF with some of its prefixes.
+[[nodiscard]] bool looks_like_off(const MeshSource& source);
+
+/// Reads the elements vertex (x, y, z of any type), face (list vertex_indices or vertex_index) and tristrips
+/// (list vertex_indices, -1 starts a new strip); everything else is skipped. In an ASCII file every element stands on a
+/// line of its own. Triangles of a strip that repeat a vertex only turn the strip; they are not faces.
+[[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
+
+/// True when the size is exactly what the triangle count at byte 80 asks for; the header's text does not matter.
+[[nodiscard]] bool has_binary_stl_size(const MeshSource& source);
+
+/// True when the text starts with the word "solid".
+[[nodiscard]] bool starts_with_solid(const MeshSource& source);
+
+/// Reads STL and joins corners of equal coordinates. The facets' normals are not used: the corners say it better.
+[[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 
 }  // namespace ricochet

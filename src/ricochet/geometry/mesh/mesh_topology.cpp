@@ -9,8 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "ricochet/geometry/mesh/disjoint_sets.h"
-#include "ricochet/geometry/mesh/edge_table.h"
+#include "ricochet/geometry/mesh/mesh_connectivity.h"
 
 namespace ricochet {
 namespace {

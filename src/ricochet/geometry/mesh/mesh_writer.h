@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "ricochet/geometry/mesh/mesh_format.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {

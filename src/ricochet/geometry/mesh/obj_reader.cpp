@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/obj_reader.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <functional>
 #include <unordered_map>
 
-#include "ricochet/geometry/mesh/text_cursor.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {

@@ -1,8 +1,7 @@
-#include "ricochet/geometry/mesh/off_reader.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 #include <fmt/format.h>
 
-#include "ricochet/geometry/mesh/text_cursor.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {

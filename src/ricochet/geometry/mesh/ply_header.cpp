@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "ricochet/geometry/mesh/text_cursor.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 namespace ricochet {
 namespace {

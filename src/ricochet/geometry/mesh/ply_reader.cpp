@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/ply_reader.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/ply_header.h"
-#include "ricochet/geometry/mesh/text_cursor.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {

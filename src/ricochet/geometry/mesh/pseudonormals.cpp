@@ -6,10 +6,9 @@
 #include <numbers>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh/edge_table.h"
-#include "ricochet/geometry/mesh/vertex_welder.h"
+#include "ricochet/geometry/mesh/mesh_connectivity.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -255,7 +254,7 @@ int Pseudonormals::side_of_two_faces(std::uint32_t first, std::uint32_t second, 
     return sign_beyond(x.value + y.value, x.error + y.error);
 }
 
-bool Pseudonormals::is_on_rim(std::uint32_t triangle, TriangleFeature feature) const {
+bool Pseudonormals::is_on_boundary(std::uint32_t triangle, TriangleFeature feature) const {
     if (feature == TriangleFeature::kFace) return false;
     const std::size_t number = number_of(feature);
     if (is_vertex(feature)) return vertex_is_open_[welded(triangle, number)] != 0;

@@ -46,7 +46,7 @@ public:
 
     /// True when that part of a triangle is an edge of an odd number of triangles, or a vertex at the end of one: sides
     /// mean nothing there.
-    [[nodiscard]] bool is_on_rim(std::uint32_t triangle, TriangleFeature feature) const;
+    [[nodiscard]] bool is_on_boundary(std::uint32_t triangle, TriangleFeature feature) const;
 
     /// Bytes held besides the vertices and triangles: some 30 a triangle for a closed mesh.
     [[nodiscard]] std::size_t memory_bytes() const;

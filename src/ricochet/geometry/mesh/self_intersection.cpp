@@ -1,15 +1,95 @@
-#include "ricochet/geometry/mesh/self_intersection.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
+#include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/acceleration/box_tree.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
+
+/// A balanced tree over boxes, in double precision: nothing is rounded, so nothing is missed.
+class BoxTree {
+public:
+    explicit BoxTree(const std::vector<Box3>& boxes);
+
+    /// Calls visit(number) for every box that has a point in common with the given one. May be called from several
+    /// threads at once.
+    template <typename Visit>
+    void for_each_overlap(const Box3& box, Visit&& visit) const {
+        std::array<std::uint32_t, kMostLevels> stack;
+        std::size_t size = 0;
+        if (!nodes_.empty()) stack[size++] = 0;
+        while (size > 0) {
+            const Node& node = nodes_[stack[--size]];
+            if (!overlap(node.box, box)) continue;
+            if (node.first_child != 0) {
+                stack[size++] = node.first_child;
+                stack[size++] = node.first_child + 1;
+                continue;
+            }
+            for (std::uint32_t i = node.begin; i < node.end; ++i) {
+                if (overlap(boxes_[order_[i]], box)) visit(order_[i]);
+            }
+        }
+    }
+
+private:
+    // Halves are equal, so 32-bit numbers of boxes make at most 32 levels, each of which leaves one node waiting.
+    static constexpr std::size_t kMostLevels = 64;
+
+    struct Node {
+        Box3 box;
+        std::uint32_t begin = 0;  // leaf: order_[begin, end)
+        std::uint32_t end = 0;
+        std::uint32_t first_child = 0;  // the other one follows; 0 for a leaf
+    };
+
+    [[nodiscard]] static bool overlap(const Box3& a, const Box3& b) {
+        return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+               a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+    }
+    void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+
+    const std::vector<Box3>& boxes_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+BoxTree::BoxTree(const std::vector<Box3>& boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (boxes.empty()) return;
+    nodes_.emplace_back();
+    split(0, 0, static_cast<std::uint32_t>(boxes.size()));
+}
+
+void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+    constexpr std::uint32_t kLeafSize = 4;
+    Box3 box;
+    for (std::uint32_t i = begin; i < end; ++i) box.include(boxes_[order_[i]]);
+    nodes_[node].box = box;
+    nodes_[node].begin = begin;
+    nodes_[node].end = end;
+    if (end - begin <= kLeafSize) return;
+    const Vec3 size = box.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(
+        order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
+            return boxes_[a].lower[axis] + boxes_[a].upper[axis] < boxes_[b].lower[axis] + boxes_[b].upper[axis];
+        });
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    nodes_[node].first_child = child;
+    split(child, begin, middle);
+    split(child + 1, middle, end);
+}
 
 // Two triangles turned so that the vertices that both name come first, in the same order.
 struct TrianglePair {
@@ -53,7 +133,7 @@ private:
     [[nodiscard]] const Vec3& at(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
 
     [[nodiscard]] bool edge_meets(std::uint32_t p, std::uint32_t q, const Triangle& t) const {
-        return segment_meets_triangle(at(p), at(q), at(t[0]), at(t[1]), at(t[2]));
+        return segment_intersects_triangle(at(p), at(q), at(t[0]), at(t[1]), at(t[2]));
     }
 
     // Triangles without a common vertex meet when an edge of one meets the other.
@@ -76,7 +156,7 @@ private:
         const Vec3& d = at(pair.second[2]);
         if (orient3d(a, b, c, d) != 0) return false;
         return point_on_triangle(d, a, b, c) || point_on_triangle(c, a, b, d) ||
-               segment_meets_triangle(a, d, b, c, c) || segment_meets_triangle(b, d, a, c, c);
+               segment_intersects_triangle(a, d, b, c, c) || segment_intersects_triangle(b, d, a, c, c);
     }
 
     const TriangleMesh& mesh_;

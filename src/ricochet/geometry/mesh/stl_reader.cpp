@@ -1,12 +1,11 @@
-#include "ricochet/geometry/mesh/stl_reader.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 #include <cstring>
 
-#include "ricochet/geometry/mesh/text_cursor.h"
-#include "ricochet/geometry/mesh/vertex_welder.h"
+#include "ricochet/geometry/mesh/mesh_connectivity.h"
 
 namespace ricochet {
 namespace {

@@ -1,8 +1,44 @@
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::uint32_t kSides = 96;  // around the axis
+constexpr std::uint32_t kBelts = 48;  // from pole to pole of a ball
+
+/// Points of a circle about the z axis.
+void add_ring(TriangleMesh& mesh, double radius, double z) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const double angle = 2.0 * kPi * k / kSides;
+        mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+}
+
+/// Two triangles for every side between two rings, the lower one first in the list.
+void add_belt(TriangleMesh& mesh, std::uint32_t lower, std::uint32_t upper) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const std::uint32_t next = (k + 1) % kSides;
+        mesh.triangles.push_back({lower + k, lower + next, upper + next});
+        mesh.triangles.push_back({lower + k, upper + next, upper + k});
+    }
+}
+
+/// A fan around a point on the axis, facing up or down.
+void add_fan(TriangleMesh& mesh, std::uint32_t apex, std::uint32_t ring, bool up) {
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const std::uint32_t next = (k + 1) % kSides;
+        mesh.triangles.push_back(up ? Triangle{apex, ring + k, ring + next} : Triangle{apex, ring + next, ring + k});
+    }
+}
+
+}  // namespace
 
 Box3 bounds(const TriangleMesh& mesh) {
     Box3 box;
@@ -36,5 +72,55 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) { return are_collinear(a, b, c); }
+
+TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement) {
+    const AffineMap map = world_from_local(placement);
+    TriangleMesh result;
+    result.vertices.reserve(mesh.vertices.size());
+    for (const Vec3& v : mesh.vertices) result.vertices.push_back(flush_tiny(map.point(v)));
+    result.triangles = mesh.triangles;
+    if (map.mirrors()) {
+        for (Triangle& t : result.triangles) std::swap(t[1], t[2]);
+    }
+    return result;
+}
+
+TriangleMesh ball_mesh(double radius, const Placement& placement) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, -radius}, {0, 0, radius}};
+    for (std::uint32_t belt = 1; belt < kBelts; ++belt) {
+        const double angle = kPi * belt / kBelts;
+        add_ring(mesh, radius * std::sin(angle), -radius * std::cos(angle));
+    }
+    add_fan(mesh, 0, 2, false);
+    for (std::uint32_t belt = 1; belt + 1 < kBelts; ++belt) {
+        add_belt(mesh, 2 + (belt - 1) * kSides, 2 + belt * kSides);
+    }
+    add_fan(mesh, 1, 2 + (kBelts - 2) * kSides, true);
+    return transformed(mesh, placement);
+}
+
+TriangleMesh cylinder_mesh(double radius, double height, const Placement& placement) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, -0.5 * height}, {0, 0, 0.5 * height}};
+    add_ring(mesh, radius, -0.5 * height);
+    add_ring(mesh, radius, 0.5 * height);
+    add_fan(mesh, 0, 2, false);
+    add_belt(mesh, 2, 2 + kSides);
+    add_fan(mesh, 1, 2 + kSides, true);
+    return transformed(mesh, placement);
+}
+
+TriangleMesh cuboid_mesh(const Vec3& size) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.vertices.push_back({(corner & 1) != 0 ? 0.5 * size.x : -0.5 * size.x,
+                                 (corner & 2) != 0 ? 0.5 * size.y : -0.5 * size.y,
+                                 (corner & 4) != 0 ? 0.5 * size.z : -0.5 * size.z});
+    }
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
 
 }  // namespace ricochet

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -52,5 +53,19 @@ struct PolygonMesh {
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 /// True when the corners of a triangle are exactly collinear or coincide (decided with exact arithmetic).
 [[nodiscard]] bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The mesh in world coordinates: scaled, turned and moved in double precision, tiny coordinates made zero
+/// (flush_tiny), the winding turned round where the placement mirrors, so that outward stays outward. Triangles and
+/// vertices keep their places in the lists. Results that are not finite are left for the caller to refuse.
+[[nodiscard]] TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement);
+
+/// A ball of that radius (m) about the local origin, placed; vertices on the surface, wound outward.
+[[nodiscard]] TriangleMesh ball_mesh(double radius, const Placement& placement);
+
+/// A cylinder about the local z axis with flat caps, centred on the origin, placed; wound outward.
+[[nodiscard]] TriangleMesh cylinder_mesh(double radius, double height, const Placement& placement);
+
+/// A box of these edge lengths (m) about the local origin, not placed: two triangles a side, wound outward.
+[[nodiscard]] TriangleMesh cuboid_mesh(const Vec3& size);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/ear_clipper.h"
-#include "ricochet/geometry/predicates/orient2d.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {

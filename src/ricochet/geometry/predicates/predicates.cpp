@@ -2,9 +2,8 @@
 
 #include <array>
 
-#include "ricochet/geometry/predicates/bounded_cross.h"
-#include "ricochet/geometry/predicates/exact_determinant.h"
-#include "ricochet/geometry/sweep/triangle_plane.h"
+#include "ricochet/geometry/predicates/exact_arithmetic.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 
 namespace ricochet {
 namespace {
@@ -86,6 +85,12 @@ bool have_opposite_signs(int a, int b, int c) { return a * b < 0 || b * c < 0 ||
 
 }  // namespace
 
+int detail::orient2d_beyond_filter(const Point2& a, const Point2& b, const Point2& c) {
+    const Expansion<2> bu(two_diff(b.u, a.u));
+    const Expansion<2> bv(two_diff(b.v, a.v));
+    return (bu * two_diff(c.v, a.v) - bv * two_diff(c.u, a.u)).sign();
+}
+
 int detail::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
@@ -108,8 +113,8 @@ DoubleDouble orient3d_estimate(const Vec3& a, const Vec3& b, const Vec3& c, cons
 
 bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return projection_axis(a, b, c) < 0; }
 
-bool detail::segment_meets_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                                                  const Vec3& c, int p_side, int q_side) {
+bool detail::segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                                       const Vec3& c, int p_side, int q_side) {
     // The side on which the line pq passes each edge. It misses the triangle when two sides are strictly opposite;
     // that holds whatever the planes say, so cheap filters may reject before anything is computed exactly.
     const Vec3 pa = a - p;

@@ -15,6 +15,13 @@
 
 namespace ricochet {
 
+/// A point of a projection plane.
+struct Point2 {
+    double u = 0.0;
+    double v = 0.0;
+    friend constexpr bool operator==(const Point2&, const Point2&) = default;
+};
+
 /// Largest coordinate magnitude for which the predicates are exact.
 inline constexpr double kLargestExactCoordinate = 0x1p300;
 /// Coordinates smaller than this are replaced by zero, which keeps every product inside the range of doubles.
@@ -44,7 +51,8 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 
 /// True when the closed segment [p, q] and the closed triangle (a, b, c) have a point in common. Exact in every case:
 /// coplanar segments, a segment that is a point, triangles that are a segment or a point.
-[[nodiscard]] bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
+[[nodiscard]] bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                               const Vec3& c);
 
 /// True when p lies on the closed triangle, which may be degenerate. Exact.
 [[nodiscard]] bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
@@ -94,13 +102,16 @@ inline constexpr double kDeterminantFilter = 0x1.1p-50;
     return static_cast<int>(determinant > bound) - static_cast<int>(determinant < -bound);
 }
 
+/// orient2d when the filter does not decide.
+[[nodiscard]] int orient2d_beyond_filter(const Point2& a, const Point2& b, const Point2& c);
+
 /// orient3d when the filter does not decide.
 [[nodiscard]] int orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// segment_meets_triangle when the filter has not put both ends on the same side; p_side and q_side are what it found
-/// (0: not decided).
-[[nodiscard]] bool segment_meets_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                                                        const Vec3& c, int p_side, int q_side);
+/// segment_intersects_triangle when the filter has not put both ends on the same side; p_side and q_side are what it
+/// found (0: not decided).
+[[nodiscard]] bool segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                                             const Vec3& c, int p_side, int q_side);
 
 }  // namespace detail
 
@@ -109,12 +120,25 @@ inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
     return filtered != 0 ? filtered : detail::orient3d_beyond_filter(a, b, c, d);
 }
 
-inline bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+inline bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
     const int p_side = detail::filtered_sign(normal, p - a);
     const int q_side = detail::filtered_sign(normal, q - a);
     if (p_side * q_side > 0) return false;
-    return detail::segment_meets_triangle_beyond_filter(p, q, a, b, c, p_side, q_side);
+    return detail::segment_intersects_triangle_beyond_filter(p, q, a, b, c, p_side, q_side);
+}
+
+/// +1 when a, b, c turn counter-clockwise, -1 when clockwise, 0 when they are collinear; exact.
+[[nodiscard]] inline int orient2d(const Point2& a, const Point2& b, const Point2& c) {
+    // Two differences, a product and the subtraction: 4 roundings of u = 2^-53 on either term, and a little.
+    constexpr double kFilter = 4.5 * 0x1p-53;
+    const double left = (b.u - a.u) * (c.v - a.v);
+    const double right = (b.v - a.v) * (c.u - a.u);
+    const double value = left - right;
+    const double bound = kFilter * (std::fabs(left) + std::fabs(right));
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    return detail::orient2d_beyond_filter(a, b, c);
 }
 
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shapes/shape_contact.h"
+#include "ricochet/geometry/shapes/shape_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kRoughError = 0x1p-50;
 constexpr double kPreciseError = 0x1p-98;
 
-/// What clears() adds to the reach, relative to all lengths involved.
+/// What can_cull() adds to the reach, relative to all lengths involved.
 constexpr double kDistanceFieldSlack = 0x1p-44;
 
 /// Corners of the path's Bezier hull: path and chords lie inside.
@@ -86,6 +86,35 @@ bool is_far_outside(const LocalShape& shape, const Hull& local, double reach) {
     return is_beyond_plane(shape, local, in_units(around, nearest), reach);
 }
 
+using std::size_t;
+
+Vec3 column(const AffineMap& map, int i) { return {map.row_x[i], map.row_y[i], map.row_z[i]}; }
+
+/// The column times a power of two that brings its largest component between 1 and 2.
+PreciseVec3 near_one(const Vec3& column) {
+    const double scale = std::ldexp(1.0, -std::ilogb(max_abs(column)));
+    return {DoubleDouble(scale * column.x), DoubleDouble(scale * column.y), DoubleDouble(scale * column.z)};
+}
+
+PreciseVec3 unit(const PreciseVec3& v) { return (DoubleDouble(1.0) / sqrt(dot_of(v, v))) * v; }
+
+bool is_diagonal(const AffineMap& map) {
+    return map.row_x.y == 0.0 && map.row_x.z == 0.0 && map.row_y.x == 0.0 && map.row_y.z == 0.0 && map.row_z.x == 0.0 &&
+           map.row_z.y == 0.0;
+}
+
+/// Lengths of the map's columns: a shape's half axes, m.
+std::array<double, 3> column_lengths(const AffineMap& map) {
+    std::array<double, 3> lengths{};
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 c = column(map, i);
+        const double scale = std::ldexp(1.0, std::ilogb(max_abs(c)));
+        const PreciseVec3 v = near_one(c);
+        lengths[static_cast<size_t>(i)] = scale * sqrt(dot_of(v, v)).hi;
+    }
+    return lengths;
+}
+
 }  // namespace
 
 AnalyticShape::AnalyticShape(const AffineMap& world_from_local, const LocalShape& shape)
@@ -137,16 +166,16 @@ std::optional<ShapeContact> AnalyticShape::first_contact(const Path& path, doubl
     return ShapeContact{contact->time, frame_.world_normal(contact->normal), frame_.world_point(contact->foot)};
 }
 
-bool AnalyticShape::segment_is_free(const Vec3& p, const Vec3& q) const {
+bool AnalyticShape::segment_is_clear(const Vec3& p, const Vec3& q) const {
     return shape_.is_free(segment<double>(p, q)) || shape_.is_free(segment<DoubleDouble>(p, q));
 }
 
-double AnalyticShape::distance_of_segment(const Vec3& p, const Vec3& q) const {
-    if (!segment_is_free(p, q)) return 0.0;
+double AnalyticShape::distance_to_segment(const Vec3& p, const Vec3& q) const {
+    if (!segment_is_clear(p, q)) return 0.0;
     return shape_.distance_of(frame_.precise_local_point(p), frame_.precise_local_point(q));
 }
 
-bool AnalyticShape::clears(const Path& path, double reach) const {
+bool AnalyticShape::can_cull(const Path& path, double reach) const {
     const Hull hull = hull_of(path);
     if (is_apart(hull, bounds_, reach)) return true;
     Hull local = hull;
@@ -158,6 +187,54 @@ bool AnalyticShape::clears(const Path& path, double reach) const {
     }
     const double widened = reach + kDistanceFieldSlack * size;
     return is_deep_inside(shape_, local, widened) || is_far_outside(shape_, local, widened);
+}
+
+ShapeFrame::ShapeFrame(const AffineMap& world_from_local)
+    : center_(world_from_local.translation), is_aligned_(is_diagonal(world_from_local)) {
+    if (is_aligned_) {
+        axes_ = {PreciseVec3{DoubleDouble(1.0), {}, {}}, PreciseVec3{{}, DoubleDouble(1.0), {}},
+                 PreciseVec3{{}, {}, DoubleDouble(1.0)}};
+    } else {
+        axes_[0] = unit(near_one(column(world_from_local, 0)));
+        const PreciseVec3 second = near_one(column(world_from_local, 1));
+        axes_[1] = unit(second - dot_of(second, axes_[0]) * axes_[0]);
+        axes_[2] = cross_of(axes_[0], axes_[1]);
+    }
+    for (size_t i = 0; i < 3; ++i) rounded_axes_[i] = rounded(axes_[i]);
+}
+
+Vec3 ShapeFrame::local_point(const Vec3& p) const {
+    const Vec3 w = p - center_;
+    if (is_aligned_) return w;
+    return {dot(rounded_axes_[0], w), dot(rounded_axes_[1], w), dot(rounded_axes_[2], w)};
+}
+
+PreciseVec3 ShapeFrame::precise_local_point(const Vec3& p) const {
+    const PreciseVec3 w = difference<DoubleDouble>(p, center_);
+    if (is_aligned_) return w;
+    return {dot_of(axes_[0], w), dot_of(axes_[1], w), dot_of(axes_[2], w)};
+}
+
+LocalPath ShapeFrame::local_path(const Path& path) const {
+    LocalPath local;
+    local.degree = path.degree;
+    local.duration = path.duration;
+    const PreciseVec3 start = precise_local_point(path.c[0]);
+    local.component[0][0] = start.x;
+    local.component[1][0] = start.y;
+    local.component[2][0] = start.z;
+    for (size_t k = 1; k <= static_cast<size_t>(path.degree); ++k) {
+        for (size_t i = 0; i < 3; ++i) {
+            local.component[i][k] =
+                is_aligned_ ? DoubleDouble(path.c[k][static_cast<int>(i)]) : dot_of(axes_[i], path.c[k]);
+        }
+    }
+    return local;
+}
+
+Vec3 ShapeFrame::rotated(const Vec3& local) const {
+    if (is_aligned_) return local;
+    return local.x * rounded_axes_[0] + local.y * rounded_axes_[1] + local.z * rounded_axes_[2];
 }
 
 }  // namespace ricochet

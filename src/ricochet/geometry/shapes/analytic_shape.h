@@ -13,10 +13,39 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/geometry/shapes/local_shape.h"
-#include "ricochet/geometry/shapes/shape_frame.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
+
+/// Where a shape stands: world = center + sum of local_i * axis_i.
+class ShapeFrame {
+public:
+    /// Frame of an affine map whose columns are orthogonal up to rounding (rotation times scale) and not zero. The
+    /// columns' directions, made orthonormal in double-double, are the axes; a mirrored axis may point either way.
+    explicit ShapeFrame(const AffineMap& world_from_local);
+
+    /// Coordinates of p, rounded: each within 2^-50 |p - center|.
+    [[nodiscard]] Vec3 local_point(const Vec3& p) const;
+    /// Coordinates of p, each within 2^-98 |p - center|.
+    [[nodiscard]] PreciseVec3 precise_local_point(const Vec3& p) const;
+    [[nodiscard]] LocalPath local_path(const Path& path) const;
+
+    [[nodiscard]] Vec3 world_point(const Vec3& local) const { return center_ + rotated(local); }
+    /// A unit vector stays one.
+    [[nodiscard]] Vec3 world_normal(const Vec3& local) const {
+        return is_aligned_ ? local : normalized(rotated(local));
+    }
+    [[nodiscard]] const Vec3& axis(int i) const { return rounded_axes_[static_cast<std::size_t>(i)]; }
+    [[nodiscard]] const Vec3& center() const { return center_; }
+
+private:
+    [[nodiscard]] Vec3 rotated(const Vec3& local) const;
+
+    Vec3 center_;
+    std::array<PreciseVec3, 3> axes_{};
+    std::array<Vec3, 3> rounded_axes_{};
+    bool is_aligned_ = false;  ///< the axes are those of the world: nothing is rotated
+};
 
 /// Where a moving sphere (or point, radius 0) first touches a shape.
 struct ShapeContact {
@@ -54,7 +83,7 @@ public:
 
     /// First time at which the distance between the path and the surface shrinks to `radius` (m, >= 0), from either
     /// side. A sphere that starts nearer than that is stopped only when approaching: contact is then the first time at
-    /// which the distance is shrinking (faster than kSlowestApproach of the speed) while it is at most the radius. A
+    /// which the distance is shrinking (faster than kMinApproach of the speed) while it is at most the radius. A
     /// point that starts on the surface is turned back from the side it heads for, at time 0.
     ///
     /// Points, spheres of any radius against a sphere, and from inside against a circular cylinder: the root of a
@@ -66,15 +95,15 @@ public:
 
     /// True when the closed segment [p, q] surely does not meet the surface: both ends are on the same side by more
     /// than the rounding bound and so is everything between them. Errs on the side of false, by some 2^-90.
-    [[nodiscard]] bool segment_is_free(const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool segment_is_clear(const Vec3& p, const Vec3& q) const;
 
     /// A lower bound of the distance between the closed segment [p, q] and the surface, m; less than 2^-47 of itself
     /// below it (and the error of closest_point). 0 when the segment is not free.
-    [[nodiscard]] double distance_of_segment(const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] double distance_to_segment(const Vec3& p, const Vec3& q) const;
 
     /// True when path, chords and everything within `reach` metres of them stay off the surface. The cheap test that
     /// discards most shapes: errs on the side of false.
-    [[nodiscard]] bool clears(const Path& path, double reach) const;
+    [[nodiscard]] bool can_cull(const Path& path, double reach) const;
 
     /// A box around the shape, larger by rounding at most.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }

@@ -60,4 +60,13 @@ struct ClosestPointOnTriangle {
 [[nodiscard]] double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, const Vec3& a,
                                                                const Vec3& b, const Vec3& c);
 
+/// A direction, of any length, that leads from the triangle's nearest point to p, as plain doubles find it. It may be
+/// anything, zero and no number too, for triangles and places that they are not enough for.
+[[nodiscard]] Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// p's distance from the triangle (a, b, c) is certainly no less than this, m. Negative or no number where the
+/// direction tells nothing. All places between two are as far as the smaller of their bounds along the same direction.
+[[nodiscard]] double distance_lower_bound(const Vec3& direction, const Vec3& p, const Vec3& a, const Vec3& b,
+                                          const Vec3& c);
+
 }  // namespace ricochet

@@ -24,6 +24,8 @@
 #include <optional>
 
 #include "ricochet/core/double_double.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
@@ -76,5 +78,123 @@ struct Times {
 /// True when p is certainly positive on all of [0, to], by its Bernstein coefficients on it and on parts of
 /// it, in plain doubles. False decides nothing.
 [[nodiscard]] bool is_certainly_positive(const Polynomial& p, double to);
+
+/// A vector of doubles or double-doubles.
+template <class Scalar>
+struct VectorOf {
+    Scalar x{};
+    Scalar y{};
+    Scalar z{};
+};
+using PreciseVec3 = VectorOf<DoubleDouble>;
+
+namespace detail {
+
+inline void set_product(double& result, double x, double y) { result = x * y; }
+inline void set_product(DoubleDouble& result, double x, double y) { result = two_product(x, y); }
+inline void set_difference(double& result, double x, double y) { result = x - y; }
+inline void set_difference(DoubleDouble& result, double x, double y) { result = two_diff(x, y); }
+
+}  // namespace detail
+
+/// p - q; exact for double-doubles.
+template <class Scalar>
+[[nodiscard]] VectorOf<Scalar> difference(const Vec3& p, const Vec3& q) {
+    VectorOf<Scalar> d;
+    detail::set_difference(d.x, p.x, q.x);
+    detail::set_difference(d.y, p.y, q.y);
+    detail::set_difference(d.z, p.z, q.z);
+    return d;
+}
+
+template <class Scalar>
+[[nodiscard]] Scalar dot_of(const Vec3& u, const Vec3& v) {
+    Scalar x, y, z;
+    detail::set_product(x, u.x, v.x);
+    detail::set_product(y, u.y, v.y);
+    detail::set_product(z, u.z, v.z);
+    return x + y + z;
+}
+/// Products of equal or mixed kind.
+template <class Scalar, class Other>
+[[nodiscard]] Scalar dot_of(const VectorOf<Scalar>& u, const Other& v) {
+    return u.x * v.x + u.y * v.y + u.z * v.z;
+}
+
+[[nodiscard]] inline PreciseVec3 operator+(const PreciseVec3& u, const PreciseVec3& v) {
+    return {u.x + v.x, u.y + v.y, u.z + v.z};
+}
+[[nodiscard]] inline PreciseVec3 operator-(const PreciseVec3& u, const PreciseVec3& v) {
+    return {u.x - v.x, u.y - v.y, u.z - v.z};
+}
+template <class Factor>
+[[nodiscard]] PreciseVec3 operator*(const Factor& s, const PreciseVec3& u) {
+    return {u.x * s, u.y * s, u.z * s};
+}
+[[nodiscard]] inline PreciseVec3 cross_of(const PreciseVec3& u, const PreciseVec3& v) {
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+[[nodiscard]] inline Vec3 rounded(const PreciseVec3& u) { return {u.x.hi, u.y.hi, u.z.hi}; }
+
+/// Ascending coefficients; those above the degree are zero.
+template <class Scalar>
+using Coefficients = std::array<Scalar, Polynomial::kLargestDegree + 1>;
+
+/// The part of |w|^2 that does not depend on the start: the square of c[1] s + c[2] s^2 + c[3] s^3.
+template <class Scalar>
+[[nodiscard]] Coefficients<Scalar> squared_displacement(const Path& path) {
+    Coefficients<Scalar> q{};
+    q[2] = dot_of<Scalar>(path.c[1], path.c[1]);
+    if (path.degree < 2) return q;
+    q[3] = dot_of<Scalar>(path.c[1], path.c[2]) * 2.0;
+    q[4] = dot_of<Scalar>(path.c[2], path.c[2]);
+    if (path.degree < 3) return q;
+    q[4] = q[4] + dot_of<Scalar>(path.c[1], path.c[3]) * 2.0;
+    q[5] = dot_of<Scalar>(path.c[2], path.c[3]) * 2.0;
+    q[6] = dot_of<Scalar>(path.c[3], path.c[3]);
+    return q;
+}
+
+/// |w|^2 - radius^2, given squared_displacement and the start w(0).
+template <class Scalar>
+[[nodiscard]] Coefficients<Scalar> point_clearance(const Path& path, Coefficients<Scalar> q,
+                                                   const VectorOf<Scalar>& start, double radius) {
+    Scalar radius_squared;
+    detail::set_product(radius_squared, radius, radius);
+    q[0] = dot_of(start, start) - radius_squared;
+    for (int k = 1; k <= path.degree; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        q[i] = q[i] + dot_of(start, path.c[i]) * 2.0;
+    }
+    return q;
+}
+
+/// Scalar product of w with a fixed vector: height over a plane, or place along a line.
+template <class Scalar, class Direction>
+[[nodiscard]] std::array<Scalar, 4> component_along(const Path& path, const VectorOf<Scalar>& start,
+                                                    const Direction& direction) {
+    std::array<Scalar, 4> m{};
+    m[0] = dot_of(start, direction);
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(path.degree); ++k) {
+        if constexpr (std::is_same_v<Direction, Vec3>) {
+            m[k] = dot_of<Scalar>(direction, path.c[k]);
+        } else {
+            m[k] = dot_of(direction, path.c[k]);
+        }
+    }
+    return m;
+}
+
+/// q - m^2: from the distance from a point to that from the line through it.
+template <class Scalar>
+[[nodiscard]] Coefficients<Scalar> line_clearance(Coefficients<Scalar> q, const std::array<Scalar, 4>& m, int degree) {
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {
+        q[2 * i] = q[2 * i] - m[i] * m[i];
+        for (std::size_t j = i + 1; j <= static_cast<std::size_t>(degree); ++j) {
+            q[i + j] = q[i + j] - m[i] * m[j] * 2.0;
+        }
+    }
+    return q;
+}
 
 }  // namespace ricochet

@@ -5,8 +5,8 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/geometry/sweep/separation.h"
-#include "ricochet/geometry/sweep/triangle_contact_search.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/sphere_triangle_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -56,7 +56,7 @@ void SphereSweep::enclose() {
 }
 
 // A contact with an edge may turn out to be one with the face, at a time that differs by rounding.
-void SphereSweep::narrow(double latest) {
+void SphereSweep::shorten_to(double latest) {
     const double until = latest + 2.0 * kCandidateSlack * path_.duration;
     if (!(until < latest_)) return;
     latest_ = until;
@@ -88,47 +88,47 @@ bool SphereSweep::misses_plane(const detail::FilteredCross& normal, const Vec3& 
     return above || below;
 }
 
-bool SphereSweep::clears(const Vec3& a, const Vec3& b, const Vec3& c) const {
+bool SphereSweep::can_cull(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return misses_box(a, b, c) || misses_plane(detail::filtered_cross(b - a, c - a), a);
 }
 
 // Where another surface ends the path, it comes nearest to most triangles at that end.
-bool SphereSweep::stays_apart(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    const Vec3 away = direction_away(hull(1), a, b, c);
+bool SphereSweep::can_cull_at_end(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const Vec3 away = separating_direction(hull(1), a, b, c);
     for (int i = 0; i < hull_count_; ++i) {
-        if (!(distance_along(away, hull(i), a, b, c) > radius_ + slack_)) return false;
+        if (!(distance_lower_bound(away, hull(i), a, b, c) > radius_ + slack_)) return false;
     }
     return true;
 }
 
-bool SphereSweep::starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const {
+bool SphereSweep::starts_separated_from(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
 
 // Along the direction it is beyond the radius, and its way gets further.
-double SphereSweep::speed_of_leaving(const Vec3& a, const Vec3& b, const Vec3& c) const {
+double SphereSweep::separating_speed(const Vec3& a, const Vec3& b, const Vec3& c) const {
     if (path_.degree > 1) return 0.0;
-    const Vec3 away = direction_away(path_.c[0], a, b, c);
-    if (!(distance_along(away, path_.c[0], a, b, c) > radius_)) return 0.0;
+    const Vec3 away = separating_direction(path_.c[0], a, b, c);
+    if (!(distance_lower_bound(away, path_.c[0], a, b, c) > radius_)) return 0.0;
     const double speed = dot(away, path_.c[1]) / length(away);
     return speed > kCandidateSlack * length(path_.c[1]) ? speed : 0.0;
 }
 
 // The offset errs by some roundings of the largest coordinate.
-bool SphereSweep::recedes_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
-                               const Vec3& c) const {
+bool SphereSweep::is_separating_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
+                                     const Vec3& c) const {
     if (path_.degree > 1) return false;
     const double largest = std::max({scale_, max_abs(a), max_abs(b), max_abs(c)});
     return dot(nearest_to_start.offset, path_.c[1]) > kCandidateSlack * largest * length(path_.c[1]);
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    if (clears(a, b, c)) return std::nullopt;
-    return first_contact_nearby(TrianglePlane(a, b, c));
+    if (can_cull(a, b, c)) return std::nullopt;
+    return narrow_phase_contact(TrianglePlane(a, b, c));
 }
 
-std::optional<SphereContact> SphereSweep::first_contact_nearby(const TrianglePlane& triangle) const {
-    return TriangleContactSearch(*this, triangle).first();
+std::optional<SphereContact> SphereSweep::narrow_phase_contact(const TrianglePlane& triangle) const {
+    return SphereTriangleSweep(*this, triangle).first();
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) const {
@@ -170,8 +170,8 @@ bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double
     }
     // The end that seems nearer is likely to decide.
     const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
-    const Vec3 away = direction_away(from_q ? q : p, a, b, c);
-    if (distance_along(away, p, a, b, c) > least && distance_along(away, q, a, b, c) > least) return true;
+    const Vec3 away = separating_direction(from_q ? q : p, a, b, c);
+    if (distance_lower_bound(away, p, a, b, c) > least && distance_lower_bound(away, q, a, b, c) > least) return true;
     for (const bool at_q : {from_q, !from_q}) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(at_q ? q : p, a, b, c);
         if (nearest.distance_squared < least * least) return false;

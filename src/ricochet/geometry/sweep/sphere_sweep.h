@@ -17,11 +17,11 @@
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 #include "ricochet/geometry/sweep/closest_point.h"
-#include "ricochet/geometry/sweep/distance_polynomials.h"
 #include "ricochet/geometry/sweep/path.h"
-#include "ricochet/geometry/sweep/sweep.h"
-#include "ricochet/geometry/sweep/triangle_plane.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
+#include "ricochet/geometry/sweep/polynomial.h"
 
 namespace ricochet {
 
@@ -37,7 +37,7 @@ struct SphereContact {
 ///
 /// Contact is the first time at which the distance between centre and surface shrinks to the radius. A sphere that
 /// starts in overlap (distance < radius) is stopped only when approaching: contact is then the first time at which the
-/// distance is shrinking (faster than kSlowestApproach of the speed) while it is at most the radius. Separating motion
+/// distance is shrinking (faster than kMinApproach of the speed) while it is at most the radius. Separating motion
 /// and motion along the surface are free, and so is any motion of a centre on the surface itself until it returns.
 class SphereSweep {
 public:
@@ -48,41 +48,41 @@ public:
     /// vertices. Where face, edges and vertices tie to rounding (kSeamSlack) the face is reported, with the face's time
     /// and the bits of unit_normal(a, b, c) or their opposite.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const;
-    /// The same for a triangle that clears() has not discarded.
-    [[nodiscard]] std::optional<SphereContact> first_contact_nearby(const TrianglePlane& triangle) const;
+    /// The same for a triangle that can_cull() has not discarded.
+    [[nodiscard]] std::optional<SphereContact> narrow_phase_contact(const TrianglePlane& triangle) const;
     /// First contact with a plane, from either side. Where the plane is axis-aligned, so that its normal is exact, the
     /// time has the same bits as that of any triangle in it.
     [[nodiscard]] std::optional<SphereContact> first_contact(const Plane& plane) const;
 
-    /// What comes after `latest`, s, does not matter any more: clears() is about the path up to then only, and contacts
-    /// with triangles after it need not be found. Those before it are the same. A pure narrowing.
-    void narrow(double latest);
+    /// What comes after `latest`, s, does not matter any more: can_cull() is about the path up to then only, and
+    /// contacts with triangles after it need not be found. Those before it are the same. A pure narrowing.
+    void shorten_to(double latest);
 
     /// True when the sphere and its chords certainly stay clear of the triangle by `kCandidateSlack`: the cheap test
     /// that decides most candidates. Errs on the side of false. first_contact makes this test itself.
-    [[nodiscard]] bool clears(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] bool can_cull(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
-    /// The same as clears() by a test that costs more, and serves where the path comes nearest to the triangle at its
+    /// The same as can_cull() by a test that costs more, and serves where the path comes nearest to the triangle at its
     /// end.
-    [[nodiscard]] bool stays_apart(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] bool can_cull_at_end(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
     /// True when the start is certainly further than the radius from the triangle. Cheap; errs on the side of false.
-    [[nodiscard]] bool starts_apart_from(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] bool starts_separated_from(const Vec3& a, const Vec3& b, const Vec3& c) const;
     /// Where the path is straight and certainly leads away from the triangle, which the sphere does not overlap, so
     /// that nothing is met: the speed, m/s, along a direction in which the triangle is behind. Else 0. Cheap; errs on
     /// the side of 0, always so where the sphere touches the triangle.
-    [[nodiscard]] double speed_of_leaving(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] double separating_speed(const Vec3& a, const Vec3& b, const Vec3& c) const;
     /// Given the point of the triangle (a, b, c) nearest to the start: true when the path is straight and certainly
     /// leads away from there. The distance from a convex set is convex along a line, so it never shrinks then, and
     /// nothing is met.
-    [[nodiscard]] bool recedes_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
-                                    const Vec3& c) const;
+    [[nodiscard]] bool is_separating_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
+                                          const Vec3& c) const;
 
     [[nodiscard]] const Path& path() const { return path_; }
     [[nodiscard]] double radius() const { return radius_; }
 
 private:
-    friend class TriangleContactSearch;
+    friend class SphereTriangleSweep;
 
     [[nodiscard]] const Vec3& hull(int i) const { return hull_[static_cast<std::size_t>(i)]; }
     void enclose();

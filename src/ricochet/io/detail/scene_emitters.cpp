@@ -11,7 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/emitter.h"
-#include "ricochet/geometry/mesh/placed_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/detail/attribute_keys.h"
 #include "ricochet/io/detail/scene_context.h"
 
@@ -52,7 +52,7 @@ std::shared_ptr<const TriangleMesh> surface_of(SceneContext& context, const Simu
         placement = collider->placement;
     }
     if (!mesh) return nullptr;
-    auto world = std::make_shared<const TriangleMesh>(placed(*mesh, placement));
+    auto world = std::make_shared<const TriangleMesh>(transformed(*mesh, placement));
     const char* key = is_collider ? "collider" : "file";
     if (!is_placed_well(*world)) {
         context.error(view, key, fmt::format("a placed vertex is not finite or beyond {} m", kLargestCoordinate));

@@ -10,7 +10,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/springs.h"
-#include "ricochet/geometry/mesh/placed_mesh.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/detail/scene_context.h"
 
 namespace ricochet::detail {
@@ -114,7 +114,7 @@ private:
     SpringBody cloth_of(const ObjectView& view) {
         const auto mesh = context_.load_mesh(view);
         if (!mesh || !is_complete(view, {"stiffness"}, "mass", "mass_per_area")) return {};
-        const TriangleMesh world = placed(*mesh, SceneContext::placement_of(view));
+        const TriangleMesh world = transformed(*mesh, SceneContext::placement_of(view));
         const bool is_placed_well = std::all_of(world.vertices.begin(), world.vertices.end(), [](const Vec3& v) {
             return is_finite(v) && max_abs(v) <= kLargestCoordinate;
         });

@@ -12,6 +12,7 @@
 #include <cstddef>
 
 #include "ricochet/core/double_double.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 
@@ -99,5 +100,78 @@ template <int N>
     for (int i = 0; i < e.size; ++i) sum = sum + e[i];
     return sum;
 }
+
+/// The exact difference of two points, each component the sum of two doubles.
+struct ExactDifference {
+    DoubleDouble x;
+    DoubleDouble y;
+    DoubleDouble z;
+
+    ExactDifference(const Vec3& to, const Vec3& from)
+        : x(two_diff(to.x, from.x)), y(two_diff(to.y, from.y)), z(two_diff(to.z, from.z)) {}
+    [[nodiscard]] Vec3 rounded() const { return {x.hi, y.hi, z.hi}; }
+};
+
+/// A number in double-double with a bound on its absolute error.
+struct BoundedValue {
+    DoubleDouble value;
+    double error = 0.0;
+
+    [[nodiscard]] bool sign_is_known() const { return std::fabs(value.hi) > error; }
+    [[nodiscard]] bool is_accurate(double relative_error) const {
+        return error <= relative_error * std::fabs(value.hi);
+    }
+};
+
+/// u x v in double-double. `magnitude` holds the sums of the magnitudes of each component's two terms.
+struct BoundedCross {
+    static constexpr double kRoundoff = 0x1p-53;
+
+    DoubleDouble x;
+    DoubleDouble y;
+    DoubleDouble z;
+    Vec3 magnitude;
+
+    BoundedCross(const ExactDifference& u, const ExactDifference& v)
+        : x(u.y * v.z - u.z * v.y),
+          y(u.z * v.x - u.x * v.z),
+          z(u.x * v.y - u.y * v.x),
+          magnitude(detail::filtered_cross(u.rounded(), v.rounded()).magnitude) {}
+
+    /// (u x v) . w. The differences are exact, so each of the six terms errs by two products (7 u^2 each), one
+    /// subtraction and at most two additions (3 u^2 each): 23 u^2 of its magnitude, u = 2^-53. The next power of two
+    /// also covers the higher orders and the rounding of the magnitude itself (some 10 u of it).
+    [[nodiscard]] BoundedValue dot(const ExactDifference& w) const {
+        const double terms =
+            magnitude.x * std::fabs(w.x.hi) + magnitude.y * std::fabs(w.y.hi) + magnitude.z * std::fabs(w.z.hi);
+        return {x * w.x + y * w.y + z * w.z, 32.0 * kRoundoff * kRoundoff * terms};
+    }
+};
+
+namespace detail {
+
+using ExactMinor = Expansion<16>;
+using ExactDeterminant = Expansion<192>;
+
+/// a d - b c for differences.
+inline ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                              const DoubleDouble& d) {
+    return Expansion<2>(a) * d - Expansion<2>(b) * c;
+}
+
+/// Component 0, 1 or 2 of u x v.
+inline ExactMinor exact_cross_component(const ExactDifference& u, const ExactDifference& v, int axis) {
+    if (axis == 0) return exact_minor(u.y, u.z, v.y, v.z);
+    if (axis == 1) return exact_minor(u.z, u.x, v.z, v.x);
+    return exact_minor(u.x, u.y, v.x, v.y);
+}
+
+inline ExactDeterminant exact_determinant(const ExactDifference& u, const ExactDifference& v,
+                                          const ExactDifference& w) {
+    return exact_cross_component(u, v, 0) * w.x + exact_cross_component(u, v, 1) * w.y +
+           exact_cross_component(u, v, 2) * w.z;
+}
+
+}  // namespace detail
 
 }  // namespace ricochet

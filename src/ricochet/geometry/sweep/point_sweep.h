@@ -11,8 +11,8 @@
 #include <limits>
 #include <optional>
 
+#include "ricochet/geometry/predicates/triangle_plane.h"
 #include "ricochet/geometry/sweep/path.h"
-#include "ricochet/geometry/sweep/triangle_plane.h"
 
 namespace ricochet {
 
@@ -33,11 +33,11 @@ struct Crossing {
 
 /// True when the path, everything within `slack` metres of it and its chords stay strictly on one side of the
 /// triangle's plane: the triangle needs no further look. Errs on the side of false.
-[[nodiscard]] bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack);
+[[nodiscard]] bool stays_on_one_side(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack);
 /// The same for a triangle that is asked more.
-[[nodiscard]] bool clears_plane_of(const Path& path, const TrianglePlane& triangle, double slack);
+[[nodiscard]] bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack);
 /// The same for a plane.
-[[nodiscard]] bool clears_plane(const Path& path, const Plane& plane, double slack);
+[[nodiscard]] bool stays_on_one_side(const Path& path, const Plane& plane, double slack);
 
 /// First crossing of the closed triangle (a, b, c), which must not be degenerate. Nothing when there is none.
 /// For straight paths the time is the exact rational rounded (within 2 ulp); for parabolas it solves the quadratic with
@@ -51,7 +51,7 @@ struct Crossing {
 
 /// Time at which a path that runs along the plane of (a, b, c) leaves the triangle by more than `slack` metres, in
 /// [0, duration]; 0 when it starts outside. `normal` is the triangle's unit normal, either way round.
-[[nodiscard]] double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c,
+[[nodiscard]] double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c,
                                         const Vec3& normal, double slack);
 
 /// Signed distance of p from the plane of (a, b, c), m. Its relative error is a few ulp times the longest edge over the

@@ -10,12 +10,11 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 #include "ricochet/geometry/sweep/closest_point.h"
-#include "ricochet/geometry/sweep/distance_polynomials.h"
 #include "ricochet/geometry/sweep/path.h"
 #include "ricochet/geometry/sweep/polynomial.h"
 #include "ricochet/geometry/sweep/sphere_sweep.h"
-#include "ricochet/geometry/sweep/triangle_plane.h"
 
 namespace ricochet {
 
@@ -77,7 +76,7 @@ template <class OffsetAt>
         const double middle = start + 0.5 * (end - start);
         const Vec3 offset = offset_at(path.position(middle));
         const Vec3 velocity = path.velocity(middle);
-        if (dot(offset, velocity) < -kSlowestApproach * length(offset) * length(velocity)) {
+        if (dot(offset, velocity) < -kMinApproach * length(offset) * length(velocity)) {
             return {OverlapEnd::kStopped, start};
         }
         start = end;
@@ -86,9 +85,9 @@ template <class OffsetAt>
 }
 
 /// One search; see SphereSweep::first_contact.
-class TriangleContactSearch {
+class SphereTriangleSweep {
 public:
-    TriangleContactSearch(const SphereSweep& sphere, const TrianglePlane& plane);
+    SphereTriangleSweep(const SphereSweep& sphere, const TrianglePlane& plane);
 
     [[nodiscard]] std::optional<SphereContact> first();
 

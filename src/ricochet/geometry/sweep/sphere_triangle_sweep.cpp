@@ -1,4 +1,4 @@
-#include "ricochet/geometry/sweep/triangle_contact_search.h"
+#include "ricochet/geometry/sweep/sphere_triangle_sweep.h"
 
 #include <cmath>
 
@@ -69,7 +69,7 @@ Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& h
     return p;
 }
 
-TriangleContactSearch::TriangleContactSearch(const SphereSweep& sphere, const TrianglePlane& plane)
+SphereTriangleSweep::SphereTriangleSweep(const SphereSweep& sphere, const TrianglePlane& plane)
     : sphere_(sphere),
       path_(sphere.path_),
       radius_(sphere.radius_),
@@ -78,7 +78,7 @@ TriangleContactSearch::TriangleContactSearch(const SphereSweep& sphere, const Tr
       largest_coordinate_(std::max({max_abs(plane.a()), max_abs(plane.b()), max_abs(plane.c())})),
       limit_(sphere.latest_) {}
 
-std::optional<SphereContact> TriangleContactSearch::first() {
+std::optional<SphereContact> SphereTriangleSweep::first() {
     search(0.0);
     if (starts_in_overlap_) return search_from_overlap();
     if (!best_) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<SphereContact> TriangleContactSearch::first() {
 }
 
 /// The face comes first, then the vertices, since what they find shortens the search along the edges, the costliest.
-void TriangleContactSearch::search(double from) {
+void SphereTriangleSweep::search(double from) {
     best_.reset();
     limit_ = sphere_.latest_;
     search_face(from);
@@ -94,13 +94,13 @@ void TriangleContactSearch::search(double from) {
     for (int i = 0; i < 3; ++i) search_edge(i, from);
 }
 
-void TriangleContactSearch::offer(double time, TriangleFeature feature) {
+void SphereTriangleSweep::offer(double time, TriangleFeature feature) {
     if (best_ && (time > best_->time || (time == best_->time && rank(feature) >= rank(best_->feature)))) return;
     best_ = Candidate{time, feature};
     limit_ = std::min(limit_, time);
 }
 
-const std::optional<Vec3>& TriangleContactSearch::normal() {
+const std::optional<Vec3>& SphereTriangleSweep::normal() {
     if (!normal_is_known_) {
         normal_is_known_ = true;
         const bool is_plain = max_abs(plane_.cross().value) > 0x1p-40 * max_abs(plane_.cross().magnitude);
@@ -109,13 +109,13 @@ const std::optional<Vec3>& TriangleContactSearch::normal() {
     return normal_;
 }
 
-double TriangleContactSearch::seam_slack(const Vec3& p) const {
+double SphereTriangleSweep::seam_slack(const Vec3& p) const {
     return kSeamSlack * (std::max(max_abs(p), largest_coordinate_) + radius_);
 }
 
 /// Height over the face along a normal of some length; the radius times that length. An axis is exact and used as it
 /// is, so that any triangle in an axis-aligned plane gives the same bits.
-std::array<DoubleDouble, 4> TriangleContactSearch::height_over_face(DoubleDouble& scaled_radius) {
+std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& scaled_radius) {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[0]);
     scaled_radius = DoubleDouble(radius_);
     if (is_axis(*normal_)) return component_along(path_, start, *normal_);
@@ -126,8 +126,8 @@ std::array<DoubleDouble, 4> TriangleContactSearch::height_over_face(DoubleDouble
 }
 
 /// Times at which the sphere comes down on the face's plane from either side.
-Times TriangleContactSearch::face_crossings(const std::array<DoubleDouble, 4>& height,
-                                            const DoubleDouble& scaled_radius, double from) const {
+Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,
+                                          double from) const {
     const Times above = down_crossings(face_clearance(path_, height, scaled_radius, +1), from, path_.duration);
     const Times below = down_crossings(face_clearance(path_, height, scaled_radius, -1), from, path_.duration);
     Times all;
@@ -137,7 +137,7 @@ Times TriangleContactSearch::face_crossings(const std::array<DoubleDouble, 4>& h
 }
 
 /// True when some edge has the whole path on its outer side, so that no foot is on the face.
-bool TriangleContactSearch::certainly_passes_beside_face() const {
+bool SphereTriangleSweep::certainly_passes_beside_face() const {
     const double normal_size = length(plane_.cross().magnitude);
     for (int i = 0; i < 3; ++i) {
         const Vec3& from = corners_[static_cast<size_t>(i)];
@@ -156,7 +156,7 @@ bool TriangleContactSearch::certainly_passes_beside_face() const {
 }
 
 /// Is the foot of p's perpendicular on the face, or beyond its rim by no more than the seam slack?
-bool TriangleContactSearch::foot_is_on_face(const Vec3& p) {
+bool SphereTriangleSweep::foot_is_on_face(const Vec3& p) {
     const auto& [a, b, c] = corners_;
     if (projects_into_triangle(p, a, b, c, *normal_)) return true;
     const double slack = seam_slack(p);
@@ -169,11 +169,11 @@ bool TriangleContactSearch::foot_is_on_face(const Vec3& p) {
 }
 
 /// True when an offset from the triangle leans away from the normal by no more than the slack.
-bool TriangleContactSearch::is_upright(const Vec3& offset, double slack) const {
+bool SphereTriangleSweep::is_upright(const Vec3& offset, double slack) const {
     return length_squared(offset - dot(*normal_, offset) * *normal_) <= slack * slack;
 }
 
-void TriangleContactSearch::search_face(double from) {
+void SphereTriangleSweep::search_face(double from) {
     if (certainly_passes_beside_face() || !normal()) return;
     DoubleDouble scaled_radius;
     const auto height = height_over_face(scaled_radius);
@@ -187,7 +187,7 @@ void TriangleContactSearch::search_face(double from) {
 }
 
 /// Discards a point or line that the path cannot reach before the limit. `clearance` is of degree twice the path's.
-bool TriangleContactSearch::certainly_clears(const Coefficients<double>& clearance, double start_distance) const {
+bool SphereTriangleSweep::certainly_clears(const Coefficients<double>& clearance, double start_distance) const {
     const double extent = start_distance + sphere_.reach_;
     const double margin = kDistanceFieldError * (extent * extent + radius_ * radius_);
     if (path_.degree < 2) return quadratic_exceeds(clearance, margin, limit_);
@@ -199,7 +199,7 @@ bool TriangleContactSearch::certainly_clears(const Coefficients<double>& clearan
     return is_certainly_positive(p, limit_);
 }
 
-Polynomial TriangleContactSearch::polynomial(const Coefficients<DoubleDouble>& coefficients) const {
+Polynomial SphereTriangleSweep::polynomial(const Coefficients<DoubleDouble>& coefficients) const {
     Polynomial p;
     p.coefficients = coefficients;
     p.degree = 2 * path_.degree;
@@ -208,7 +208,7 @@ Polynomial TriangleContactSearch::polynomial(const Coefficients<DoubleDouble>& c
 }
 
 /// Nothing for an edge without length: its vertices stand for it.
-std::optional<TriangleContactSearch::EdgeLine> TriangleContactSearch::edge_line(int i) const {
+std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int i) const {
     const bool in_order = is_before(corners_[static_cast<size_t>(i)], corners_[static_cast<size_t>(next(i))]);
     const int first = in_order ? i : next(i);
     const int second = in_order ? next(i) : i;
@@ -222,7 +222,7 @@ std::optional<TriangleContactSearch::EdgeLine> TriangleContactSearch::edge_line(
     return EdgeLine{first, (DoubleDouble(1.0) / size) * near_one, size.hi / scale};
 }
 
-TriangleContactSearch::EdgeClearance TriangleContactSearch::edge_clearance(const EdgeLine& line) const {
+SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const EdgeLine& line) const {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[static_cast<size_t>(line.first)]);
     const auto place = component_along(path_, start, line.direction);
     const auto around_end = point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_);
@@ -230,7 +230,7 @@ TriangleContactSearch::EdgeClearance TriangleContactSearch::edge_clearance(const
 }
 
 /// Discards an edge by plain doubles: until the limit the path stays beyond one of its ends, or away from its line.
-bool TriangleContactSearch::certainly_misses_edge(int i) const {
+bool SphereTriangleSweep::certainly_misses_edge(int i) const {
     const Vec3& corner = corners_[static_cast<size_t>(i)];
     const Vec3 edge = corners_[static_cast<size_t>(next(i))] - corner;
     const double edge_length = length(edge);
@@ -251,7 +251,7 @@ bool TriangleContactSearch::certainly_misses_edge(int i) const {
     return certainly_clears(line_clearance(around, along, path_.degree), distance);
 }
 
-void TriangleContactSearch::search_edge(int i, double from) {
+void SphereTriangleSweep::search_edge(int i, double from) {
     if (certainly_misses_edge(i)) return;
     const std::optional<EdgeLine> line = edge_line(i);
     if (!line) return;
@@ -268,7 +268,7 @@ void TriangleContactSearch::search_edge(int i, double from) {
     }
 }
 
-void TriangleContactSearch::search_vertex(int i, double from) {
+void SphereTriangleSweep::search_vertex(int i, double from) {
     const Vec3& corner = corners_[static_cast<size_t>(i)];
     const Vec3 rough_start = path_.c[0] - corner;
     const auto rough = point_clearance(path_, sphere_.squared_displacement_, as_vector(rough_start), radius_);
@@ -281,7 +281,7 @@ void TriangleContactSearch::search_vertex(int i, double from) {
     if (crossings.count > 0) offer(crossings[0], vertex_feature(i));
 }
 
-std::span<const double> TriangleContactSearch::distance_extrema(Extrema& extrema) {
+std::span<const double> SphereTriangleSweep::distance_extrema(Extrema& extrema) {
     for (int i = 0; i < 3; ++i) {
         const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[static_cast<size_t>(i)]);
         extrema.add_of(polynomial(point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_)));
@@ -294,7 +294,7 @@ std::span<const double> TriangleContactSearch::distance_extrema(Extrema& extrema
     return extrema.sorted();
 }
 
-std::optional<SphereContact> TriangleContactSearch::search_from_overlap() {
+std::optional<SphereContact> SphereTriangleSweep::search_from_overlap() {
     const auto nearest_to = [&](const Vec3& p) {
         return closest_point_on_triangle(p, corners_[0], corners_[1], corners_[2]);
     };
@@ -312,7 +312,7 @@ std::optional<SphereContact> TriangleContactSearch::search_from_overlap() {
     return contact_at(*best_);
 }
 
-PreciseVec3 TriangleContactSearch::position_from(const Vec3& origin, double time) const {
+PreciseVec3 SphereTriangleSweep::position_from(const Vec3& origin, double time) const {
     const auto degree = static_cast<size_t>(path_.degree);
     PreciseVec3 w{DoubleDouble(path_.c[degree].x), DoubleDouble(path_.c[degree].y), DoubleDouble(path_.c[degree].z)};
     for (size_t k = degree - 1; k >= 1; --k) {
@@ -323,7 +323,7 @@ PreciseVec3 TriangleContactSearch::position_from(const Vec3& origin, double time
 }
 
 /// From the nearest point of an edge or vertex to the centre, not rounded to the coordinates' last place.
-Vec3 TriangleContactSearch::offset_at(const Candidate& candidate) const {
+Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     const int i = index_of(candidate.feature);
     if (rank(candidate.feature) == 2) return rounded(position_from(corners_[static_cast<size_t>(i)], candidate.time));
     const std::optional<EdgeLine> line = edge_line(i);
@@ -333,7 +333,7 @@ Vec3 TriangleContactSearch::offset_at(const Candidate& candidate) const {
 
 /// An edge or vertex whose nearest point lies on the face's rim to rounding, straight below the centre, gives way to
 /// the face: its normal, and its time where the plane is reached at that time to rounding.
-SphereContact TriangleContactSearch::contact_at(const Candidate& candidate) {
+SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
     const Vec3 p = path_.position(candidate.time);
     if (candidate.feature != TriangleFeature::kFace) {
         const Vec3 offset = offset_at(candidate);

@@ -1,10 +1,10 @@
-#include "ricochet/geometry/sweep/sweep.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates/expansion.h"
+#include "ricochet/geometry/predicates/exact_arithmetic.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/polynomial.h"
 
@@ -40,7 +40,9 @@ struct TriangleSurface {
     [[nodiscard]] const Vec3& normal() const { return plane.unit_normal(); }
     [[nodiscard]] int side(const Vec3& p) const { return plane.side(p); }
     [[nodiscard]] const Vec3& origin() const { return plane.a(); }
-    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const { return plane.is_met_by(p, q); }
+    [[nodiscard]] bool contains_crossing_of(const Vec3& p, const Vec3& q) const {
+        return plane.intersects_segment(p, q);
+    }
     [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, plane.a(), plane.b(), plane.c()); }
     [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return plane.crossing_fraction(p, q); }
     /// No more than fraction(), in plain doubles, for points that are on different sides.
@@ -139,7 +141,7 @@ struct Distance {
 };
 
 template <class Surface>
-Distance distance_along(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
+Distance distance_lower_bound(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
     const double sign = orientation;
     return {std::max(0.0, sign * dot(n, path.c[0] - surface.origin())), sign * dot(n, path.c[1]),
             sign * dot(n, path.c[2])};
@@ -216,7 +218,7 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     const bool dips = !surface.leads_to(before, path.c[1]) && !surface.leads_to(-before, path.c[2]);
     if (before == after && !dips) return std::nullopt;
     const Vec3 normal = surface.normal();
-    const Distance g = distance_along(path, surface, normal, before);
+    const Distance g = distance_lower_bound(path, surface, normal, before);
     const Roots roots = crossings_of_parabola(g, before == after, path.duration);
     for (int k = 0; k < roots.count; ++k) {
         const double s = roots.time[static_cast<std::size_t>(k)];
@@ -277,7 +279,7 @@ int side_of(const Plane& plane, const Vec3& p) {
     return plane_expansion(plane, p).sign();
 }
 
-bool clears_plane(const Path& path, const Plane& plane, double slack) {
+bool stays_on_one_side(const Path& path, const Plane& plane, double slack) {
     const Hull hull = hull_of(path);
     int side = 0;
     for (int k = 0; k < hull.count; ++k) {
@@ -294,11 +296,11 @@ bool clears_plane(const Path& path, const Plane& plane, double slack) {
 
 // With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
 // N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
-bool clears_plane_of(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
-    return clears_plane_of(path, TrianglePlane(a, b, c), slack);
+bool stays_on_one_side(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
+    return stays_on_one_side(path, TrianglePlane(a, b, c), slack);
 }
 
-bool clears_plane_of(const Path& path, const TrianglePlane& triangle, double slack) {
+bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack) {
     const auto& [normal, magnitude] = triangle.cross();
     const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
     const Hull hull = hull_of(path);
@@ -326,7 +328,7 @@ std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
     return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
 }
 
-double time_over_triangle(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
+double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
                           double slack) {
     const std::array<Vec3, 3> corners{a, b, c};
     double leaves = path.duration;

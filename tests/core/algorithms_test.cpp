@@ -1,4 +1,4 @@
-#include "ricochet/core/visit_few.h"
+#include "ricochet/core/algorithms.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-TEST(VisitFew, VisitsEveryOneOfTheRangeOnceAndInOrderAndNoOther) {
+TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
     RandomSequence random(5, 0, 0);
     for (int i = 0; i < 300; ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -25,10 +25,30 @@ TEST(VisitFew, VisitsEveryOneOfTheRangeOnceAndInOrderAndNoOther) {
             if (is_one[k] != 0) expected.push_back(k);
         }
         std::vector<std::size_t> visited;
-        visit_few(
+        for_each_if(
             begin, end, [&](std::size_t k) { return is_one[k] != 0; }, [&](std::size_t k) { visited.push_back(k); });
         EXPECT_EQ(visited, expected);
     }
+}
+
+TEST(GrowCapacityBy, MakesExactlyTheRoomThatIsAskedFor) {
+    std::vector<int> list(10, 3);
+    grow_capacity_by(list, 1'000'000);
+    EXPECT_EQ(list.capacity(), 1'000'010U);
+    EXPECT_EQ(list, std::vector<int>(10, 3));
+}
+
+TEST(GrowCapacityBy, ReallocatesAListThatGrowsByOneRarely) {
+    std::vector<int> list;
+    int moves = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const std::size_t before = list.capacity();
+        grow_capacity_by(list, 1);
+        list.push_back(i);
+        moves += list.capacity() != before ? 1 : 0;
+    }
+    EXPECT_LT(moves, 40);
+    EXPECT_LE(list.capacity(), 150'000U);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "ricochet/geometry/sweep/triangle_plane.h"
+#include "ricochet/geometry/predicates/triangle_plane.h"
 
-#include "ricochet/geometry/predicates/exact_determinant.h"
+#include "ricochet/geometry/predicates/exact_arithmetic.h"
 
 namespace ricochet {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "ricochet/geometry/predicates/bounded_cross.h"
+#include "ricochet/geometry/predicates/exact_arithmetic.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -24,17 +24,18 @@ public:
     [[nodiscard]] const detail::FilteredCross& cross() const { return cross_; }
 
     /// orient3d(a, b, c, p) where plain doubles tell, else 0.
-    [[nodiscard]] int likely_side(const Vec3& p) const { return detail::filtered_sign(cross_, p - a_); }
+    [[nodiscard]] int filtered_side(const Vec3& p) const { return detail::filtered_sign(cross_, p - a_); }
     /// orient3d(a, b, c, p). Exact.
     [[nodiscard]] int side(const Vec3& p) const {
-        const int likely = likely_side(p);
+        const int likely = filtered_side(p);
         return likely != 0 ? likely : detail::orient3d_beyond_filter(a_, b_, c_, p);
     }
-    /// segment_meets_triangle(p, q, a, b, c). Exact.
-    [[nodiscard]] bool is_met_by(const Vec3& p, const Vec3& q) const {
-        const int p_side = likely_side(p);
-        const int q_side = likely_side(q);
-        return p_side * q_side <= 0 && detail::segment_meets_triangle_beyond_filter(p, q, a_, b_, c_, p_side, q_side);
+    /// segment_intersects_triangle(p, q, a, b, c). Exact.
+    [[nodiscard]] bool intersects_segment(const Vec3& p, const Vec3& q) const {
+        const int p_side = filtered_side(p);
+        const int q_side = filtered_side(q);
+        return p_side * q_side <= 0 &&
+               detail::segment_intersects_triangle_beyond_filter(p, q, a_, b_, c_, p_side, q_side);
     }
     /// See crossing_fraction().
     [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q) const;

@@ -20,8 +20,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/output_directory.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 namespace ricochet {
 namespace {

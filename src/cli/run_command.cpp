@@ -21,10 +21,9 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/checkpoint.h"
-#include "ricochet/io/output_directory.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
+#include "ricochet/io/run_report.h"
 #include "ricochet/io/run_writer.h"
-#include "ricochet/io/state_csv.h"
 
 namespace ricochet {
 namespace {

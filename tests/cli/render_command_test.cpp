@@ -10,7 +10,7 @@
 #include "io/example_frames.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 namespace ricochet {
 namespace {

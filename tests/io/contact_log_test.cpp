@@ -15,7 +15,7 @@
 
 #include "geometry/temporary_folder.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 #include "ricochet/io/run_writer.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/counts.h"

@@ -9,8 +9,8 @@
 #include "io/sample_scene.h"
 #include "ricochet/io/detail/particle_table.h"
 #include "ricochet/io/frames.h"
+#include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
-#include "ricochet/io/state_csv.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {

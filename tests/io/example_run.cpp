@@ -6,8 +6,7 @@
 #include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/output_directory.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 int main(int argc, char** argv) {
     using namespace ricochet;

@@ -11,7 +11,7 @@
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "ricochet/io/output_directory.h"
+#include "ricochet/io/run_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,6 @@
 
 #include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
-#include "ricochet/io/run_files.h"
 
 namespace ricochet {
 namespace {

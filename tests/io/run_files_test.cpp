@@ -1,4 +1,4 @@
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,6 @@
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/io/run_files.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
 

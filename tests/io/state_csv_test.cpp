@@ -1,4 +1,4 @@
-#include "ricochet/io/state_csv.h"
+#include "ricochet/io/run_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/io/writer_thread.h"
+#include "ricochet/io/frame_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "ricochet/compare/comparison_files.h"
 #include "ricochet/io/gnuplot_style.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 namespace ricochet {
 namespace {

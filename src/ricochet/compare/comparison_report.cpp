@@ -11,7 +11,7 @@
 
 #include "ricochet/compare/comparison.h"
 #include "ricochet/compare/comparison_files.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 
 namespace ricochet {
 

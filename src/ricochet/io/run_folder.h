@@ -1,14 +1,90 @@
 /// \file
-/// A run's output folder, looked at from outside: which frames and colliders it holds.
+/// The folder that a run writes into: the names of its files, whose it is while a run writes, and what it holds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "ricochet/io/run_info.h"
+#include "ricochet/io/run_report.h"
 
 namespace ricochet {
+
+inline constexpr const char* kRunMarkerFile = ".ricochet-run";    ///< says that the folder is a run's own
+inline constexpr const char* kRunInfoFile = "run.json";           ///< what is being run; written at the start
+inline constexpr const char* kSummaryFile = "summary.json";       ///< what came out; written at the end
+inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< of an interrupted run, to go on from
+inline constexpr const char* kParticleSeriesFile = "particles.pvd";
+inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
+inline constexpr const char* kContactSeriesFile = "contacts.pvd";
+
+inline constexpr const char* kComparisonJsonFile = "compare.json";          ///< everything that a comparison found
+inline constexpr const char* kComparisonTableFile = "compare.csv";          ///< one line a response and time step
+inline constexpr const char* kComparisonScriptFile = "compare.gp";          ///< draws the pictures with gnuplot
+inline constexpr const char* kComparisonPointsFile = "compare.dat";         ///< the rows for the script
+inline constexpr const char* kComparisonEnergyFile = "compare_energy.dat";  ///< energy errors over time for the script
+inline constexpr const char* kComparisonMarkdownFile = "report.md";
+inline constexpr const char* kComparisonHtmlFile = "report.html";
+/// The pictures that the script draws.
+inline constexpr std::array<const char*, 6> kComparisonPictures{
+    "cost.png", "error_position.png", "error_impact.png", "energy_time.png", "penetration.png", "tunnelled.png"};
+
+/// particles_NNNNNN.vtp; the number is the step.
+[[nodiscard]] std::string frame_file_name(std::uint64_t step);
+/// The step of a frame file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_frame_file(std::string_view name);
+
+/// contacts_NNNNNN.vtp; the number is the step after which it was written.
+[[nodiscard]] std::string contact_file_name(std::uint64_t step);
+/// The step of a contact file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_contact_file(std::string_view name);
+
+/// Files that follow each other in time, and the file that lists them.
+struct FileSeries {
+    std::string (*file_name)(std::uint64_t step);
+    const char* list;
+};
+inline constexpr FileSeries kParticleSeries{&frame_file_name, kParticleSeriesFile};
+inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFile};
+
+/// collider_NN_name.vtp; characters other than letters, digits, '-' and '_' become '_'.
+[[nodiscard]] std::string collider_file_name(std::size_t index, std::string_view name);
+/// The index in a collider file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::size_t> index_of_collider_file(std::string_view name);
+
+/// True for every name that a run or a comparison may give to a file in its folder, unfinished ones included; not for
+/// the marker.
+[[nodiscard]] bool is_run_file(std::string_view name);
+
+/// Takes a folder for one run. The folder must be new, empty, or carry an earlier run's marker; of an earlier run only
+/// the files that a run writes are removed (is_run_file()), everything else stays. The folder is locked while this object
+/// lives; the lock goes with the process, however that ends.
+class OutputDirectory {
+public:
+    /// Creates the folder (and its parents) where missing, marks and locks it, and removes an earlier run's files.
+    /// Throws InputError when the folder holds anything else or the path is not a folder; RunError when it is in use by
+    /// another run or the system refuses.
+    explicit OutputDirectory(std::filesystem::path path) : OutputDirectory(std::move(path), Earlier::remove) {}
+    /// What is to become of an earlier run's files. Kept ones must be there: InputError where the folder is no run's.
+    enum class Earlier { remove, keep };
+    OutputDirectory(std::filesystem::path path, Earlier earlier);
+    ~OutputDirectory();
+    OutputDirectory(const OutputDirectory&) = delete;
+    OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Removes frames and contact files of steps after this one: an interrupted run goes on there.
+    void remove_after(std::uint64_t step) const;
+
+private:
+    std::filesystem::path path_;
+    int marker_ = -1;  // file descriptor that holds the lock
+};
 
 /// One frame of a run.
 struct FrameFile {

@@ -6,7 +6,7 @@
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_files.h"
+#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 
 namespace ricochet {

@@ -12,9 +12,7 @@
 #include "ricochet/io/checkpoint.h"
 #include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
-#include "ricochet/io/run_info.h"
-#include "ricochet/io/summary.h"
-#include "ricochet/io/writer_thread.h"
+#include "ricochet/io/run_report.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {

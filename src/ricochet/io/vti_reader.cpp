@@ -1,4 +1,4 @@
-#include "ricochet/io/vti_reader.h"
+#include "ricochet/io/vtk_reader.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 
 #include "ricochet/io/detail/scene_files.h"
 #include "ricochet/io/detail/suggestion.h"
-#include "ricochet/io/detail/vtk_xml.h"
+#include "ricochet/io/vtk_xml.h"
 
 namespace ricochet {
 namespace {

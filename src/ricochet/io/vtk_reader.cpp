@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "ricochet/io/detail/vtk_xml.h"
+#include "ricochet/io/vtk_xml.h"
 
 namespace ricochet {
 namespace {

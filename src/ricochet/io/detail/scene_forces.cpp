@@ -9,7 +9,7 @@
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/io/detail/scene_context.h"
-#include "ricochet/io/vti_reader.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/io/detail/vtk_xml.h"
+#include "ricochet/io/vtk_xml.h"
 
 #include <fmt/format.h>
 

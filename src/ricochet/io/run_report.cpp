@@ -1,0 +1,261 @@
+#include "ricochet/io/run_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
+
+namespace ricochet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Vec3 vec3_of(const Json& json) {
+    if (json.size() != 3) throw InputError("a vector needs three numbers");
+    const Vec3 v{json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+    if (!is_finite(v)) throw InputError("a vector is not finite");
+    return v;
+}
+
+RunInfo run_info_of(const Json& json) {
+    RunInfo info;
+    info.version = json.at("version").get<std::string>();
+    info.scene = json.at("scene").get<std::string>();
+    info.up = vec3_of(json.at("up"));
+    if (const Json& camera = json.at("camera"); !camera.is_null()) {
+        info.camera = {vec3_of(camera.at("position")), vec3_of(camera.at("target")), camera.at("fov").get<double>()};
+    }
+    for (const Json& collider : json.at("colliders")) {
+        info.colliders.push_back({collider.at("name").get<std::string>(), collider.at("type").get<std::string>(),
+                                  collider.at("file").get<std::string>(),
+                                  collider.at("material").get<std::uint32_t>()});
+    }
+    return info;
+}
+
+// The axis that points most against the uniform forces; z where there are none.
+Vec3 upward_axis(const SimulationSetup& setup) {
+    Vec3 fall;
+    for (const auto& force : setup.forces) {
+        if (force->is_uniform()) fall += force->acceleration({Vec3{}, Vec3{}, 1.0, 0.0, 0.0});
+    }
+    Vec3 up{0, 0, 1};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::fabs(fall[axis]) < max_abs(fall) || fall[axis] == 0.0) continue;
+        up = {};
+        up[axis] = fall[axis] > 0.0 ? -1.0 : 1.0;
+    }
+    return up;
+}
+
+}  // namespace
+
+RunInfo run_info_of(const SceneDescription& scene) {
+    RunInfo info;
+    info.scene = scene.file;
+    info.up = upward_axis(scene.setup);
+    if (scene.camera) {
+        info.camera = CameraInfo{scene.camera->position, scene.camera->target, scene.camera->field_of_view_degrees};
+        if (scene.camera->up) info.up = normalized(*scene.camera->up);
+    }
+    return info;
+}
+
+std::string run_info_text(const RunInfo& info) {
+    Json json;
+    json["version"] = info.version;
+    json["scene"] = info.scene;
+    json["up"] = json_of(info.up);
+    json["camera"] = nullptr;
+    if (info.camera) {
+        json["camera"] = {{"position", json_of(info.camera->position)},
+                          {"target", json_of(info.camera->target)},
+                          {"fov", info.camera->fov_degrees}};
+    }
+    json["colliders"] = Json::array();
+    for (const ColliderInfo& collider : info.colliders) {
+        json["colliders"].push_back({{"name", collider.name},
+                                     {"type", collider.type},
+                                     {"file", collider.file},
+                                     {"material", collider.material}});
+    }
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+RunInfo read_run_info(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!in)
+        throw InputError(fmt::format("{}: cannot be read; expected the run.json of a ricochet run", path.string()));
+    try {
+        return run_info_of(Json::parse(text));
+    } catch (const std::exception& error) {
+        throw InputError(fmt::format("{}: not the run.json of a ricochet run ({}); run the scene again", path.string(),
+                                     error.what()));
+    }
+}
+
+namespace {
+
+Json json_of(const ColliderSummary& collider) {
+    return {{"name", collider.name}, {"type", collider.type},
+            {"file", collider.file}, {"triangles", collider.triangles},
+            {"hits", collider.hits}, {"impulse", {collider.impulse.x, collider.impulse.y, collider.impulse.z}}};
+}
+
+void add_statistics(Json& json, const SimulationStatistics& statistics) {
+    json["particles_emitted"] = statistics.emitted;
+    json["expired"] = statistics.expired;
+    json["absorbed"] = statistics.absorbed;
+    json["out_of_bounds"] = statistics.out_of_bounds;
+    json["shattered"] = statistics.shattered;
+    json["children"] = statistics.children;
+    json["births_refused_by_depth"] = statistics.births_refused_by_depth;
+    json["births_refused_by_population"] = statistics.births_refused_by_population;
+    json["frozen"] = statistics.frozen;
+    json["particle_steps"] = statistics.particle_steps;
+    json["contacts"] = statistics.contacts;
+    json["bounces_per_step_max"] = statistics.bounces_per_step_max;
+    json["resting"] = statistics.resting;
+    json["asleep"] = statistics.asleep;
+    json["unsimulated_time"] = statistics.unsimulated_time;
+    json["budget_exhausted"] = statistics.budget_exhausted;
+    json["started_inside"] = statistics.started_inside;
+    json["stayed"] = statistics.stayed;
+    json["lost_impulses"] = statistics.lost_impulses;
+    json["springs_broken"] = statistics.springs_broken;
+    json["springs_lost"] = statistics.springs_lost;
+    json["unsolved_steps"] = statistics.unsolved_steps;
+    json["trials"] = statistics.trials;
+    json["penetrations"] = statistics.penetrations;
+    json["penetration_mean"] =
+        statistics.penetrations > 0 ? statistics.penetration_sum / static_cast<double>(statistics.penetrations) : 0.0;
+    json["penetration_deepest"] = statistics.penetration_deepest;
+}
+
+ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
+    const ColliderDescription& collider = simulation.colliders()[i];
+    const TriangleTotals totals = simulation.triangle_totals(i);
+    ColliderSummary summary;
+    summary.name = collider.name;
+    summary.type = type_name(collider.shape);
+    // A plane and a shape with a formula are one surface, and no triangles that anything collides with.
+    const bool is_mesh =
+        std::holds_alternative<MeshShape>(collider.shape) || std::holds_alternative<CuboidShape>(collider.shape);
+    if (is_mesh) summary.triangles = simulation.collider_mesh(i)->triangles.size();
+    summary.hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
+    summary.impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
+    return summary;
+}
+
+}  // namespace
+
+RunSummary summarize(const Simulation& simulation) {
+    RunSummary summary;
+    summary.response = name_of(simulation.options().response);
+    summary.seed = simulation.options().seed;
+    summary.time_step = simulation.options().time_step;
+    summary.simulated_time = simulation.time();
+    summary.particles_alive = simulation.particles().size();
+    summary.statistics = simulation.statistics();
+    if (simulation.options().verify) summary.leaks = simulation.statistics().violations;
+    summary.kinetic_energy = simulation.kinetic_energy();
+    summary.potential_energy = simulation.potential_energy();
+    summary.state_hash = simulation.state_hash();
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        summary.colliders.push_back(collider_summary(simulation, i));
+    }
+    return summary;
+}
+
+std::string summary_text(const RunSummary& summary) {
+    Json json;
+    json["version"] = summary.version;
+    json["scene"] = summary.scene;
+    json["threads"] = summary.threads;
+    json["response"] = summary.response;
+    json["seed"] = summary.seed;
+    json["time_step"] = summary.time_step;
+    json["steps"] = summary.statistics.steps;
+    json["frames"] = summary.frames;
+    json["simulated_time"] = summary.simulated_time;
+    json["wall_seconds"] = summary.wall_seconds;
+    json["output_seconds"] = summary.output_seconds;
+    json["interrupted"] = summary.interrupted;
+    json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
+    json["particles_alive"] = summary.particles_alive;
+    add_statistics(json, summary.statistics);
+    json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);  // known only to a run that verifies itself
+    json["kinetic_energy"] = summary.kinetic_energy;
+    json["potential_energy"] = summary.potential_energy ? Json(*summary.potential_energy) : Json(nullptr);
+    json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
+    json["state_hash_algorithm"] = StateHash::kName;
+    json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["colliders"] = Json::array();
+    for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
+    // Names come from files and may hold bytes that are no UTF-8: they are replaced, never a reason to lose the run.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+namespace {
+
+std::string attribute_names(const AttributeTable& attributes) {
+    std::string names;
+    for (const AttributeDescription& column : attributes.columns()) {
+        names += column.components == 3 ? fmt::format(",{0}_x,{0}_y,{0}_z", column.name) : "," + column.name;
+    }
+    return names;
+}
+
+void append_attributes(const AttributeTable& attributes, std::size_t i, std::string& text) {
+    for (std::size_t k = 0; k < attributes.columns().size(); ++k) {
+        const Vec3 value = attributes.value(k, i);
+        for (int c = 0; c < attributes.columns()[k].components; ++c) {
+            fmt::format_to(std::back_inserter(text), ",{:.17g}", value[c]);
+        }
+    }
+}
+
+}  // namespace
+
+void write_state_csv(const std::filesystem::path& path, const Particles& particles, double time) {
+    write_state_csv(path, particles, particles.attributes, time);
+}
+
+void write_state_csv(const std::filesystem::path& path, const Particles& particles, const AttributeTable& attributes,
+                     double time) {
+    constexpr std::size_t kFlushBytes = 1 << 16;
+    AtomicFile file(path);
+    std::string text =
+        "id,x,y,z,vx,vy,vz,radius,mass,age,contacts,resting,unsimulated_time" + attribute_names(attributes) + "\n";
+    for (const std::uint32_t i : particles.order_by_id()) {
+        const Vec3& x = particles.position[i];
+        const Vec3& v = particles.velocity[i];
+        fmt::format_to(std::back_inserter(text),
+                       "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{:.17g}",
+                       particles.id[i], x.x, x.y, x.z, v.x, v.y, v.z, particles.radius[i], particles.mass[i],
+                       time - particles.birth_time[i], particles.contacts[i], particles.resting[i],
+                       particles.unsimulated_time[i]);
+        append_attributes(attributes, i, text);
+        text += '\n';
+        if (text.size() >= kFlushBytes) {
+            file.write(text);
+            text.clear();
+        }
+    }
+    file.write(text);
+    file.commit();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,97 @@
+/// \file
+/// What a run says about itself in text: run.json before its first step, summary.json and the final state after its
+/// last.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// Where a picture is taken from.
+struct CameraInfo {
+    Vec3 position;              ///< m
+    Vec3 target;                ///< m
+    double fov_degrees = 35.0;  ///< vertical field of view
+};
+
+/// One collider of the run.
+struct ColliderInfo {
+    std::string name;
+    std::string type;            ///< see type_name()
+    std::string file;            ///< its file in the run's folder
+    std::uint32_t material = 0;  ///< index of its material
+};
+
+/// Everything that run.json says.
+struct RunInfo {
+    std::string version;  ///< of ricochet
+    std::string scene;    ///< the scene file as it was named
+    Vec3 up{0, 0, 1};     ///< against gravity, along the nearest axis
+    std::optional<CameraInfo> camera;
+    std::vector<ColliderInfo> colliders;
+};
+
+/// What a scene says about its own picture: camera and the upward axis. Version and colliders are left empty.
+[[nodiscard]] RunInfo run_info_of(const SceneDescription& scene);
+[[nodiscard]] std::string run_info_text(const RunInfo& info);
+/// Reads run.json. Throws InputError when it is not one.
+[[nodiscard]] RunInfo read_run_info(const std::filesystem::path& path);
+
+/// One collider's totals over the run.
+struct ColliderSummary {
+    std::string name;
+    std::string type;  ///< see type_name()
+    std::string file;  ///< the collider's file in the run's folder
+    std::uint64_t triangles = 0;
+    std::uint64_t hits = 0;
+    Vec3 impulse;  ///< N s
+};
+
+/// Everything that summary.json says.
+struct RunSummary {
+    std::string version;  ///< of ricochet
+    std::string scene;    ///< the scene file as it was named
+    int threads = 0;
+    std::string response;  ///< by which impacts were answered
+    std::uint64_t seed = 0;
+    double time_step = 0.0;       ///< s
+    double simulated_time = 0.0;  ///< s
+    double wall_seconds = 0.0;
+    double output_seconds = 0.0;  ///< of them on output: what the simulation spent on it or waiting for it
+    std::uint64_t frames = 0;
+    bool interrupted = false;
+    std::optional<std::string> diverged;  ///< why the run stopped, where its numbers became nonsense
+    std::uint64_t particles_alive = 0;
+    SimulationStatistics statistics;
+    std::optional<std::uint64_t> leaks;      ///< violations that a verified run found; nothing without --verify
+    double kinetic_energy = 0.0;             ///< J
+    std::optional<double> potential_energy;  ///< J; nothing where a force has no potential
+    std::uint64_t state_hash = 0;
+    std::uint64_t peak_memory_bytes = 0;
+    std::vector<ColliderSummary> colliders;
+};
+
+/// What the simulation itself knows for its summary; the colliders' files are left empty.
+[[nodiscard]] RunSummary summarize(const Simulation& simulation);
+/// The JSON text of summary.json. Numbers that are not finite become null.
+[[nodiscard]] std::string summary_text(const RunSummary& summary);
+
+/// Writes a header line and one line a particle in the order of the ids: id, x, y, z, vx, vy, vz, radius, mass, age,
+/// contacts, resting, unsimulated_time, then the attributes (vectors as name_x, name_y, name_z). Numbers carry 17
+/// significant digits, so that they read back to the same bits. time: simulation time, s. Throws RunError or InputError
+/// like AtomicFile; nothing half-written appears.
+void write_state_csv(const std::filesystem::path& path, const Particles& particles, double time);
+/// The same with the attributes as they are shown (Simulation::shown_attributes()).
+void write_state_csv(const std::filesystem::path& path, const Particles& particles, const AttributeTable& attributes,
+                     double time);
+
+}  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
@@ -55,13 +55,13 @@ struct Aimed {
         const Vec3 target = rim_point(world.corners_of_triangle(triangle), random);
         const double past = random.uniform() < 0.25 ? 1.0 : 2.0 * random.uniform();
         const Path path = line_path(position, target - position, past);
-        ContactSearch search(world, scratch);
-        const auto contact = search.search(path, 0.0);
+        const auto found = find_first_contact({world, scratch.plane_cache}, {path, 0.0}, scratch);
+        const auto& contact = found.contact;
         if (!contact) {
-            position = travel(search, path, path.duration, path.end).reached;
+            position = follow_path(found.near, path, path.duration, path.end, scratch.chain).reached;
             return;
         }
-        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         position = safe_position.position;
         triangle = world.name_of(contact->first().surface).triangle;
         ++tally.contacts;
@@ -150,7 +150,7 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     return sum_of(parts);
 }
 
-/// Every segment of the chain that was travelled; a chain that does not join its ends counts as a crossing.
+/// Every segment of the chain that was followed; a chain that does not join its ends counts as a crossing.
 void Billiard::check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
     tally.crossing_legs += chain.front() == from && chain.back() == to ? 0 : 1;

@@ -1,4 +1,4 @@
-#include "ricochet/collision/contact_candidates.h"
+#include "ricochet/collision/contact.h"
 
 #include <gtest/gtest.h>
 

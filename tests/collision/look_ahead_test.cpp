@@ -1,4 +1,6 @@
 #include "ricochet/collision/look_ahead.h"
+#include "collision/worlds.h"
+#include "ricochet/collision/free_time.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/random.h"
 #include "support/counts.h"
 #include "support/mesh_distance.h"
@@ -17,6 +19,8 @@
 
 namespace ricochet {
 namespace {
+
+using testing::query;
 
 using testing::distance_from;
 
@@ -109,10 +113,10 @@ TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
         const double h = 0.01;
         const Path path = parabola_path(start, velocity, acceleration, h);
         const LookAhead look_ahead{parabola_path(start, velocity, acceleration, 1.0), 1e-9, 2.0 * h};
-        ContactSearch search(world, scratch);
-        const auto contact = search.search(path, radius, &look_ahead);
-        const double until = search.free_until();
-        ASSERT_EQ(contact.has_value(), ContactSearch(world, scratch).search(path, radius).has_value());
+        const auto found = query(world, scratch, path, radius, &look_ahead);
+        const auto& contact = found.contact;
+        const double until = found.ahead.free_until;
+        ASSERT_EQ(contact.has_value(), query(world, scratch, path, radius).contact.has_value());
         if (contact) {
             ASSERT_EQ(until, 0.0);
             continue;
@@ -123,8 +127,8 @@ TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
             if (until <= h) break;
             ASSERT_GE(distance_from(mesh, look_ahead.path.position(time)), radius + 1e-9) << time;
         }
-        ContactSearch whole(world, scratch);
-        const auto hit = whole.search(look_ahead.path, radius);
+        const auto found_hit = query(world, scratch, look_ahead.path, radius);
+        const auto& hit = found_hit.contact;
         Sum& sum = radius == 0.0 ? (is_straight ? points : bent_points) : (is_straight ? spheres : bent_spheres);
         sum.looked += until;
         sum.possible += hit ? hit->time : 1.0;
@@ -162,7 +166,7 @@ TEST(TimeClearOf, IsBeforeAnyTriangleIsNearAndMostOfTheWayToTheFirst) {
             ASSERT_GT(distance_from(mesh, path.position(from + (until - from) * k / 20.0)), margin) << k;
         }
         ContactScratch scratch;
-        const auto hit = ContactSearch(world, scratch).search(path, 0.0);
+        const auto hit = query(world, scratch, path, 0.0).contact;
         told += until;
         possible += hit ? hit->time : 1.0;
     }
@@ -191,28 +195,28 @@ TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
         const double margin = 1e-9 + 0.125 * h * h * length(acceleration);
         const Path path = parabola_path(start, velocity, acceleration, h);
         const LookAhead look_ahead{parabola_path(start, velocity, acceleration, 1.0), margin, 2.0 * h, h};
-        ContactSearch search(world, scratch);
-        if (search.search(path, radius, &look_ahead)) continue;
+        const auto found = query(world, scratch, path, radius, &look_ahead);
+        if (found.contact) continue;
         // The last step that begins before something is near.
-        const double free = std::max(search.free_until(), h);
+        const double free = std::max(found.ahead.free_until, h);
         const double from = h * std::max(1.0, std::floor(free / h));
-        if (!search.candidates().is_known() || search.candidates_until() < from + h) continue;
+        if (!found.ahead.candidates.is_known() || found.ahead.candidates_until < from + h) continue;
         const Vec3 p = look_ahead.path.position(from);
         const Vec3 v = look_ahead.path.velocity(from);
         const Path step = parabola_path(p, v, acceleration, h);
-        const auto by_awaited = ContactSearch(world, scratch).search(step, radius, nullptr, search.candidates());
-        const auto by_boxes = ContactSearch(world, other).search(step, radius);
-        ASSERT_EQ(by_awaited.has_value(), by_boxes.has_value());
+        const auto by_candidates = query(world, scratch, step, radius, nullptr, found.ahead.candidates).contact;
+        const auto by_broad_phase = query(world, other, step, radius).contact;
+        ASSERT_EQ(by_candidates.has_value(), by_broad_phase.has_value());
         ++candidates;
-        if (!by_boxes) continue;
+        if (!by_broad_phase) continue;
         ++met;
-        ASSERT_EQ(by_awaited->time, by_boxes->time);
-        ASSERT_EQ(by_awaited->count, by_boxes->count);
-        for (int k = 0; k < by_boxes->count; ++k) {
-            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].surface,
-                      by_boxes->all()[static_cast<std::size_t>(k)].surface);
-            ASSERT_EQ(by_awaited->all()[static_cast<std::size_t>(k)].normal,
-                      by_boxes->all()[static_cast<std::size_t>(k)].normal);
+        ASSERT_EQ(by_candidates->time, by_broad_phase->time);
+        ASSERT_EQ(by_candidates->count, by_broad_phase->count);
+        for (int k = 0; k < by_broad_phase->count; ++k) {
+            ASSERT_EQ(by_candidates->all()[static_cast<std::size_t>(k)].surface,
+                      by_broad_phase->all()[static_cast<std::size_t>(k)].surface);
+            ASSERT_EQ(by_candidates->all()[static_cast<std::size_t>(k)].normal,
+                      by_broad_phase->all()[static_cast<std::size_t>(k)].normal);
         }
     }
     EXPECT_GT(candidates, test::scaled(1500) / 3);

@@ -16,6 +16,8 @@
 namespace ricochet {
 namespace {
 
+using testing::query;
+
 using testing::mesh_collider;
 using testing::plane_collider;
 using testing::world_of;
@@ -58,10 +60,10 @@ TEST_P(ParkingAt, StandsOneGapBeforeTheSurfaceReachedInFreeLegs) {
         const Vec3 v = 4.0 * random.unit_vector();
         const Path path =
             i % 2 == 0 ? line_path(start, v, 1.0) : parabola_path(start, v, 8.0 * random.unit_vector(), 2.0);
-        ContactSearch search(world_, scratch);
-        const auto contact = search.search(path, 0.0);
+        const auto found = query(world_, scratch, path, 0.0);
+        const auto& contact = found.contact;
         ASSERT_TRUE(contact);
-        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         ASSERT_FALSE(safe_position.stayed);
         ASSERT_TRUE(can_be_walked(world_, path, 0.0, start, contact->time, safe_position.position, 12));
         const double height = std::fabs(world_.signed_distance_from(contact->first().surface, safe_position.position));
@@ -81,17 +83,18 @@ TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         SCOPED_TRACE(i);
         const Vec3 start = center_ + 0.9 * random.in_unit_ball();
         const Path path = line_path(start, 4.0 * random.unit_vector(), 1.0);
-        ContactSearch search(world_, scratch);
-        const auto contact = search.search(path, 0.0);
+        const auto found = query(world_, scratch, path, 0.0);
+        const auto& contact = found.contact;
         ASSERT_TRUE(contact);
-        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         ASSERT_FALSE(safe_position.stayed);
         const ContactSurface& met = contact->first();
         Vec3 away = random.unit_vector();
         // From straight away to grazing.
         const double lift = std::pow(10.0, -12.0 * random.uniform());
         away += (lift - dot(away, met.normal)) * met.normal;
-        const auto next = search.search(line_path(safe_position.position, 3.0 * away, 1.0), 0.0);
+        const auto found_next = query(world_, scratch, line_path(safe_position.position, 3.0 * away, 1.0), 0.0);
+        const auto& next = found_next.contact;
         if (!next) continue;
         for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, met.surface);
     }
@@ -101,11 +104,11 @@ TEST(SafePosition, InACornerStandsOffAllItsWalls) {
     const auto world = world_of(plane_collider({0, 0, 0}, {1, 0, 0}), plane_collider({0, 0, 0}, {0, 1, 0}),
                                 plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Path path = line_path({1, 1, 1}, {-1, -1, -1}, 2.0);
-    const auto contact = search.search(path, 0.0);
+    const auto found = query(world, scratch, path, 0.0);
+    const auto& contact = found.contact;
     ASSERT_TRUE(contact);
-    const SafePosition safe_position = find_safe_position(search, path, *contact);
+    const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
     EXPECT_FALSE(safe_position.stayed);
     for (int axis = 0; axis < 3; ++axis) EXPECT_GT(safe_position.position[axis], 0.0);
 }
@@ -125,10 +128,10 @@ TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
         if (!(start.y > 0.0) || side_of(world.planes()[1].plane, start) <= 0) continue;
         const Vec3 aim{-1.0, 0.3 * (random.uniform() - 0.5), random.uniform() - 0.5};
         const Path path = line_path(start, aim, 2.0);
-        ContactSearch search(world, scratch);
-        const auto contact = search.search(path, 0.0);
+        const auto found = query(world, scratch, path, 0.0);
+        const auto& contact = found.contact;
         ASSERT_TRUE(contact) << i;
-        const SafePosition safe_position = find_safe_position(search, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         EXPECT_EQ(side_of(world.planes()[0].plane, safe_position.position), 1) << i;
         EXPECT_EQ(side_of(world.planes()[1].plane, safe_position.position), 1) << i;
         moved += safe_position.stayed ? 0 : 1;
@@ -142,41 +145,41 @@ TEST(Travel, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
                        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
     const auto world = world_of(mesh_collider(ridge));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Path over = parabola_path({-1, 0, 0.25}, {1, 0, 2}, {0, 0, -2}, 2.0);
-    ASSERT_FALSE(search.search(over, 0.0));
+    const auto found = query(world, scratch, over, 0.0);
+    ASSERT_FALSE(found.contact);
     EXPECT_TRUE(meets_any(world, over.c[0], over.end));
-    const Travel travelled = travel(search, over, over.duration, over.end);
-    EXPECT_FALSE(travelled.blocker);
-    EXPECT_EQ(travelled.reached, over.end);
+    const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
+    EXPECT_FALSE(followed.blocker);
+    EXPECT_EQ(followed.reached, over.end);
 }
 
 // The ridge is made of triangles so small that the chord's middle lies far off every piece that the search looks at.
 TEST(Travel, DoesNotTrustAChordThatTheSearchHasNotLookedAt) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({0, 0, 0.5}, 0.05, 3)));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Path over = parabola_path({-1, 0, 0.5}, {1, 0, 2}, {0, 0, -2}, 2.0);
-    ASSERT_FALSE(search.search(over, 0.0));
+    const auto found = query(world, scratch, over, 0.0);
+    ASSERT_FALSE(found.contact);
     EXPECT_TRUE(meets_any(world, over.c[0], over.end));
-    EXPECT_FALSE(search.covers_chord(over, 0.0, over.duration));
-    const Travel travelled = travel(search, over, over.duration, over.end);
-    EXPECT_EQ(travelled.reached, over.end);
-    EXPECT_FALSE(travelled.blocker);
+    EXPECT_FALSE(found.near.covers_chord(over, 0.0, over.duration));
+    const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
+    EXPECT_EQ(followed.reached, over.end);
+    EXPECT_FALSE(followed.blocker);
 }
 
 TEST(Travel, StopsWhereTheWayIsBlocked) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
-    ASSERT_TRUE(search.search(down, 0.0));
-    const Travel travelled = travel(search, down, down.duration, down.end);
-    ASSERT_TRUE(travelled.blocker);
-    EXPECT_EQ(*travelled.blocker, 0U);
-    EXPECT_NEAR(travelled.time, 1.0, 1e-12);
-    EXPECT_GT(travelled.reached.z, 0.0);
-    const Contact contact = contact_of_blocker(search, down, travelled);
+    const auto found = query(world, scratch, down, 0.0);
+    ASSERT_TRUE(found.contact);
+    const CertifiedPath followed = follow_path(found.near, down, down.duration, down.end, scratch.chain);
+    ASSERT_TRUE(followed.blocker);
+    EXPECT_EQ(*followed.blocker, 0U);
+    EXPECT_NEAR(followed.time, 1.0, 1e-12);
+    EXPECT_GT(followed.reached.z, 0.0);
+    const Contact contact = contact_with_blocker(found.near, down, followed);
     EXPECT_EQ(contact.first().normal, (Vec3{0, 0, 1}));
 }
 
@@ -184,18 +187,16 @@ TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
     const auto world = world_of(mesh_collider(testing::box_mesh({0, 0, 0}, {1, 1, 1})));
     ContactScratch scratch;
     for (const Vec3& place : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {
-        ContactSearch search(world, scratch);
-        (void)search.search(line_path(place, {0, 0, 0}, 1.0), 0.0);
-        const auto off = step_off(search, place);
+        const auto found = query(world, scratch, line_path(place, {0, 0, 0}, 1.0), 0.0);
+        const auto off = step_off(found.near, place);
         ASSERT_TRUE(off);
         EXPECT_FALSE(world.bounds().contains(*off));
         EXPECT_LE(length(*off - place), 64.0 * contact_offset(place));
         EXPECT_FALSE(meets_any(world, *off, *off));
     }
-    ContactSearch search(world, scratch);
     const Vec3 beside{0.5, 0.5, 1.5};
-    (void)search.search(line_path(beside, {0, 0, 0}, 1.0), 0.0);
-    EXPECT_FALSE(step_off(search, beside));
+    const auto found = query(world, scratch, line_path(beside, {0, 0, 0}, 1.0), 0.0);
+    EXPECT_FALSE(step_off(found.near, beside));
 }
 
 }  // namespace

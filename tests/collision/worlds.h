@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/contact_query.h"
 
 namespace ricochet::testing {
 
@@ -23,6 +23,13 @@ inline ColliderDescription plane_collider(const Vec3& point, const Vec3& normal,
 template <class... Colliders>
 CollisionWorld world_of(Colliders... colliders) {
     return CollisionWorld(std::vector<ColliderDescription>{std::move(colliders)...});
+}
+
+/// One query, for tests that ask about many worlds and paths.
+inline ContactQueryResult query(const CollisionWorld& world, ContactScratch& scratch, const Path& path, double radius,
+                                const LookAhead* look_ahead = nullptr, const ContactCandidates& candidates = {}) {
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    return find_first_contact(geometry, {path, radius, look_ahead, candidates}, scratch);
 }
 
 /// The square [-half, half]^2 at height z in cells x cells squares of two triangles, wound upward.

@@ -1,92 +1,188 @@
 #include "ricochet/collision/look_ahead.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
+
+#include "ricochet/collision/free_time.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet {
 namespace {
 
-/// Relative rounding of the times here, generously: margins of distance are far above it.
-constexpr double kTimeRounding = 0x1p-40;
+/// Steps of conservative advancement of a sphere towards a triangle that it comes near. Fewer: more steps in which it
+/// is queried for nothing. More: each costs some hundred operations.
+constexpr int kAdvancementSteps = 4;
 
-/// Strides through free space at a time; a grid of a thousand cells is crossed in fewer but along walls.
-constexpr int kMostTracingSteps = 64;
+/// A further step of advancement is not worth it when the last one has gained less than this part of a time step.
+constexpr double kLittleOfAStep = 0x1p-5;
 
 }  // namespace
 
-Path shortened(const Path& path, double duration) {
-    Path shorter = path;
-    shorter.end = path.position(duration);
-    shorter.duration = std::min(duration, path.duration);
-    return shorter;
+bool LookAheadQuery::run() {
+    pass_planes_and_shapes();
+    if (world_.triangles().empty()) return true;
+    if (result_.free_until > 0.0 && world_.culls() && pass_triangles()) return true;
+    result_ = {};
+    return false;
 }
 
-// First root of g0 + g1 t + g2 t^2, the height above the margin on the side of the start, in the form without
-// cancellation (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
-double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
-    const Vec3 start = path.c[0] - plane.point;
-    const double height = dot(plane.normal, start);
-    const double side = height < 0.0 ? -1.0 : 1.0;
-    // The margin knows the path only; the height errs by the distance along the plane too: a difference, a product and
-    // two sums, less than five roundings of each component.
-    constexpr double kHeightError = 16.0 * 0x1p-53;
-    const double g0 = side * height - margin - kHeightError * dot(abs(plane.normal), abs(start));
-    const double g1 = side * dot(plane.normal, path.c[1]);
-    const double g2 = side * dot(plane.normal, path.c[2]);
-    if (!(g0 > 0.0)) return 0.0;
-    const double discriminant = g1 * g1 - 4.0 * g0 * g2;
-    if (!(discriminant >= 0.0) || (g1 >= 0.0 && g2 >= 0.0)) return path.duration;
-    const double root = std::sqrt(discriminant);
-    const double time = g1 < 0.0 ? 2.0 * g0 / (root - g1) : (g1 + root) / (-2.0 * g2);
-    return std::min(path.duration, (1.0 - kTimeRounding) * time);
-}
-
-double time_outside(const Path& path, const Box3& box) {
-    constexpr std::array kAxes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    double longest = 0.0;
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-        const Vec3& normal = kAxes[axis];
-        const double place = dot(normal, path.c[0]);
-        const bool is_below = place < dot(normal, box.lower);
-        if (!is_below && place <= dot(normal, box.upper)) continue;
-        const Plane face{is_below ? box.lower : box.upper, normal};
-        longest = std::max(longest, time_free_of_plane(path, face, 0.0));
+// For shapes there is no time, only a yes or no: durations are tried, each half of the one before.
+void LookAheadQuery::pass_planes_and_shapes() {
+    double& free_until = result_.free_until;
+    free_until = ahead_.path.duration;
+    const double margin = margins_.radius + ahead_.margin;
+    for (const auto& [plane, surface] : world_.planes()) {
+        free_until = std::min(free_until, time_free_of_plane(ahead_.path, plane, margin));
     }
-    return longest;
-}
-
-// Within t the particle gets no further than v t + b t^2 / 2, which is the clearance at the root in the form without
-// cancellation.
-double time_clear_of_field(const Path& path, const DistanceField& grid, double margin, double from) {
-    const double bend = 2.0 * length(path.c[2]);
-    double time = from;
-    for (int stride = 0; stride < kMostTracingSteps && time < path.duration; ++stride) {
-        const double room = grid.lower_bound(path.position(time)) - margin;
-        if (!(room > 0.0)) break;
-        const double speed = length(path.velocity(time));
-        const double way = speed + std::sqrt(speed * speed + 2.0 * bend * room);
-        time += (1.0 - kTimeRounding) * (2.0 * room / way);
-    }
-    return std::min(time, path.duration);
-}
-
-double time_of_leaving(const Path& path, const Box3& box) {
-    if (path.degree > 1) return path.duration;
-    double enter = 0.0;
-    double leave = path.duration;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double speed = path.c[1][axis];
-        const double below = box.lower[axis] - path.c[0][axis];
-        const double above = box.upper[axis] - path.c[0][axis];
-        if (speed == 0.0) {
-            if (below > 0.0 || above < 0.0) return 0.0;
-            continue;
+    for (const auto& [shape, surface] : world_.shapes()) {
+        while (free_until >= ahead_.least && !shape.can_cull(shortened(ahead_.path, free_until), margin)) {
+            free_until *= 0.5;
         }
-        enter = std::max(enter, std::min(below / speed, above / speed));
-        leave = std::min(leave, std::max(below / speed, above / speed));
     }
-    return enter > leave ? 0.0 : std::min(path.duration, (1.0 + kTimeRounding) * leave);
+    if (free_until < ahead_.least) free_until = 0.0;
+}
+
+bool LookAheadQuery::pass_triangles() { return ahead_.path.degree > 1 ? query_parabola() : query_line(); }
+
+/// Where paths may come near triangles.
+Box3 LookAheadQuery::box_of_interest() const {
+    const double margin = 2.0 * (margins_.radius + ahead_.margin + margins_.curvature);
+    const Vec3 by{margin, margin, margin};
+    return {world_.triangle_bounds().lower - by, world_.triangle_bounds().upper + by};
+}
+
+bool LookAheadQuery::boxes_hold(double duration) const {
+    return kPathRounding * largest_coordinate(shortened(ahead_.path, duration)) <= margins_.bvh->slack();
+}
+
+// A straight path that leaves all triangles behind is free for good.
+bool LookAheadQuery::query_line() {
+    const double end = std::min(end_of_query(), time_of_leaving(ahead_.path, box_of_interest()));
+    if (!(ahead_.margin < margins_.curvature) || !boxes_hold(end)) return false;
+    if (end == 0.0) return true;  // it does not come near the triangles
+    query_piece(0.0, end);
+    keep_candidates(std::min(end, end_of_interest()));
+    return true;
+}
+
+// While a parabola is beyond one side of all triangles no query is needed. Free space is crossed by sphere tracing.
+// Where triangles are near, the broad phase is asked piece by piece: over one piece the query's path, the look-ahead's
+// and all their chords of a step stay within what the boxes leave beside the chord. Where that is not even a step, only
+// the free space beyond the path's end is traced.
+bool LookAheadQuery::query_parabola() {
+    const double outside = time_outside(ahead_.path, box_of_interest());
+    if (outside >= ahead_.least) {
+        result_.free_until = std::min(result_.free_until, outside);
+        return true;
+    }
+    const double end = end_of_query();
+    if (!boxes_hold(end)) return false;
+    const double margin = margin_until(end);
+    const double bend = length(ahead_.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
+    const double piece = std::sqrt(2.0 * std::max(0.0, margins_.curvature - ahead_.margin) / bend);
+    if (!(piece >= ahead_.least)) {
+        candidates_ = test_triangles_near(world_, margins_, path_, narrow_phase_);
+        result_.free_until = std::min(
+            result_.free_until, time_clear_of_field(ahead_.path, world_.distance_field(), margin, path_.duration));
+        return true;
+    }
+    double done = 0.0;
+    while (done < end && scratch_.approaches.empty() && !narrow_phase_.has_hit()) {
+        done = std::min(end, time_clear_of_field(ahead_.path, world_.distance_field(), margin, done));
+        const double next = std::min(done + piece, end);
+        if (done < end) query_piece(done, next);
+        done = next;
+    }
+    keep_candidates(std::min(done, end_of_interest()));
+    return true;
+}
+
+// A triangle that is near only after the query's path is no candidate of that path, and one that is near only before
+// its end, or is left behind, does not matter to what comes after.
+void LookAheadQuery::query_piece(double from, double to) {
+    const double span = to - from;
+    const Tube tube(ahead_.path.position(from), ahead_.path.position(to), margin_until(to),
+                    span * span * ahead_.path.c[2]);
+    margins_.bvh->query_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
+        if (!world_.is_left_out(triangle)) {
+            const bool is_near_path = from + enter * span <= path_.duration;
+            const double speed = is_near_path ? narrow_phase_.test_triangle(triangle) : 0.0;
+            const bool is_ahead = from + leave * span >= path_.duration && !is_left_behind(speed);
+            if (is_ahead && !narrow_phase_.has_hit()) {
+                add_approach(triangle, from + enter * span, std::min(from + leave * span, end_of_interest()));
+            }
+        }
+        const double until = std::min(narrow_phase_.first_time(), end_of_interest());
+        return until < to ? std::max(0.0, (until - from) / span) : 1.0;
+    });
+}
+
+/// m, how near to the look-ahead's path until some time triangles are of interest.
+double LookAheadQuery::margin_until(double time) const {
+    const Box3& box = world_.triangle_bounds();
+    const double largest =
+        std::max({largest_coordinate(shortened(ahead_.path, time)), max_abs(box.lower), max_abs(box.upper)});
+    return margins_.radius + ahead_.margin + kLookAheadSlack * largest;
+}
+
+double LookAheadQuery::end_of_query() const {
+    return std::min(result_.free_until + ahead_.beyond, ahead_.path.duration);
+}
+
+double LookAheadQuery::end_of_interest() const { return std::max(result_.free_until, path_.duration) + ahead_.beyond; }
+
+void LookAheadQuery::add_approach(std::uint32_t triangle, double enter, double last) {
+    const double begin = margins_.radius > 0.0 ? time_of_approach(triangle, enter, last) : enter;
+    if (begin > last) return;
+    result_.free_until = std::min(result_.free_until, begin);
+    scratch_.approaches.push_back({triangle, begin});
+}
+
+// What the boxes say about a sphere is how it passes the triangle's plane, and beside the triangle it does that early.
+// Along a direction in which the triangle is behind, the distance shrinks no faster than the sphere moves against it
+// (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley
+// 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
+/// A time before which the sphere certainly does not come near the triangle; later than `last` when it does not until
+/// then.
+double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, double last) const {
+    const Path& path = ahead_.path;
+    const auto [a, b, c] = world_.corners_of_triangle(triangle);
+    const double near = margin_until(last);
+    const Vec3 last_velocity = path.velocity(last);
+    double time = enter;
+    for (int step = 0; step < kAdvancementSteps && time <= last; ++step) {
+        const Vec3 position = path.position(time);
+        const Vec3 away = separating_direction(position, a, b, c);
+        const double distance = distance_lower_bound(away, position, a, b, c);
+        if (!(distance > near)) break;
+        const double approach = -std::min(dot(away, path.velocity(time)), dot(away, last_velocity)) / length(away);
+        if (!(approach > 0.0)) return std::numeric_limits<double>::infinity();
+        const double gain = (distance - near) / approach;
+        time += gain;
+        if (gain < kLittleOfAStep * ahead_.least) break;
+    }
+    return time;
+}
+
+void LookAheadQuery::keep_candidates(double until) {
+    result_.candidates_until = until;
+    result_.candidates = ContactCandidates::none();
+    // The triangle that is hit first makes short work of the others.
+    std::sort(scratch_.approaches.begin(), scratch_.approaches.end(),
+              [](const auto& a, const auto& b) { return a.begin < b.begin; });
+    for (const auto& [triangle, begin] : scratch_.approaches) {
+        if (begin <= until && result_.candidates.is_known()) result_.candidates.add(triangle);
+    }
+}
+
+// The steps to come are rounded. Each must lead away from the triangle by more than that, else they may lead back
+// through it; and a safe position elsewhere on the path must not be moved through it.
+/// May a triangle be forgotten that a sphere leaves behind at some speed, m/s?
+bool LookAheadQuery::is_left_behind(double separating_speed) const {
+    if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
+    return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);
 }
 
 }  // namespace ricochet

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact.h"
 
 namespace ricochet {
 

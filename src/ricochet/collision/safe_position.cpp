@@ -8,35 +8,41 @@
 namespace ricochet {
 namespace {
 
-/// Halves [from, to] of the path until its chords are free; stops at the first that is not.
-struct Walker {
-    const ContactSearch& search;
-    const Path& path;
-    Travel state;
-
-    Walker(const ContactSearch& search_in, const Path& path_in)
-        : search(search_in), path(path_in), state{path_in.c[0], 0.0, std::nullopt} {
-        search.chain().assign(1, path.c[0]);
+/// Follows a path: halves it until its chords are free, and stops at the first that is not.
+class PathFollower {
+public:
+    PathFollower(const NearSurfaces& near, const Path& path, std::vector<Vec3>& chain)
+        : near_(near), path_(path), chain_(chain), followed_{path.c[0], 0.0, std::nullopt} {
+        chain_.assign(1, path.c[0]);
     }
 
-    bool walk_to(double time, const Vec3& target, int depth) {
-        const double middle = 0.5 * (state.time + time);
-        const bool is_shortest = depth == 0 || middle <= state.time || middle >= time;
-        if ((is_shortest || search.covers_chord(path, state.time, time)) && search.is_free(state.reached, target)) {
-            state.reached = target;
-            state.time = time;
-            search.chain().push_back(target);
+    bool follow_to(double time, const Vec3& target, int depth) {
+        const double middle = 0.5 * (followed_.time + time);
+        const bool is_shortest = depth == 0 || middle <= followed_.time || middle >= time;
+        const Vec3& from = followed_.reached;
+        if ((is_shortest || near_.covers_chord(path_, followed_.time, time)) && near_.is_free(from, target)) {
+            followed_.reached = target;
+            followed_.time = time;
+            chain_.push_back(target);
             return true;
         }
         if (is_shortest) {
-            state.blocker = search.blocker(state.reached, target);
+            followed_.blocker = near_.blocker(from, target);
             return false;
         }
-        return walk_to(middle, path.position(middle), depth - 1) && walk_to(time, target, depth - 1);
+        return follow_to(middle, path_.position(middle), depth - 1) && follow_to(time, target, depth - 1);
     }
+
+    [[nodiscard]] const CertifiedPath& followed() const { return followed_; }
+
+private:
+    const NearSurfaces& near_;
+    const Path& path_;
+    std::vector<Vec3>& chain_;
+    CertifiedPath followed_;
 };
 
-/// The normals along which a particle is moved off the surfaces it has met; at most three matter in space.
+/// The normals along which a particle is moved off the surfaces it has hit; at most three matter in space.
 struct Normals {
     std::array<Vec3, 3> n;
     int count = 0;
@@ -65,93 +71,95 @@ Vec3 escape_direction(const Normals& normals) {
     return kContactOffsetUlps * length(direction) <= kLargestContactOffsetUlps ? direction : sum;
 }
 
-/// What moves a place on the path at the contact along the normal until it is exactly `radius` from the surface met
-/// first.
-Vec3 correction_at(const ContactSearch& search, const Vec3& place, const Contact& contact) {
+/// What moves a position on the path at the contact along the normal until it is exactly `radius` from the first
+/// surface.
+Vec3 correction_at(const NearSurfaces& near, const Vec3& position, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
-    if (search.radius() == 0.0) {
-        return -search.signed_distance_from(surface, place) * search.unit_normal_of(surface, place);
+    const SurfaceGeometry& geometry = near.geometry();
+    if (near.radius() == 0.0) {
+        return -geometry.signed_distance_from(surface, position) * geometry.unit_normal_of(surface, position);
     }
-    const double distance = search.nearest(surface, place).distance;
-    return (search.radius() - distance) * contact.first().normal;
+    const double distance = geometry.nearest(surface, position).distance;
+    return (near.radius() - distance) * contact.first().normal;
 }
 
-/// The place on the path at the contact, put right. A sphere that overlaps is left as it is, and so is a place next to
-/// the origin whose distance from a large triangle has a rounding error beyond all that the path's search has covered.
-Vec3 place_of_contact(const ContactSearch& search, const Path& path, const Contact& contact) {
-    const Vec3 place = path.position(contact.time);
-    const Vec3 correction = correction_at(search, place, contact);
+/// The position on the path at the contact, corrected. A sphere that overlaps is left as it is, and so is a position
+/// next to the origin whose distance from a large triangle has a rounding error beyond all that the query has covered.
+Vec3 position_at(const NearSurfaces& near, const Path& path, const Contact& contact) {
+    const Vec3 position = path.position(contact.time);
+    const Vec3 correction = correction_at(near, position, contact);
     const bool overlaps =
-        search.radius() > 0.0 && dot(correction, contact.first().normal) > search.radius() * kContactMismatch;
-    if (overlaps || length(correction) > 0.5 * search.slack()) return place;
-    return flush_tiny(place + correction);
+        near.radius() > 0.0 && dot(correction, contact.first().normal) > near.radius() * kContactMismatch;
+    if (overlaps || length(correction) > 0.5 * near.slack()) return position;
+    return flush_tiny(position + correction);
 }
 
 /// Normal of a blocking surface at p, facing p; zero when p lies in its plane.
-ContactSurface facing_surface(const ContactSearch& search, SurfaceId surface, const Vec3& p) {
-    const CollisionWorld& world = search.world();
-    if (search.radius() > 0.0) {
-        const auto nearest = search.nearest(surface, p);
+ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const Vec3& p) {
+    if (near.radius() > 0.0) {
+        const auto nearest = near.geometry().nearest(surface, p);
         return {surface, nearest.normal, nearest.flat};
     }
-    const int side = world.side_of_surface(surface, p);
-    return {surface, static_cast<double>(side) * search.unit_normal_of(surface, p), true};
+    const int side = near.world().side_of_surface(surface, p);
+    return {surface, static_cast<double>(side) * near.geometry().unit_normal_of(surface, p), true};
 }
 
 }  // namespace
 
-Travel travel(const ContactSearch& search, const Path& path, double until, const Vec3& target) {
-    Walker walker(search, path);
-    const int depth = path.degree > 1 ? kCertificateDepth : 0;
-    (void)walker.walk_to(until, target, depth);
-    return walker.state;
+CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
+                          std::vector<Vec3>& chain) {
+    PathFollower follower(near, path, chain);
+    (void)follower.follow_to(until, target, path.degree > 1 ? kCertificateDepth : 0);
+    return follower.followed();
 }
 
-SafePosition find_safe_position(const ContactSearch& search, const Path& path, const Contact& contact) {
+SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
+                                std::vector<Vec3>& chain) {
     const Vec3 on_path = path.position(contact.time);
-    const Vec3 place = place_of_contact(search, path, contact);
+    const Vec3 position = position_at(near, path, contact);
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
-    double gap = contact_offset(place);
-    const double longest = kLargestContactOffsetUlps / kContactOffsetUlps * gap;
+    double offset = contact_offset(position);
+    const double longest = kLargestContactOffsetUlps / kContactOffsetUlps * offset;
     for (int attempt = 0; attempt < kSafePositionAttempts;) {
-        const Vec3 way = gap * escape_direction(normals);
-        if (!(length(way) <= longest)) break;
-        const Vec3 parked = flush_tiny(place + way);
-        if (length(parked - on_path) > search.slack()) break;
-        const Travel travelled = travel(search, path, contact.time, parked);
-        if (!travelled.blocker) return {parked, false};
-        const Vec3 normal = facing_surface(search, *travelled.blocker, travelled.reached).normal;
+        const Vec3 step = offset * escape_direction(normals);
+        if (!(length(step) <= longest)) break;
+        const Vec3 safe = flush_tiny(position + step);
+        if (length(safe - on_path) > near.slack()) break;
+        const CertifiedPath followed = follow_path(near, path, contact.time, safe, chain);
+        if (!followed.blocker) return {safe, false};
+        const Vec3 normal = facing_surface(near, *followed.blocker, followed.reached).normal;
         if (normal != Vec3{} && normals.add(normal)) continue;
-        gap *= kContactOffsetWidening;
+        offset *= kContactOffsetWidening;
         ++attempt;
     }
-    Walker walker(search, path);
-    (void)walker.walk_to(contact.time, place, kCertificateDepth);
-    return {walker.state.reached, walker.state.reached == path.c[0]};
+    PathFollower follower(near, path, chain);
+    (void)follower.follow_to(contact.time, position, kCertificateDepth);
+    const Vec3& reached = follower.followed().reached;
+    return {reached, reached == path.c[0]};
 }
 
-std::optional<Vec3> step_off(const ContactSearch& search, const Vec3& p) {
+std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
     Normals normals;
-    for (const SurfaceId surface : search.surfaces_at(p)) normals.add(search.unit_normal_of(surface, p));
+    for (const SurfaceId surface : near.surfaces_at(p)) normals.add(near.geometry().unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
-    double gap = contact_offset(p);
-    for (int attempt = 0; attempt < kSafePositionAttempts; ++attempt, gap *= kContactOffsetWidening) {
-        const Vec3 place = flush_tiny(p + gap * escape_direction(normals));
-        if (length(place - p) > search.slack()) break;
-        if (search.is_free_after(p, place)) return place;
+    double offset = contact_offset(p);
+    for (int attempt = 0; attempt < kSafePositionAttempts; ++attempt, offset *= kContactOffsetWidening) {
+        const Vec3 position = flush_tiny(p + offset * escape_direction(normals));
+        if (length(position - p) > near.slack()) break;
+        if (near.is_free_after(p, position)) return position;
     }
     return std::nullopt;
 }
 
-Contact contact_of_blocker(const ContactSearch& search, const Path& path, const Travel& travelled) {
+Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const CertifiedPath& followed) {
     Contact contact;
-    contact.time = travelled.time;
+    contact.time = followed.time;
     contact.count = 1;
-    contact.surfaces[0] = facing_surface(search, *travelled.blocker, travelled.reached);
+    contact.surfaces[0] = facing_surface(near, *followed.blocker, followed.reached);
     if (contact.surfaces[0].normal == Vec3{}) {
         contact.surfaces[0].normal =
-            facing_normal(search.world(), *travelled.blocker, 0, travelled.reached, path.velocity(travelled.time));
+            facing_normal(near.world(), *followed.blocker, 0, followed.reached, path.velocity(followed.time));
     }
     return contact;
 }

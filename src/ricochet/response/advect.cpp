@@ -113,20 +113,22 @@ std::optional<Contact> Advector::follow(const Path& path) {
         outcome_.frozen = true;
         return std::nullopt;
     }
-    std::optional<Contact> contact = search_.search(path, state_.radius);
-    const bool starts_there = contact ? contact->time == 0.0 : state_.radius > 0.0 && search_.starts_in_overlap();
-    if (starts_there && !search_.surfaces_at(path.c[0]).empty()) {
-        leave_surface();
+    const ContactQueryResult found = find_first_contact(geometry_, {path, state_.radius}, scratch_.contacts);
+    std::optional<Contact> contact = found.contact;
+    const bool starts_there = contact ? contact->time == 0.0 : state_.radius > 0.0 && found.near.starts_in_overlap();
+    if (starts_there && !found.near.surfaces_at(path.c[0]).empty()) {
+        leave_surface(found.near);
         return std::nullopt;
     }
     if (contact) {
-        const SafePosition safe_position = find_safe_position(search_, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch_.contacts.chain);
         outcome_.stayed += safe_position.stayed ? 1 : 0;
         state_.position = safe_position.position;
     } else {
-        const Travel travelled = travel(search_, path, path.duration, path.end);
-        state_.position = travelled.reached;
-        if (travelled.blocker) contact = contact_of_blocker(search_, path, travelled);
+        const CertifiedPath followed =
+            follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
+        state_.position = followed.reached;
+        if (followed.blocker) contact = contact_with_blocker(found.near, path, followed);
     }
     accept_chain();
     const double elapsed = contact ? contact->time : path.duration;
@@ -137,8 +139,8 @@ std::optional<Contact> Advector::follow(const Path& path) {
 }
 
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
-void Advector::leave_surface() {
-    if (const auto place = step_off(search_, state_.position)) {
+void Advector::leave_surface(const NearSurfaces& near) {
+    if (const auto place = step_off(near, state_.position)) {
         if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
         state_.position = *place;
         return;
@@ -149,7 +151,7 @@ void Advector::leave_surface() {
 
 void Advector::accept_chain() {
     if (!scratch_.record_segments) return;
-    const std::vector<Vec3>& chain = search_.chain();
+    const std::vector<Vec3>& chain = scratch_.contacts.chain;
     for (std::size_t k = 1; k < chain.size(); ++k) scratch_.segments.push_back({chain[k - 1], chain[k], state_.time});
 }
 

@@ -36,7 +36,7 @@ public:
           particle_(particle),
           state_(particle.state),
           scratch_(scratch),
-          search_(rules.world, scratch.contacts),
+          geometry_(rules.world, scratch.contacts.plane_cache),
           impact_(rules, particle, scratch, outcome_),
           remaining_(duration) {}
 
@@ -50,7 +50,7 @@ private:
     [[nodiscard]] double time_to_release() const;
     [[nodiscard]] bool is_pressed_at(double time) const;
     std::optional<Contact> follow(const Path& path);
-    void leave_surface();
+    void leave_surface(const NearSurfaces& near);
     void accept_chain();
     void answer(const Contact& contact);
     void finish();
@@ -73,7 +73,7 @@ private:
     MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
-    ContactSearch search_;
+    SurfaceGeometry geometry_;
     MoveOutcome outcome_;
     ImpactAnswer impact_;
     double remaining_;

@@ -53,9 +53,9 @@ MoveOutcome Mover::run() {
 /// Notes what the search along the last flight has seen beyond its end.
 void Mover::look_beyond(const Flight& flight) {
     const auto after_end = [&](double time) { return std::max(0.0, time - flight.path.duration); };
-    outcome_.free_for = after_end(search_.free_until());
-    outcome_.candidates_for = after_end(search_.candidates_until());
-    outcome_.candidates = search_.candidates();
+    outcome_.free_for = after_end(ahead_.free_until);
+    outcome_.candidates_for = after_end(ahead_.candidates_until);
+    outcome_.candidates = ahead_.candidates;
 }
 
 /// How far ahead the last flight of a step may look: as far as its way is known, which it is where the acceleration is
@@ -89,23 +89,27 @@ std::optional<Contact> Mover::follow(const Flight& flight, const LookAhead* look
         freeze();
         return std::nullopt;
     }
-    std::optional<Contact> contact = search_.search(path, state_.radius, look_ahead, candidates);
-    if (contact && contact->time == 0.0 && !search_.surfaces_at(path.c[0]).empty()) {
-        leave_surface(flight);
+    const ContactQueryResult found =
+        find_first_contact(geometry_, {path, state_.radius, look_ahead, candidates}, scratch_.contacts);
+    ahead_ = found.ahead;
+    std::optional<Contact> contact = found.contact;
+    if (contact && contact->time == 0.0 && !found.near.surfaces_at(path.c[0]).empty()) {
+        leave_surface(flight, found.near);
         return std::nullopt;
     }
-    if (!contact && state_.radius > 0.0 && search_.starts_in_overlap() && !search_.surfaces_at(path.c[0]).empty()) {
-        leave_surface(flight);
+    if (!contact && state_.radius > 0.0 && found.near.starts_in_overlap() && !found.near.surfaces_at(path.c[0]).empty()) {
+        leave_surface(flight, found.near);
         return std::nullopt;
     }
     if (contact) {
-        const SafePosition safe_position = find_safe_position(search_, path, *contact);
+        const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch_.contacts.chain);
         outcome_.stayed += safe_position.stayed ? 1 : 0;
         state_.position = safe_position.position;
     } else {
-        const Travel travelled = travel(search_, path, path.duration, path.end);
-        state_.position = travelled.reached;
-        if (travelled.blocker) contact = contact_of_blocker(search_, path, travelled);
+        const CertifiedPath followed =
+            follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
+        state_.position = followed.reached;
+        if (followed.blocker) contact = contact_with_blocker(found.near, path, followed);
     }
     accept_chain();
     const double elapsed = contact ? contact->time : path.duration;
@@ -116,9 +120,9 @@ std::optional<Contact> Mover::follow(const Flight& flight, const LookAhead* look
 }
 
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
-void Mover::leave_surface(const Flight& flight) {
+void Mover::leave_surface(const Flight& flight, const NearSurfaces& near) {
     state_.velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, 0.0);
-    if (const auto place = step_off(search_, state_.position)) {
+    if (const auto place = step_off(near, state_.position)) {
         if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
         first_segment_ = scratch_.segments.size();
         start_ = *place;
@@ -131,7 +135,7 @@ void Mover::leave_surface(const Flight& flight) {
 
 void Mover::accept_chain() {
     if (!scratch_.record_segments) return;
-    const std::vector<Vec3>& chain = search_.chain();
+    const std::vector<Vec3>& chain = scratch_.contacts.chain;
     for (std::size_t k = 1; k < chain.size(); ++k) scratch_.segments.push_back({chain[k - 1], chain[k], state_.time});
 }
 

@@ -18,7 +18,7 @@ public:
           particle_(particle),
           state_(particle.state),
           scratch_(scratch),
-          search_(rules.world, scratch.contacts),
+          geometry_(rules.world, scratch.contacts.plane_cache),
           impact_(rules, particle, scratch, outcome_),
           start_(particle.state.position),
           began_(particle.support),
@@ -39,7 +39,7 @@ private:
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight) const;
     void accept_chain();
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
-    void leave_surface(const Flight& flight);
+    void leave_surface(const Flight& flight, const NearSurfaces& near);
     void freeze();
 
     // Impacts (mover_impact.cpp).
@@ -90,7 +90,8 @@ private:
     MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
-    ContactSearch search_;
+    SurfaceGeometry geometry_;
+    LookAheadResult ahead_;  // of the last query
     MoveOutcome outcome_;
     ImpactAnswer impact_;
     Vec3 start_;        // where the step began

@@ -36,7 +36,7 @@ double Mover::curvature(const ContactSurface& surface, const Vec3& velocity) con
     const Vec3 heading = along / speed;
     // A tangent soon comes out on the other side of a surface that bends towards it.
     const auto normal_at = [&](double way) {
-        const Vec3 normal = search_.nearest(surface.surface, state_.position + way * heading).normal;
+        const Vec3 normal = geometry_.nearest(surface.surface, state_.position + way * heading).normal;
         return dot(normal, surface.normal) < 0.0 ? -normal : normal;
     };
     return dot(normal_at(step) - normal_at(-step), heading) / (2.0 * step);
@@ -81,15 +81,15 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
     if (path.duration <= 0.0) return {path, a, 0.0, state_, v};
     if (support.flat) {
         // Of the plane, also where the end lies a little beyond the rim.
-        const double side = dot(search_.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
-        const double height = side * search_.signed_distance_from(support.surface, path.end) - state_.radius;
+        const double side = dot(geometry_.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
+        const double height = side * geometry_.signed_distance_from(support.surface, path.end) - state_.radius;
         const double lift = contact_offset(path.end) - height;
         // Next to the origin a height above a large triangle can be all rounding.
         if (std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end)) {
             path.end = flush_tiny(path.end + lift * support.normal);
         }
     } else if (bend < 0.0) {
-        const CollisionWorld::Nearest there = search_.nearest(support.surface, path.end);
+        const CollisionWorld::Nearest there = geometry_.nearest(support.surface, path.end);
         const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
         const Vec3 lift = (side * (state_.radius + contact_offset(path.end)) - there.distance) * there.normal;
         const Vec3 end = flush_tiny(path.end + lift);
@@ -180,12 +180,12 @@ void Mover::note_recent(SurfaceId surface) {
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<ContactSurface> Mover::touching(SurfaceId surface) const {
     const double reach = kTouchingOffsets * contact_offset(state_.position);
-    const CollisionWorld::Nearest nearest = search_.nearest(surface, state_.position);
+    const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
     if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;
     if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
     // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
-    const double distance = search_.signed_distance_from(surface, state_.position);
-    const Vec3 normal = search_.unit_normal_of(surface, state_.position);
+    const double distance = geometry_.signed_distance_from(surface, state_.position);
+    const Vec3 normal = geometry_.unit_normal_of(surface, state_.position);
     return ContactSurface{surface, distance < 0.0 ? -normal : normal, rules_.world.is_flat(surface)};
 }
 

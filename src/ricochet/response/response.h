@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"

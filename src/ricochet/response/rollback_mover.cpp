@@ -168,9 +168,10 @@ void RollbackMover::answer() {
 
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
 void RollbackMover::leave_surface() {
-    ContactSearch search(rules_.world, scratch_.contacts);
-    (void)search.search(line_path(state_.position, state_.velocity, flight_.path.duration), state_.radius);
-    const auto place = step_off(search, state_.position);
+    const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
+    const Path path = line_path(state_.position, state_.velocity, flight_.path.duration);
+    const ContactQueryResult found = find_first_contact(geometry, {path, state_.radius}, scratch_.contacts);
+    const auto place = step_off(found.near, state_.position);
     if (!place) {
         ++outcome_.stayed;
         return;

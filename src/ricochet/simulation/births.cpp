@@ -68,9 +68,9 @@ bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
-    (void)search.search(line_path(position, Vec3{}, 0.0), particle.radius);
-    return search.starts_in_overlap();
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    const Path path = line_path(position, Vec3{}, 0.0);
+    return find_first_contact(geometry, {path, particle.radius}, scratch).near.starts_in_overlap();
 }
 
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/predicates/predicates.h"
@@ -19,8 +19,10 @@ constexpr std::size_t kBlock = 256;
 
 // Exact: no surface meets the closed straight line.
 bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to) {
-    ContactSearch search(world, scratch);
-    return !search.search(line_path(from, to - from, 1.0), 0.0) && search.is_free(from, to);
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    const Path path = line_path(from, to - from, 1.0);
+    const ContactQueryResult found = find_first_contact(geometry, {path, 0.0}, scratch);
+    return !found.contact && found.near.is_free(from, to);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "ricochet/collision/contact_candidates.h"
+#include "ricochet/collision/contact.h"
 #include "ricochet/core/algorithms.h"
 #include "ricochet/simulation/step_clock.h"
 

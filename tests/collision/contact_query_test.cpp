@@ -1,4 +1,4 @@
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,8 @@
 
 namespace ricochet {
 namespace {
+
+using testing::query;
 
 using testing::mesh_collider;
 using testing::plane_collider;
@@ -102,7 +104,7 @@ Path random_path(const CollisionWorld& world, int kind, RandomSequence& random) 
     }
 }
 
-TEST(ContactSearch, FindsTheSameFirstContactAsBruteForce) {
+TEST(ContactQuery, FindsTheSameFirstContactAsBruteForce) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         RandomSequence random(seed, 0, 0);
         const auto world = world_of(mesh_collider(soup(seed % 2 == 0 ? 4 : 60, random)),
@@ -113,8 +115,8 @@ TEST(ContactSearch, FindsTheSameFirstContactAsBruteForce) {
         for (int i = 0; i < count; ++i) {
             SCOPED_TRACE(::testing::Message() << "seed " << seed << ", path " << i);
             const Path path = random_path(world, i % 8, random);
-            ContactSearch search(world, scratch);
-            const auto contact = search.search(path, 0.0);
+            const auto found = query(world, scratch, path, 0.0);
+            const auto& contact = found.contact;
             expect_same(contact, brute_force(world, path));
             if (HasFatalFailure()) return;
             contacts += contact ? 1 : 0;
@@ -123,7 +125,7 @@ TEST(ContactSearch, FindsTheSameFirstContactAsBruteForce) {
     }
 }
 
-TEST(ContactSearch, FindsTheSameContactsHoweverTheMeshIsCut) {
+TEST(ContactQuery, FindsTheSameContactsHoweverTheMeshIsCut) {
     const auto coarse = world_of(mesh_collider(testing::floor_mesh(100.0, 1)));
     const auto fine = world_of(mesh_collider(testing::floor_mesh(100.0, 64)));
     const auto plane = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
@@ -133,9 +135,9 @@ TEST(ContactSearch, FindsTheSameContactsHoweverTheMeshIsCut) {
         const Vec3 start{random.uniform(), random.uniform(), 1.0 + random.uniform()};
         const Vec3 v = 10.0 * random.unit_vector();
         const Path path = i % 2 == 0 ? line_path(start, v, 1.0) : parabola_path(start, v, {0, 0, -9.81}, 2.0);
-        const auto reference = ContactSearch(plane, scratch).search(path, 0.0);
+        const auto reference = query(plane, scratch, path, 0.0).contact;
         for (const CollisionWorld* world : {&coarse, &fine}) {
-            const auto contact = ContactSearch(*world, scratch).search(path, 0.0);
+            const auto contact = query(*world, scratch, path, 0.0).contact;
             ASSERT_EQ(contact.has_value(), reference.has_value()) << i;
             if (!contact) continue;
             EXPECT_EQ(contact->time, reference->time) << i;
@@ -144,11 +146,11 @@ TEST(ContactSearch, FindsTheSameContactsHoweverTheMeshIsCut) {
     }
 }
 
-TEST(ContactSearch, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
+TEST(ContactQuery, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
     const auto world = world_of(plane_collider({0, 0, 0}, {1, 0, 0}), plane_collider({0, 0, 0}, {0, -1, 0}),
                                 plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
-    const auto contact = ContactSearch(world, scratch).search(line_path({1, 1, 1}, {-1, -1, -1}, 2.0), 0.0);
+    const auto contact = query(world, scratch, line_path({1, 1, 1}, {-1, -1, -1}, 2.0), 0.0).contact;
     ASSERT_TRUE(contact);
     EXPECT_EQ(contact->time, 1.0);
     ASSERT_EQ(contact->count, 3);
@@ -157,24 +159,24 @@ TEST(ContactSearch, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
     EXPECT_EQ(contact->surfaces[2].normal, (Vec3{0, 0, 1}));
 }
 
-TEST(ContactSearch, MeetsARimHeadOnWithANormalAgainstTheMotion) {
+TEST(ContactQuery, MeetsARimHeadOnWithANormalAgainstTheMotion) {
     const auto world = world_of(mesh_collider(testing::floor_mesh(1.0, 1)));
     ContactScratch scratch;
-    const auto contact = ContactSearch(world, scratch).search(line_path({-3, 0.25, 0}, {2, 0, 0}, 2.0), 0.0);
+    const auto contact = query(world, scratch, line_path({-3, 0.25, 0}, {2, 0, 0}, 2.0), 0.0).contact;
     ASSERT_TRUE(contact);
     EXPECT_EQ(contact->time, 1.0);
     EXPECT_EQ(contact->first().normal, (Vec3{-1, 0, 0}));
 }
 
-TEST(ContactSearch, DecidesAboutSegmentsNearThePathExactly) {
+TEST(ContactQuery, DecidesAboutSegmentsNearThePathExactly) {
     RandomSequence random(21, 0, 0);
     const TriangleMesh mesh = soup(40, random);
     const auto world = world_of(mesh_collider(mesh));
     ContactScratch scratch;
     for (int i = 0; i < test::scaled(400); ++i) {
-        ContactSearch search(world, scratch);
         const Path path = line_path(random.in_unit_ball(), 2.0 * random.unit_vector(), 1.0);
-        const auto contact = search.search(path, 0.0);
+        const auto found = query(world, scratch, path, 0.0);
+        const auto& contact = found.contact;
         const double until = contact ? contact->time : 1.0;
         const Vec3 p = path.position(0.5 * until * random.uniform());
         const Vec3 q = path.position(until * (random.uniform() < 0.5 ? 1.0 : random.uniform()));
@@ -183,55 +185,54 @@ TEST(ContactSearch, DecidesAboutSegmentsNearThePathExactly) {
             const auto [a, b, c] = world.corners_of_triangle(t);
             if (testing::exact_segment_meets_triangle(p, q, a, b, c)) smallest = t;
         }
-        ASSERT_EQ(search.is_free(p, q), !smallest.has_value()) << i;
-        ASSERT_EQ(search.blocker(p, q), smallest) << i;
+        ASSERT_EQ(found.near.is_free(p, q), !smallest.has_value()) << i;
+        ASSERT_EQ(found.near.blocker(p, q), smallest) << i;
     }
 }
 
 // A path so strongly curved, next to triangles so small, ends in time: only pieces near the triangles are halved.
-TEST(ContactSearch, EndsForPathsThatCurveEnormously) {
+TEST(ContactQuery, EndsForPathsThatCurveEnormously) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({}, 1e-3, 3)));
     ContactScratch scratch;
     const auto contact =
-        ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0), 0.0);
+        query(world, scratch, parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0), 0.0).contact;
     EXPECT_EQ(contact.has_value(),
               brute_force(world, parabola_path({5, 0, 0}, {-1e4, 0, 1e8}, {0, 0, -4e11}, 1.0)).has_value());
-    EXPECT_FALSE(ContactSearch(world, scratch).search(parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0), 0.0));
+    EXPECT_FALSE(query(world, scratch, parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0), 0.0).contact);
 }
 
-TEST(ContactSearch, LooksAtABentPathThatEndsWhereItBegins) {
+TEST(ContactQuery, LooksAtABentPathThatEndsWhereItBegins) {
     const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
-    const auto contact = search.search(parabola_path({1, 0.25, 0.125}, {1, 0, 0}, {0, 0, -9.81}, 0.0), 0.0);
+    const auto found = query(world, scratch, parabola_path({1, 0.25, 0.125}, {1, 0, 0}, {0, 0, -9.81}, 0.0), 0.0);
+    const auto& contact = found.contact;
     ASSERT_TRUE(contact.has_value());
     EXPECT_EQ(contact->time, 0.0);
-    EXPECT_TRUE(search.starts_in_overlap());
+    EXPECT_TRUE(found.near.starts_in_overlap());
 }
 
-TEST(ContactSearch, MissesNothingAlongAPathThatBendsByLessThanAnyNumberTells) {
+TEST(ContactQuery, MissesNothingAlongAPathThatBendsByLessThanAnyNumberTells) {
     const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Vec3 hardly{0, 0, -1e-170};
     const Path path = parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 1.0);
     const LookAhead look_ahead{parabola_path({0.1, 0.2, 0.3}, {2, 0, 0}, hardly, 100.0), 10.0, 2.0, 1.0};
-    const auto contact = search.search(path, 0.0, &look_ahead);
+    const auto found = query(world, scratch, path, 0.0, &look_ahead);
+    const auto& contact = found.contact;
     ASSERT_TRUE(contact.has_value());
     EXPECT_NEAR(contact->time, 0.45, 1e-12);
 }
 
-TEST(ContactSearch, ListsTheSurfacesAPointStandsOn) {
+TEST(ContactQuery, ListsTheSurfacesAPointStandsOn) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), mesh_collider(testing::floor_mesh(1.0, 2)),
                                 plane_collider({0, 0, 5}, {0, 0, 1}));
     ContactScratch scratch;
-    ContactSearch search(world, scratch);
     const Vec3 center{0, 0, 0};
-    (void)search.search(line_path(center, {0, 0, -1}, 1.0), 0.0);
-    EXPECT_EQ(search.surfaces_at(center).size(), 1U + 6U);  // six triangles meet in the middle
-    EXPECT_TRUE(search.is_free_after(center, {0, 0, 1}));
-    EXPECT_FALSE(search.is_free_after(center, {0, 1, 0}));  // stays in their plane
-    EXPECT_FALSE(search.is_free(center, {0, 0, 1}));
+    const auto found = query(world, scratch, line_path(center, {0, 0, -1}, 1.0), 0.0);
+    EXPECT_EQ(found.near.surfaces_at(center).size(), 1U + 6U);  // six triangles meet in the middle
+    EXPECT_TRUE(found.near.is_free_after(center, {0, 0, 1}));
+    EXPECT_FALSE(found.near.is_free_after(center, {0, 1, 0}));  // stays in their plane
+    EXPECT_FALSE(found.near.is_free(center, {0, 0, 1}));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "collision/worlds.h"
 #include "response/course.h"
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
@@ -18,6 +18,8 @@
 
 namespace ricochet {
 namespace {
+
+using testing::query;
 
 using testing::Course;
 
@@ -71,7 +73,7 @@ TEST(SphereAmongTriangles, MeetsFirstWhatItMeetsFirstOfAll) {
         const Vec3 a = i % 2 == 0 ? Vec3{} : 5.0 * random.unit_vector();
         const Path path = i % 2 == 0 ? line_path(start, v, 0.5) : parabola_path(start, v, a, 0.5);
         const auto expected = first_of_all(world, path, radius);
-        const auto found = ContactSearch(world, scratch).search(path, radius);
+        const auto found = query(world, scratch, path, radius).contact;
         ASSERT_EQ(found.has_value(), expected.has_value());
         if (!found) continue;
         ASSERT_EQ(found->time, *expected);

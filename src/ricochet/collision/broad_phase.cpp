@@ -1,0 +1,103 @@
+#include "ricochet/collision/broad_phase.h"
+
+#include <algorithm>
+
+#include "ricochet/collision/free_time.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings of a path in search of pieces flat enough for the boxes. Only pieces near the triangles are halved; a path
+/// that bends so much that this is not enough is tested against every triangle.
+constexpr int kPieceDepth = 40;
+
+// The margin for curvature keeps chords that begin on such a piece and end on the next one away from the triangles too.
+bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from,
+                         double to) {
+    Box3 box;
+    box.include(path.position(from));
+    box.include(path.position(to));
+    const double margin = path.sagitta(from, to) + margins.slack + margins.curvature + margins.radius;
+    const Vec3 by{margin, margin, margin};
+    const Box3& triangles = world.triangle_bounds();
+    const Vec3 gap = max(box.lower - by - triangles.upper, triangles.lower - (box.upper + by));
+    return std::max({gap.x, gap.y, gap.z}) <= 0.0;
+}
+
+/// One path against the hierarchy, piece by piece.
+struct PieceQuery {
+    const CollisionWorld& world;
+    const QueryMargins& margins;
+    const Path& path;
+    NarrowPhase& narrow_phase;
+    CandidateSet candidates = CandidateSet::near;
+
+    void test_all() {
+        candidates = CandidateSet::all;
+        for (std::uint32_t triangle = 0; triangle < world.triangles().size(); ++triangle) {
+            (void)narrow_phase.test_triangle(triangle);
+        }
+    }
+
+    // Pieces are visited in the order of time, so a contact ends the query.
+    void test_piece(double from, double to, int depth) {
+        if (from > narrow_phase.first_time() || candidates == CandidateSet::all) return;
+        if (path.degree == 2) {
+            const double clear =
+                time_clear_of_field(path, world.distance_field(), broad_phase_margin(path, margins), from);
+            if (clear > from && clear >= to) return;
+            from = clear;
+        }
+        if (covers_chord(world, margins, path, from, to)) {
+            query_chord(from, to);
+        } else if (depth == 0) {
+            test_all();
+        } else {
+            const double middle = 0.5 * (from + to);
+            test_piece(from, middle, depth - 1);
+            test_piece(middle, to, depth - 1);
+        }
+    }
+
+    // Chords of the path that covers_chord() accepts are covered too.
+    void query_chord(double from, double to) {
+        const double span = to - from;
+        const bool is_parabola = path.degree == 2;
+        const double beside_piece = is_parabola ? 0.0 : path.sagitta(from, to);
+        const double margin = broad_phase_margin(path, margins) + beside_piece;
+        const Tube tube(path.position(from), path.position(to), margin, is_parabola ? span * span * path.c[2] : Vec3{});
+        margins.bvh->query_tube(tube, [&](std::uint32_t triangle, double /*enter*/, double /*leave*/) {
+            (void)narrow_phase.test_triangle(triangle);
+            const double first = narrow_phase.first_time();
+            return first < to ? std::max(0.0, (first - from) / span) : 1.0;
+        });
+    }
+};
+
+}  // namespace
+
+double broad_phase_margin(const Path& path, const QueryMargins& margins) {
+    return margins.radius + 2.0 * margins.slack + std::min(path.sagitta(0.0, path.duration), 0.5 * margins.curvature);
+}
+
+// A point of a chord lies within the chord's sagitta of the path, and that point of the path within its piece's sagitta
+// of the piece's chord; together they must stay within what the boxes leave for it.
+bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from, double to) {
+    return path.degree < 2 || world.triangles().empty() || 2.0 * path.sagitta(from, to) <= margins.curvature ||
+           !may_reach_triangles(world, margins, path, from, to);
+}
+
+// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
+CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                                 NarrowPhase& narrow_phase) {
+    PieceQuery query{world, margins, path, narrow_phase};
+    if (world.culls() && kPathRounding * margins.largest <= margins.bvh->slack()) {
+        query.test_piece(0.0, path.duration, kPieceDepth);
+    } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
+        query.test_all();
+    }
+    return query.candidates;
+}
+
+}  // namespace ricochet

@@ -54,7 +54,7 @@ std::size_t Simulation::triangle_count() const { return impl_->world.triangles()
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->recorder.contact_records(); }
-CollisionWorld::Place Simulation::contact_point(const ContactRecord& record) const {
+SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
     return impl_->world.closest_point_on(record.surface, record.position);
 }
 SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->world.name_of(surface); }

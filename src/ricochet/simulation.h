@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/collision/collider.h"
-#include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/surface.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
@@ -20,47 +20,17 @@
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/springs.h"
+#include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
-#include "ricochet/response/response.h"
+#include "ricochet/simulation/options.h"
 #include "ricochet/verify/violation.h"
 
 namespace ricochet {
 
-/// How time is stepped and how impacts are answered.
-struct SimulationOptions {
-    double time_step = 1.0 / 60.0;  ///< s, > 0
-    double duration = 1.0;          ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
-    Integrator integrator = IntegratorKind::ballistic;
-    std::uint64_t seed = 0;
-    /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
-    double resting_speed = 1e-3;
-    bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
-    bool look_ahead =
-        true;  ///< particles that certainly meet nothing are not searched for; the result is the same without
-    bool spatial_order =
-        true;             ///< neighbours in space are searched for one after the other; the result is the same without
-    bool culling = true;  ///< false: every triangle is tested for every path; the result is the same without
-    bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
-    /// Check every segment, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
-    bool verify = false;
-    bool triangle_totals = true;                  ///< keep hits and impulse per triangle (56 bytes each)
-    std::uint32_t bounce_budget = 1000;           ///< impacts per particle and step, >= 1
-    ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
-    RollbackSettings rollback = {};               ///< of the rollback response
-    ProjectSettings project = {};                 ///< of the project response
-    PenaltySettings penalty = {};                 ///< of the penalty response
-    /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t), see
-    /// response/advect.h): with an integrator of flow_path.h, the exact response and no forces, else an InputError.
-    FlowPointer flow = nullptr;
-    WallRule walls = WallRule::slide;            ///< what walls do to particles that the flow carries into them
-    double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
-    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
-    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time; births beyond are refused and counted
-};
-
 /// Everything a simulation is made from.
 struct SimulationSetup {
     SimulationOptions options;
+    AccelerationSwitches acceleration;  ///< for tests and benchmarks
     std::vector<std::unique_ptr<Force>> forces;
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
@@ -172,7 +142,7 @@ public:
     /// reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
     /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
-    [[nodiscard]] CollisionWorld::Place contact_point(const ContactRecord& record) const;
+    [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
     /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run

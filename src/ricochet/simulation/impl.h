@@ -65,6 +65,7 @@ struct Simulation::Impl {
     void forget_queries();
 
     SimulationOptions options;
+    AccelerationSwitches acceleration;
     StepClock clock;
     std::vector<std::string> warnings;
     bool has_spheres;

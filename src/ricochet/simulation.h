@@ -6,11 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/surface.h"
+#include "ricochet/collision_queries.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
@@ -58,6 +60,7 @@ struct SimulationStatistics {
     std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
     std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
     std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
+    std::uint64_t removed = 0;                       ///< by remove_particles()
     std::uint64_t contacts = 0;                      ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
@@ -83,6 +86,11 @@ struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
     std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
 };
+
+class CollisionWorld;
+
+/// Is given the contact records of a step.
+using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
 /// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count.
 class Simulation {
@@ -117,6 +125,32 @@ public:
     /// watched from where they are.
     void restore(const ByteSource& source);
 
+    // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
+    // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended
+    // with an error: RunError. A saved state holds particles that were added and does not hold those that were removed.
+
+    /// Takes in a particle as it is now: it is born at time(), whatever its birth_time and origin say. Returns its id.
+    /// Throws InputError that names the value that cannot be, and where there is no room below
+    /// options().most_particles.
+    std::uint64_t add_particle(Particle particle);
+    /// All of them, or none where one cannot be. Their ids, in their order.
+    std::vector<std::uint64_t> add_particles(std::span<const Particle> particles);
+    /// False when no living particle has that id.
+    bool remove_particle(std::uint64_t id);
+    /// Returns how many of the ids were those of living particles.
+    std::size_t remove_particles(std::span<const std::uint64_t> ids);
+    /// Replaces all forces from the next step on; wakes all sleeping particles. Forces are no part of a saved state:
+    /// to be set again after restore(). Throws InputError for a null pointer, and for forces where a flow carries the
+    /// particles.
+    void set_forces(std::vector<std::unique_ptr<Force>> forces);
+    /// Calls `callback` after every step that has impacts, once, with the contact records of the step: see
+    /// contact_records(), which holds them too. It runs on the thread that called step(); what it throws comes out of
+    /// step(), which is done by then. It must not call step() or advance(). An empty function ends it.
+    void on_contact(ContactCallback callback);
+
+    /// What the colliders can be asked without particles. Not while a step runs.
+    [[nodiscard]] const CollisionQueries& collisions() const;
+
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
     /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
@@ -138,8 +172,8 @@ public:
     [[nodiscard]] std::size_t degenerate_triangles() const;
 
     /// Every reflection of the last step in the order of (time, particle id, order of events); empty without
-    /// options.record_contacts. An impact on one surface is one record; one in a corner has a record for every
-    /// reflection, all of the same time. Surfaces are named by surface_name().
+    /// options.record_contacts and on_contact(). An impact on one surface is one record; one in a corner has a record
+    /// for every reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
     /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
     [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
@@ -169,6 +203,7 @@ public:
 
 private:
     struct Impl;
+    [[nodiscard]] static CollisionQueries queries_of(std::shared_ptr<const CollisionWorld> world);
     std::unique_ptr<Impl> impl_;
 };
 

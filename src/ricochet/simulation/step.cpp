@@ -49,10 +49,12 @@ void Simulation::Impl::step() {
     } while (!batch.empty());
     retire_particles(step.end);
     end_step();
+    report_contacts();
 }
 
 // After an error inside a step, particles in free flight may be a step ahead of the others.
 TimeSpan Simulation::Impl::begin_step() {
+    if (is_reporting) throw RunError("a contact callback must not step its simulation");
     if (inside_step) {
         throw RunError("a step of this simulation has ended with an error; make it anew or restore a saved state");
     }

@@ -1,16 +1,27 @@
 #include "ricochet/simulation.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <cmath>
 #include <utility>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/simulation/collision_queries_impl.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
+namespace {
+
+void require_below(std::size_t index, std::size_t count, const char* what) {
+    if (index >= count) throw InputError(fmt::format("{} {}: there are {}, numbered from 0", what, index, count));
+}
+
+}  // namespace
 
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
 Simulation::~Simulation() = default;
@@ -20,6 +31,10 @@ bool Simulation::finished() const { return impl_->recorder.statistics().steps >=
 double Simulation::time() const { return impl_->clock.time_at(impl_->recorder.statistics().steps); }
 std::uint64_t Simulation::step_index() const { return impl_->recorder.statistics().steps; }
 std::uint64_t Simulation::step_count() const { return impl_->clock.steps(); }
+CollisionQueries Simulation::queries_of(std::shared_ptr<const CollisionWorld> world) {
+    return CollisionQueries(std::make_shared<const CollisionQueries::Impl>(std::move(world)));
+}
+const CollisionQueries& Simulation::collisions() const { return impl_->queries; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
 const Particles& Simulation::particles() const { return impl_->particles(); }
 AttributeTable Simulation::shown_attributes() const {
@@ -43,6 +58,7 @@ const SimulationStatistics& Simulation::statistics() const { return impl_->recor
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
 const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
+    require_below(i, impl_->world.colliders().size(), "collider");
     const ColliderShape& shape = impl_->world.colliders()[i].shape;
     if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
@@ -54,12 +70,17 @@ std::size_t Simulation::triangle_count() const { return impl_->world.triangles()
 std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->recorder.contact_records(); }
-CollisionWorld::Place Simulation::contact_point(const ContactRecord& record) const {
+SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
+    require_below(record.surface, impl_->world.surface_count(), "surface");
     return impl_->world.closest_point_on(record.surface, record.position);
 }
-SurfaceName Simulation::surface_name(SurfaceId surface) const { return impl_->world.name_of(surface); }
+SurfaceName Simulation::surface_name(SurfaceId surface) const {
+    require_below(surface, impl_->world.surface_count(), "surface");
+    return impl_->world.name_of(surface);
+}
 
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
+    require_below(i, impl_->world.colliders().size(), "collider");
     TriangleTotals result;
     if (impl_->recorder.totals().empty()) return result;
     // Sleepers' weight is lent to the totals: it comes out exactly as it went in.
@@ -76,6 +97,7 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
 const std::vector<Violation>& Simulation::last_violations() const { return impl_->recorder.last_violations(); }
 
 bool Simulation::is_penetrating(std::size_t i) const {
+    require_below(i, impl_->store.size(), "particle");
     const std::span<const SideMemory> sides = impl_->store.sides_of(i);
     return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
 }

@@ -6,11 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ricochet/collision/collider.h"
-#include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/surface.h"
+#include "ricochet/collision_queries.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
@@ -20,47 +22,17 @@
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/springs.h"
+#include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
-#include "ricochet/response/response.h"
+#include "ricochet/simulation/options.h"
 #include "ricochet/verify/violation.h"
 
 namespace ricochet {
 
-/// How time is stepped and how impacts are answered.
-struct SimulationOptions {
-    double time_step = 1.0 / 60.0;  ///< s, > 0
-    double duration = 1.0;          ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
-    Integrator integrator = IntegratorKind::ballistic;
-    std::uint64_t seed = 0;
-    /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s.
-    double resting_speed = 1e-3;
-    bool sleeping = true;  ///< particles held at rest by steady forces cost nothing; the result is the same without
-    bool look_ahead =
-        true;  ///< particles that certainly meet nothing are not searched for; the result is the same without
-    bool spatial_order =
-        true;             ///< neighbours in space are searched for one after the other; the result is the same without
-    bool culling = true;  ///< false: every triangle is tested for every path; the result is the same without
-    bool record_contacts = false;  ///< keep every impact of the last step, see contact_records()
-    /// Check every segment, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
-    bool verify = false;
-    bool triangle_totals = true;                  ///< keep hits and impulse per triangle (56 bytes each)
-    std::uint32_t bounce_budget = 1000;           ///< impacts per particle and step, >= 1
-    ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
-    RollbackSettings rollback = {};               ///< of the rollback response
-    ProjectSettings project = {};                 ///< of the project response
-    PenaltySettings penalty = {};                 ///< of the penalty response
-    /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t), see
-    /// response/advect.h): with an integrator of flow_path.h, the exact response and no forces, else an InputError.
-    FlowPointer flow = nullptr;
-    WallRule walls = WallRule::slide;            ///< what walls do to particles that the flow carries into them
-    double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
-    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
-    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time; births beyond are refused and counted
-};
-
 /// Everything a simulation is made from.
 struct SimulationSetup {
     SimulationOptions options;
+    AccelerationSwitches acceleration;  ///< for tests and benchmarks
     std::vector<std::unique_ptr<Force>> forces;
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
@@ -88,6 +60,7 @@ struct SimulationStatistics {
     std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
     std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
     std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
+    std::uint64_t removed = 0;                       ///< by remove_particles()
     std::uint64_t contacts = 0;                      ///< impacts
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;           ///< particles at rest after the last step
@@ -113,6 +86,11 @@ struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
     std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
 };
+
+class CollisionWorld;
+
+/// Is given the contact records of a step.
+using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
 /// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count.
 class Simulation {
@@ -147,6 +125,32 @@ public:
     /// watched from where they are.
     void restore(const ByteSource& source);
 
+    // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
+    // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended
+    // with an error: RunError. A saved state holds particles that were added and does not hold those that were removed.
+
+    /// Takes in a particle as it is now: it is born at time(), whatever its birth_time and origin say. Returns its id.
+    /// Throws InputError that names the value that cannot be, and where there is no room below
+    /// options().most_particles.
+    std::uint64_t add_particle(Particle particle);
+    /// All of them, or none where one cannot be. Their ids, in their order.
+    std::vector<std::uint64_t> add_particles(std::span<const Particle> particles);
+    /// False when no living particle has that id.
+    bool remove_particle(std::uint64_t id);
+    /// Returns how many of the ids were those of living particles.
+    std::size_t remove_particles(std::span<const std::uint64_t> ids);
+    /// Replaces all forces from the next step on; wakes all sleeping particles. Forces are no part of a saved state:
+    /// to be set again after restore(). Throws InputError for a null pointer, and for forces where a flow carries the
+    /// particles.
+    void set_forces(std::vector<std::unique_ptr<Force>> forces);
+    /// Calls `callback` after every step that has impacts, once, with the contact records of the step: see
+    /// contact_records(), which holds them too. It runs on the thread that called step(); what it throws comes out of
+    /// step(), which is done by then. It must not call step() or advance(). An empty function ends it.
+    void on_contact(ContactCallback callback);
+
+    /// What the colliders can be asked without particles. Not while a step runs.
+    [[nodiscard]] const CollisionQueries& collisions() const;
+
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
     /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
@@ -168,11 +172,11 @@ public:
     [[nodiscard]] std::size_t degenerate_triangles() const;
 
     /// Every reflection of the last step in the order of (time, particle id, order of events); empty without
-    /// options.record_contacts. An impact on one surface is one record; one in a corner has a record for every
-    /// reflection, all of the same time. Surfaces are named by surface_name().
+    /// options.record_contacts and on_contact(). An impact on one surface is one record; one in a corner has a record
+    /// for every reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
     /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
-    [[nodiscard]] CollisionWorld::Place contact_point(const ContactRecord& record) const;
+    [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
     /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run
@@ -199,6 +203,7 @@ public:
 
 private:
     struct Impl;
+    [[nodiscard]] static CollisionQueries queries_of(std::shared_ptr<const CollisionWorld> world);
     std::unique_ptr<Impl> impl_;
 };
 

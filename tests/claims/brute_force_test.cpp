@@ -101,7 +101,7 @@ TEST(Culling, ChangesNoImpactAndNoBitOfTheStateInRandomCases) {
         SCOPED_TRACE("case " + std::to_string(i));
         const auto seed = static_cast<std::uint64_t>(i);
         SimulationSetup every_triangle = RandomCase(seed).setup();
-        every_triangle.options.culling = false;
+        every_triangle.acceleration.culling = false;
         Simulation reference(std::move(every_triangle));
         Simulation simulation(RandomCase(seed).setup());
         while (!simulation.finished()) {

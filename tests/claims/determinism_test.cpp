@@ -108,7 +108,7 @@ TEST_P(Determinism, StateTotalsAndStatisticsDoNotDependOnTheNumberOfThreads) {
 TEST_P(Determinism, TheStateDoesNotDependOnWhetherRestingParticlesSleep) {
     const auto settling = [](bool sleeping) {
         SimulationSetup setup = debris(sphere_mesh({0.1, 0.2, 0.3}, 1.0, 3), GetParam());
-        setup.options.sleeping = sleeping;
+        setup.acceleration.sleeping = sleeping;
         setup.options.duration = 4.0;
         setup.materials[1] = {"felt", 0.3, 0.5};
         setup.emitters[0].rate = {};

@@ -425,7 +425,7 @@ TEST_P(EveryAnswer, IsTheSameInAllBitsForAnyNumberOfThreadsAndWithoutCulling) {
     const auto run = [&](int threads, bool culling) {
         const ThreadLimit limit(threads);
         SimulationSetup setup = marbles(GetParam());
-        setup.options.culling = culling;
+        setup.acceleration.culling = culling;
         return finished(std::move(setup));
     };
     const Simulation reference = run(1, true);

@@ -125,8 +125,8 @@ std::uint64_t expect_the_same_with_foresight(const Vec3& shift) {
         SCOPED_TRACE("case " + std::to_string(i));
         const auto seed = static_cast<std::uint64_t>(i);
         SimulationSetup plain = SparseCase(seed, shift).setup();
-        plain.options.look_ahead = false;
-        plain.options.spatial_order = false;
+        plain.acceleration.look_ahead = false;
+        plain.acceleration.spatial_order = false;
         Simulation reference(std::move(plain));
         Simulation simulation(SparseCase(seed, shift).setup());
         while (!simulation.finished()) {
@@ -158,7 +158,7 @@ TEST(Foresight, DoesNotFreeASphereThatCannotLeaveTheSurfaceItWasPutOn) {
         SimulationSetup setup;
         setup.options.time_step = 1.0 / 60.0;
         setup.options.duration = 0.5;
-        setup.options.look_ahead = look_ahead;
+        setup.acceleration.look_ahead = look_ahead;
         setup.materials.push_back({"wall", 1.0, 0.0});
         auto mesh = std::make_shared<TriangleMesh>();
         mesh->vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
@@ -192,7 +192,7 @@ TEST(Foresight, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
         setup.options.time_step = 1e-3;
         setup.options.duration = 3.6;
         setup.options.integrator = IntegratorKind::symplectic_euler;
-        setup.options.look_ahead = look_ahead;
+        setup.acceleration.look_ahead = look_ahead;
         setup.options.verify = true;
         setup.materials.push_back({"wall", 1.0, 0.0});
         auto mesh = std::make_shared<TriangleMesh>();
@@ -216,7 +216,7 @@ TEST(Foresight, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
         SimulationSetup setup;
         setup.options.time_step = 0.1;
         setup.options.duration = 10.0;
-        setup.options.look_ahead = look_ahead;
+        setup.acceleration.look_ahead = look_ahead;
         setup.options.verify = true;
         setup.materials.push_back({"wall", 1.0, 0.0});
         setup.colliders.push_back({"plane", PlaneShape{{8e8, -6e8, 0}, {0.6, 0.8, 0}}, 0});
@@ -331,7 +331,7 @@ SimulationSetup crowd() {
 
 TEST(SpatialOrder, ChangesNoRecordNoTotalAndNoStatistic) {
     SimulationSetup plain = crowd();
-    plain.options.spatial_order = false;
+    plain.acceleration.spatial_order = false;
     Simulation reference(std::move(plain));
     Simulation simulation(crowd());
     while (!simulation.finished()) {

@@ -124,10 +124,10 @@ std::uint64_t advance(SimulationSetup setup, int threads) {
     return simulation.state_hash();
 }
 
-void switch_optimisations_off(SimulationOptions& options) {
-    options.look_ahead = false;
-    options.spatial_order = false;
-    options.sleeping = false;
+void switch_accelerations_off(AccelerationSwitches& acceleration) {
+    acceleration.look_ahead = false;
+    acceleration.spatial_order = false;
+    acceleration.sleeping = false;
 }
 
 const std::map<std::string, Outcome>& table() {
@@ -166,7 +166,7 @@ void check(const std::string& name, const MakeSetup& make_setup) {
     EXPECT_EQ(run(make_setup(), 7), golden) << "with 7 threads";
     EXPECT_EQ(advance(make_setup(), 2), golden.state) << "by advance() with 2 threads";
     SimulationSetup plain = make_setup();
-    switch_optimisations_off(plain.options);
+    switch_accelerations_off(plain.acceleration);
     EXPECT_EQ(run(std::move(plain), 2), golden) << "without optimisations, with 2 threads";
 }
 

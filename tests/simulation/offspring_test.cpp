@@ -242,7 +242,7 @@ TEST(Offspring, TheSameBitsForAnyNumberOfThreadsWithAndWithoutVerificationAndCul
         const ThreadLimit limit(threads);
         SimulationSetup setup = busy_setup(0.04);
         setup.options.verify = threads == 2;
-        setup.options.culling = threads != 5;
+        setup.acceleration.culling = threads != 5;
         const Simulation simulation = finished(std::move(setup));
         hashes.insert(simulation.state_hash());
         EXPECT_GT(simulation.statistics().shattered, 5U);

@@ -267,7 +267,7 @@ CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, c
     return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false};
 }
 
-CollisionWorld::Place CollisionWorld::closest_point_on(SurfaceId surface, const Vec3& p) const {
+SurfacePosition CollisionWorld::closest_point_on(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind != Kind::mesh) {
         const Nearest to = nearest(surface, p);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/collision/collider.h"
+#include "ricochet/collision/surface.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/distance_field.h"
@@ -17,16 +18,6 @@
 #include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
-
-/// Number of a surface (a plane or one triangle of a mesh). Ascending in (collider, triangle): the order that breaks
-/// ties.
-using SurfaceId = std::uint32_t;
-
-/// Which collider, and which triangle of it (0 for a plane), a surface is.
-struct SurfaceName {
-    std::uint32_t collider;
-    std::uint32_t triangle;
-};
 
 /// Immutable after construction; safe from any number of threads.
 class CollisionWorld {
@@ -104,13 +95,8 @@ public:
     /// The same of a triangle.
     [[nodiscard]] static Nearest nearest(const TrianglePlane& triangle, const Vec3& p);
 
-    /// A place on a surface.
-    struct Place {
-        Vec3 point;        ///< m
-        Vec3 barycentric;  ///< for the triangle's corners in the order of mesh_of(); zero for planes and shapes
-    };
-    /// The place of a surface nearest to p.
-    [[nodiscard]] Place closest_point_on(SurfaceId surface, const Vec3& p) const;
+    /// The point of a surface nearest to p.
+    [[nodiscard]] SurfacePosition closest_point_on(SurfaceId surface, const Vec3& p) const;
 
     /// Unit normal of a surface at p: the plane's own, the triangle's by the counter-clockwise rule, a shape's outward
     /// one.

@@ -75,7 +75,7 @@ void ContactLog::add_step(const Simulation& simulation) {
 
 void ContactLog::set_row(std::size_t row, const ContactRecord& record, const Simulation& simulation) {
     const SurfaceName surface = simulation.surface_name(record.surface);
-    const CollisionWorld::Place place = simulation.contact_point(record);
+    const SurfacePosition place = simulation.contact_point(record);
     columns_.point[row] = place.point;
     columns_.time[row] = record.time;
     columns_.particle[row] = static_cast<std::int64_t>(record.particle);

@@ -62,13 +62,13 @@ void Mover::look_beyond(const Flight& flight) {
 /// uniform and the steps are those of the run.
 std::optional<LookAhead> Mover::look_ahead_of(const Flight& flight) const {
     const double time_step = rules_.settings.time_step;
-    const bool is_foreseen = rules_.settings.look_ahead && rules_.forces.is_uniform() && particle_.planned == nullptr &&
+    const bool is_foreseen = rules_.look_ahead && rules_.forces.is_uniform() && particle_.planned == nullptr &&
                              state_.coupling == Vec3{} && flight.path.duration == remaining_ &&
                              remaining_ <= kWholeStep * time_step;
     if (!is_foreseen) return std::nullopt;
     const double acceleration = length(flight.acceleration);
     const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;
-    const double left = rules_.settings.end - (state_.time + remaining_);  // of the run, after this step
+    const double left = rules_.end - (state_.time + remaining_);  // of the run, after this step
     if (left < 0.5 * time_step) return std::nullopt;
     const double duration = remaining_ + std::min(steps * time_step, left + time_step);
     LookAhead look_ahead{look_ahead_path(rules_.settings.integrator, flight, time_step, duration), 0.0,

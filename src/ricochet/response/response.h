@@ -6,9 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
@@ -16,86 +14,17 @@
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
+#include "ricochet/response/settings.h"
 
 namespace ricochet {
-
-/// The answers to "a surface is in the way", by their names in scenes.
-enum class ResponseKind {
-    exact,     ///< predicts the time of impact and reflects inside the step, see exact.h
-    rollback,  ///< takes the step, finds that it collided, goes back to the contact, see rollback.h
-    project,   ///< tests at the end of the step and puts the particle back on the surface, see project.h
-    penalty,   ///< a spring and damper on the penetration, see penalty.h
-};
-
-[[nodiscard]] std::optional<ResponseKind> response_from_name(std::string_view name);
-[[nodiscard]] std::string_view name_of(ResponseKind kind);
-/// All kinds, in the order of the enumeration.
-[[nodiscard]] std::span<const ResponseKind> response_kinds();
-
-/// Settings of the rollback response.
-struct RollbackSettings {
-    double time_tolerance = 1e-9;  ///< s, > 0: how closely the time of contact is bracketed
-    bool global = false;           ///< the whole system goes back to the earliest contact, as the lectures teach it
-};
-
-/// Settings of the project response.
-struct ProjectSettings {
-    double offset = 1e-6;  ///< m, > 0: thickness of the layer on a surface in which a particle counts as in contact
-};
-
-/// Settings of the penalty response.
-struct PenaltySettings {
-    /// Spring constant, N/m, > 0. Nothing: for each particle the one with which an undamped contact lasts
-    /// `contact_steps` sub-steps, m (pi / (contact_steps h))^2, so that contacts harden as steps shrink.
-    std::optional<double> stiffness = std::nullopt;
-    double contact_steps = 20.0;   ///< sub-steps, > 0; only without a stiffness
-    std::uint32_t substeps = 10;   ///< equal parts of a step, >= 1
-    double friction_speed = 1e-3;  ///< m/s, > 0: friction grows linearly with slip up to this speed
-};
-
-/// What a wall does to a particle that a flow carries into it, by the names in scenes.
-enum class WallRule {
-    slide,  ///< it goes on along the wall
-    stop,   ///< it stays there until the flow turns away from the wall
-};
-
-/// The rules of a run that a response needs.
-struct ResponseSettings {
-    Integrator integrator = IntegratorKind::ballistic;
-    double resting_speed = 1e-3;  ///< m/s
-    std::uint32_t bounce_budget = 1000;
-    std::uint64_t seed = 0;
-    double time_step = 1.0 / 60.0;  ///< s, of the run; single steps may be shorter
-    RollbackSettings rollback = {};
-    ProjectSettings project = {};
-    PenaltySettings penalty = {};
-    FlowPointer flow = nullptr;  ///< null pointer: forces move the particles; else this flow carries them, see advect.h
-    WallRule walls = WallRule::slide;                      ///< only with a flow
-    bool look_ahead = true;                                ///< find out MoveOutcome::free_for
-    double end = std::numeric_limits<double>::infinity();  ///< s, when the run ends: what comes later is of no interest
-};
 
 /// An impulse that a particle gave to a surface.
 struct SurfaceHit {
     SurfaceId surface = 0;
     Vec3 impulse;        ///< N s, given to the surface
     bool impact = true;  ///< false: the push of a stretch of lasting contact
-};
-
-/// One reflection off one surface, as the contact log writes it. An impact in a corner is several of them, of the same
-/// time and particle, each beginning with the velocity that the one before left. The penalty response, whose contacts
-/// last, records their beginnings, with the same velocity before and after.
-struct ContactRecord {
-    double time = 0.0;  ///< s, simulation time
-    std::uint64_t particle = 0;
-    SurfaceId surface = 0;
-    Vec3 position;         ///< of the particle's centre, parked, m
-    Vec3 normal;           ///< unit, from the surface to the particle
-    Vec3 velocity_before;  ///< m/s
-    Vec3 velocity_after;   ///< m/s
-    double mass = 0.0;     ///< kg
-    double radius = 0.0;   ///< m
 };
 
 /// Scratch memory of one thread. The lists are appended to in the order of events and cleared by the caller.
@@ -168,6 +97,8 @@ struct ResponseRules {
     const ForceField& forces;
     std::span<const Material> materials;
     ResponseSettings settings;
+    double end = std::numeric_limits<double>::infinity();  ///< s, of the run: what comes later is of no interest
+    bool look_ahead = true;                                ///< find out MoveOutcome::free_for
 };
 
 /// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle

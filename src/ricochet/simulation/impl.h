@@ -45,6 +45,9 @@ struct Simulation::Impl {
     /// every step.
     [[nodiscard]] bool may_defer() const;
 
+    void require_between_steps() const;
+    void report_contacts();
+
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
     void add(Particle particle);
@@ -65,12 +68,15 @@ struct Simulation::Impl {
     void forget_queries();
 
     SimulationOptions options;
+    AccelerationSwitches acceleration;
     StepClock clock;
     std::vector<std::string> warnings;
     bool has_spheres;
     ForceField forces;
     std::vector<Material> materials;
-    CollisionWorld world;
+    std::shared_ptr<CollisionWorld> shared_world;
+    CollisionWorld& world;
+    CollisionQueries queries;
     CoupledMotion coupled;
     std::vector<Emitter> emitters;
     std::unique_ptr<Offspring> offspring;  ///< null where no particles are born of particles
@@ -84,7 +90,9 @@ struct Simulation::Impl {
     FreeFlights free_flights;
     ActiveMover mover;
     Retirement retirement;
-    bool inside_step = false;  ///< a step has begun and not ended, perhaps by an error
+    ContactCallback callback;   ///< of on_contact(); may be empty
+    bool inside_step = false;   ///< a step has begun and not ended, perhaps by an error
+    bool is_reporting = false;  ///< the callback runs
 };
 
 }  // namespace ricochet

@@ -39,6 +39,9 @@ public:
     }
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles_.held[i] != 0 && may_sleep_; }
     [[nodiscard]] bool may_sleep() const { return may_sleep_; }
+    void set_may_sleep(bool may_sleep) { may_sleep_ = may_sleep; }
+    /// What has held it need not hold it any longer.
+    void wake(std::size_t i) { particles_.held[i] = 0; }
     /// What forces see of it at a time, s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         return {particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,

@@ -49,8 +49,10 @@ public:
     /// surfaces: how many have totals. With `shows_contacts` the contact records of a step are kept for its end; with
     /// `collects_contacts` at least those of a batch of particles, for their children.
     RunRecorder(std::size_t surfaces, bool shows_contacts, bool collects_contacts)
-        : totals_(surfaces), shows_contacts_(shows_contacts), collects_contacts_(shows_contacts || collects_contacts) {}
+        : totals_(surfaces), shows_contacts_(shows_contacts), collects_contacts_(collects_contacts) {}
 
+    /// From the next step on.
+    void show_contacts(bool shows) { shows_contacts_ = shows; }
     void begin_step();
     /// The particles that are moved next.
     void begin_batch() { batch_contacts_.clear(); }
@@ -61,7 +63,7 @@ public:
     /// Puts the contact records in the order of (time, particle, order of events).
     void end_step();
 
-    [[nodiscard]] bool collects_contacts() const { return collects_contacts_; }
+    [[nodiscard]] bool collects_contacts() const { return shows_contacts_ || collects_contacts_; }
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const { return contacts_; }
     [[nodiscard]] const std::vector<ContactRecord>& batch_contacts() const { return batch_contacts_; }
     [[nodiscard]] const std::vector<Violation>& violations() const { return violations_; }

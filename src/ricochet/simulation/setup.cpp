@@ -11,40 +11,10 @@
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"
+#include "ricochet/simulation/validation.h"
 
 namespace ricochet {
 namespace {
-
-SimulationOptions checked(const SimulationOptions& options) {
-    if (!(options.time_step > 0.0) || !std::isfinite(options.time_step)) {
-        throw InputError("time_step must be a finite number above 0 s");
-    }
-    if (!(options.duration >= 0.0) || !std::isfinite(options.duration)) {
-        throw InputError("duration must be a finite number of at least 0 s");
-    }
-    if (options.duration / options.time_step > 1e15) throw InputError("duration / time_step exceeds 1e15 steps");
-    if (!(options.resting_speed >= 0.0)) throw InputError("resting_speed must be at least 0 m/s");
-    if (!(options.frame_rate > 0.0) || !std::isfinite(options.frame_rate)) {
-        throw InputError("frame_rate must be a finite number above 0 frames a second");
-    }
-    if (options.bounce_budget == 0) throw InputError("bounce_budget must be at least 1");
-    return options;
-}
-
-/// Throws where a collider or one of its triangles names a material that is not there.
-std::vector<Material> checked_materials(std::vector<Material> materials,
-                                        const std::vector<ColliderDescription>& colliders) {
-    for (const ColliderDescription& collider : colliders) {
-        if (collider.material >= materials.size())
-            throw InputError("collider \"" + collider.name + "\" has no material");
-        const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
-        if (mesh == nullptr || mesh->triangle_materials.empty()) continue;
-        const auto& list = mesh->triangle_materials;
-        if (*std::max_element(list.begin(), list.end()) >= materials.size())
-            throw InputError("collider \"" + collider.name + "\" has triangles without a material");
-    }
-    return materials;
-}
 
 bool makes_spheres(const SimulationSetup& setup) {
     return std::any_of(setup.particles.begin(), setup.particles.end(),
@@ -52,12 +22,6 @@ bool makes_spheres(const SimulationSetup& setup) {
            std::any_of(setup.emitters.begin(), setup.emitters.end(), [](const EmitterDescription& emitter) {
                return emitter.radius.mean > 0.0 || emitter.radius.spread > 0.0;
            });
-}
-
-ResponseSettings response_settings(const SimulationOptions& options) {
-    return {options.integrator, options.resting_speed, options.bounce_budget, options.seed,
-            options.time_step,  options.rollback,      options.project,       options.penalty,
-            options.flow,       options.walls,         options.look_ahead,    options.duration};
 }
 
 double lightest_particle(const SimulationSetup& setup) {
@@ -87,7 +51,7 @@ std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const double mass = lightest_particle(setup);
     if (options.response != ResponseKind::penalty || setup.colliders.empty() || !std::isfinite(mass)) return {};
     const double restitution = least_restitution(setup);
-    const ContactSpring spring = contact_spring(response_settings(options), mass, restitution);
+    const ContactSpring spring = contact_spring(options, mass, restitution);
     const double bound = longest_stable_step(spring, mass);
     const double substep = options.time_step / options.penalty.substeps;
     if (substep <= bound) return {};
@@ -114,9 +78,9 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
 }
 
 /// By how much paths may leave their chords: more where parabolas are looked ahead along.
-double chord_margin(const SimulationOptions& options, const ForceField& forces) {
+double chord_margin(const AccelerationSwitches& acceleration, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
-    return options.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;
+    return acceleration.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;
 }
 
 std::vector<std::string> warnings_of(const SimulationSetup& setup) {
@@ -150,19 +114,23 @@ bool keeps_origin(const std::vector<Emitter>& emitters) {
 }  // namespace
 
 Simulation::Impl::Impl(SimulationSetup setup)
-    : options(checked(setup.options)),
+    : options(validated(setup).options),
+      acceleration(setup.acceleration),
       clock(options.time_step, options.duration),
       warnings(warnings_of(setup)),
       has_spheres(makes_spheres(setup)),
       forces(std::move(setup.forces)),
-      materials(checked_materials(std::move(setup.materials), setup.colliders)),
-      world(std::move(setup.colliders), chord_margin(options, forces)),
+      materials(std::move(setup.materials)),
+      shared_world(std::make_shared<CollisionWorld>(std::move(setup.colliders), chord_margin(acceleration, forces))),
+      world(*shared_world),
+      queries(Simulation::queries_of(shared_world)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       emitters(make_emitters(setup)),
       offspring(make_offspring(emitters, options)),
       bounds(setup.bounds),
-      response(make_response(options.response, {world, forces, materials, response_settings(options)})),
-      store(setup.attributes, keeps_origin(emitters), options.sleeping && forces.is_steady(),
+      response(make_response(options.response,
+                             {world, forces, materials, options, options.duration, acceleration.look_ahead})),
+      store(setup.attributes, keeps_origin(emitters), acceleration.sleeping && forces.is_steady(),
             response->keeps_sides() ? world.colliders().size() : 0),
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),
@@ -171,7 +139,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
       retirement(store, schedule, bounds) {
-    world.set_culling(options.culling);
+    world.set_culling(acceleration.culling);
     reserve(setup.particles.size());
     for (const Particle& particle : setup.particles) add(particle);
     if (coupled.is_active()) coupled.bind(particles());

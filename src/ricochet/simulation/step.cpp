@@ -34,7 +34,8 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
 }
 
 bool Simulation::Impl::may_defer() const {
-    return options.look_ahead && !check && !offspring && !bounds && !coupled.is_active();
+    return acceleration.look_ahead && acceleration.deferred_steps && !check && !offspring && !bounds &&
+           !coupled.is_active();
 }
 
 // Children are moved from their births to the end of the step, as a batch that may have children in turn.
@@ -48,10 +49,12 @@ void Simulation::Impl::step() {
     } while (!batch.empty());
     retire_particles(step.end);
     end_step();
+    report_contacts();
 }
 
 // After an error inside a step, particles in free flight may be a step ahead of the others.
 TimeSpan Simulation::Impl::begin_step() {
+    if (is_reporting) throw RunError("a contact callback must not step its simulation");
     if (inside_step) {
         throw RunError("a step of this simulation has ended with an error; make it anew or restore a saved state");
     }
@@ -102,7 +105,7 @@ void Simulation::Impl::order_active_set(ActiveSet& active) const {
     if (options.response != ResponseKind::exact) return;
     active.cut_evenly();
     const bool pays = active.size() >= kFewActive && world.triangles().size() >= kFewTriangles;
-    if (options.spatial_order && pays) active.sort_by_position(particles().position, world.triangle_bounds());
+    if (acceleration.spatial_order && pays) active.sort_by_position(particles().position, world.triangle_bounds());
 }
 
 void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {

@@ -1,0 +1,154 @@
+#include "ricochet/collision_queries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "ricochet/collision/contact_search.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/collision_queries_impl.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet {
+namespace {
+
+/// Part by which a ray's segment is longer than the way to the farthest surface, so that rounding cuts none off.
+constexpr double kBeyond = 0x1p-20;
+
+void require_position(const Vec3& p, const char* what) {
+    if (is_finite(p) && max_abs(p) <= kLargestCoordinate) return;
+    throw InputError(fmt::format("{}: found [{}, {}, {}], expected finite coordinates of at most {:g} m", what, p.x,
+                                 p.y, p.z, kLargestCoordinate));
+}
+
+void require_distance(double distance, const char* what) {
+    if (distance >= 0.0) return;
+    throw InputError(fmt::format("{}: found {}, expected a distance of at least 0 m", what, distance));
+}
+
+Vec3 unit(const Vec3& direction) {
+    const double largest = max_abs(direction);
+    if (is_finite(direction) && largest > 0.0) return normalized(direction / largest);
+    throw InputError(fmt::format("direction: found [{}, {}, {}], expected a finite direction of length above 0",
+                                 direction.x, direction.y, direction.z));
+}
+
+/// m along the ray, beyond which there is nothing.
+double length_of_interest(const CollisionWorld& world, const Vec3& origin, const Vec3& along) {
+    double farthest = 0.0;
+    const Box3& box = world.bounds();
+    if (!box.empty()) farthest = length(max(abs(box.lower - origin), abs(box.upper - origin)));
+    for (const auto& [plane, surface] : world.planes()) {
+        const double distance = -signed_distance(origin, plane) / dot(along, plane.normal);
+        if (std::isfinite(distance)) farthest = std::max(farthest, distance);
+    }
+    return farthest * (1.0 + kBeyond) + std::numeric_limits<double>::min();
+}
+
+/// m along the ray to the first coordinate of kLargestCoordinate.
+double length_to_limits(const Vec3& origin, const Vec3& along) {
+    double length = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double room = along[axis] > 0.0 ? kLargestCoordinate - origin[axis] : kLargestCoordinate + origin[axis];
+        if (along[axis] != 0.0) length = std::min(length, room / std::fabs(along[axis]));
+    }
+    return length;
+}
+
+/// Every edge has an even number of triangles.
+bool is_closed(const TriangleMesh& mesh) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k];
+            const std::uint32_t b = t[(k + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b)});
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t k = 0; k < edges.size();) {
+        std::size_t end = k;
+        while (end < edges.size() && edges[end] == edges[k]) ++end;
+        if ((end - k) % 2 != 0) return false;
+        k = end;
+    }
+    return !edges.empty();
+}
+
+std::shared_ptr<const CollisionWorld> world_of(std::vector<ColliderDescription> colliders) {
+    constexpr std::size_t kAnyMaterial = std::numeric_limits<std::size_t>::max();
+    for (std::size_t k = 0; k < colliders.size(); ++k) validate(colliders[k], k, kAnyMaterial);
+    return std::make_shared<const CollisionWorld>(std::move(colliders));
+}
+
+}  // namespace
+
+const SignedDistance& CollisionQueries::Impl::signed_distance() const {
+    std::call_once(distance_made_, [&] { distance_.emplace(*world); });
+    return *distance_;
+}
+
+const std::vector<MeshInterior>& CollisionQueries::Impl::interiors() const {
+    std::call_once(interiors_made_, [&] {
+        for (std::size_t i = 0; i < world->colliders().size(); ++i) {
+            auto mesh = world->mesh_of(i);
+            if (mesh && is_closed(*mesh)) {
+                interiors_.emplace_back(std::make_shared<const TriangleMesh>(std::move(*mesh)));
+            }
+        }
+    });
+    return interiors_;
+}
+
+CollisionQueries::CollisionQueries(std::vector<ColliderDescription> colliders)
+    : impl_(std::make_shared<const Impl>(world_of(std::move(colliders)))) {}
+
+const std::vector<ColliderDescription>& CollisionQueries::colliders() const { return impl_->world->colliders(); }
+
+std::optional<RayHit> CollisionQueries::first_hit(const Vec3& origin, const Vec3& direction,
+                                                  double most_distance) const {
+    require_position(origin, "origin");
+    require_distance(most_distance, "most_distance");
+    const CollisionWorld& world = *impl_->world;
+    const Vec3 along = unit(direction);
+    const Vec3 start = flush_tiny(origin);
+    const double longest =
+        std::min({most_distance, length_of_interest(world, start, along), length_to_limits(start, along)});
+    thread_local ContactScratch scratch;
+    ContactSearch search(world, scratch);
+    const Path path = line_path(start, longest * along, 1.0);
+    const std::optional<Contact> contact = search.search(path, 0.0);
+    if (!contact) return std::nullopt;
+    const double distance = contact->time * longest;
+    return RayHit{distance, start + distance * along, contact->first().normal, world.name_of(contact->first().surface)};
+}
+
+std::optional<ClosestPoint> CollisionQueries::closest_point(const Vec3& point, double within) const {
+    require_position(point, "point");
+    require_distance(within, "within");
+    const SignedDistance& distances = impl_->signed_distance();
+    std::optional<ClosestPoint> best;
+    for (std::uint32_t collider = 0; collider < colliders().size(); ++collider) {
+        const auto found = distances.closest(collider, point, best ? best->distance : within);
+        if (!found || (best && found->distance >= best->distance)) continue;
+        best = ClosestPoint{found->distance, found->point, found->direction, impl_->world->name_of(found->surface)};
+    }
+    return best;
+}
+
+bool CollisionQueries::is_inside(const Vec3& point) const {
+    require_position(point, "point");
+    const auto& shapes = impl_->world->shapes();
+    const auto& interiors = impl_->interiors();
+    return std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s.shape.side(point) < 0; }) ||
+           std::any_of(interiors.begin(), interiors.end(), [&](const auto& mesh) { return mesh.contains(point); });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,73 @@
+/// \file
+/// How impacts are answered: the responses by name, and their settings.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/integrator.h"
+
+namespace ricochet {
+
+/// The answers to "a surface is in the way", by their names in scenes.
+enum class ResponseKind {
+    exact,     ///< predicts the time of impact and reflects inside the step, see exact.h
+    rollback,  ///< takes the step, finds that it collided, goes back to the contact, see rollback.h
+    project,   ///< tests at the end of the step and puts the particle back on the surface, see project.h
+    penalty,   ///< a spring and damper on the penetration, see penalty.h
+};
+
+[[nodiscard]] std::optional<ResponseKind> response_from_name(std::string_view name);
+[[nodiscard]] std::string_view name_of(ResponseKind kind);
+/// All kinds, in the order of the enumeration.
+[[nodiscard]] std::span<const ResponseKind> response_kinds();
+
+/// Settings of the rollback response.
+struct RollbackSettings {
+    double time_tolerance = 1e-9;  ///< s, > 0: how closely the time of contact is bracketed
+    bool global = false;           ///< the whole system goes back to the earliest contact, as the lectures teach it
+};
+
+/// Settings of the project response.
+struct ProjectSettings {
+    double offset = 1e-6;  ///< m, > 0: thickness of the layer on a surface in which a particle counts as in contact
+};
+
+/// Settings of the penalty response.
+struct PenaltySettings {
+    /// Spring constant, N/m, > 0. Nothing: for each particle the one with which an undamped contact lasts
+    /// `contact_steps` sub-steps, m (pi / (contact_steps h))^2, so that contacts harden as steps shrink.
+    std::optional<double> stiffness = std::nullopt;
+    double contact_steps = 20.0;   ///< sub-steps, > 0; only without a stiffness
+    std::uint32_t substeps = 10;   ///< equal parts of a step, >= 1
+    double friction_speed = 1e-3;  ///< m/s, > 0: friction grows linearly with slip up to this speed
+};
+
+/// What a wall does to a particle that a flow carries into it, by the names in scenes.
+enum class WallRule {
+    slide,  ///< it goes on along the wall
+    stop,   ///< it stays there until the flow turns away from the wall
+};
+
+/// What a response needs to know of a run.
+struct ResponseSettings {
+    double time_step = 1.0 / 60.0;  ///< s, > 0, of the run; single steps may be shorter
+    Integrator integrator = IntegratorKind::ballistic;
+    std::uint64_t seed = 0;
+    /// Rebounds slower than this become resting or sliding contact where restitution < 1 and something presses on, m/s,
+    /// >= 0.
+    double resting_speed = 1e-3;
+    std::uint32_t bounce_budget = 1000;  ///< impacts per particle and step, >= 1
+    RollbackSettings rollback = {};      ///< of the rollback response
+    ProjectSettings project = {};        ///< of the project response
+    PenaltySettings penalty = {};        ///< of the penalty response
+    /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t)):
+    /// with an integrator for flows (carries_along_flows()), the exact response and no forces, else an InputError.
+    FlowPointer flow = nullptr;
+    WallRule walls = WallRule::slide;  ///< what walls do to particles that the flow carries into them
+};
+
+}  // namespace ricochet

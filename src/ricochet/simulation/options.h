@@ -1,0 +1,34 @@
+/// \file
+/// The options of a simulation.
+#pragma once
+
+#include <cstdint>
+
+#include "ricochet/response/settings.h"
+
+namespace ricochet {
+
+/// How time is stepped, how impacts are answered, and what is kept of a run.
+struct SimulationOptions : ResponseSettings {
+    double duration = 1.0;  ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
+    ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
+    bool record_contacts = false;                 ///< keep every impact of the last step, see contact_records()
+    /// Check every segment, side and distance by code of its own, see verify/verifier.h. The same bits as without it.
+    bool verify = false;
+    bool triangle_totals = true;                 ///< keep hits and impulse per triangle (56 bytes each)
+    double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
+    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
+    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time, < 2^32; births beyond are refused and counted
+};
+
+/// What makes a simulation faster, each to be switched off by itself: for tests and benchmarks. The bits of every
+/// result are the same without it.
+struct AccelerationSwitches {
+    bool look_ahead = true;      ///< particles that certainly meet nothing are not queried
+    bool deferred_steps = true;  ///< steps of free flights are made together, see Simulation::advance()
+    bool sleeping = true;        ///< particles held at rest by steady forces cost nothing
+    bool spatial_order = true;   ///< neighbours in space are queried one after the other
+    bool culling = true;         ///< the broad phase proposes candidates; false: every triangle is one of every path
+};
+
+}  // namespace ricochet

@@ -1,0 +1,265 @@
+#include "ricochet/simulation/validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kMostSteps = 1e15;
+/// Particles are numbered by 32 bits; what is born is retired again, so more may be born than live at a time.
+constexpr double kMostBirths = 1e12;
+
+/// The object whose values are checked.
+class Subject {
+public:
+    Subject(std::string_view kind, std::size_t number, std::string_view name = {})
+        : name_(name.empty() ? fmt::format("{} {}", kind, number) : fmt::format("{} \"{}\"", kind, name)) {}
+    explicit Subject(std::string_view name) : name_(name) {}
+
+    template <class Found>
+    [[noreturn]] void refuse(std::string_view what, const Found& found, std::string_view expected) const {
+        throw InputError(fmt::format("{}: {}: found {}, expected {}", name_, what, found, expected));
+    }
+    void require_in(double value, double least, double most, std::string_view what, std::string_view expected) const {
+        if (!(value >= least && value <= most)) refuse(what, value, expected);
+    }
+    void require_positive(double value, std::string_view what, std::string_view unit) const {
+        if (!(value > 0.0) || !std::isfinite(value)) {
+            refuse(what, value, fmt::format("a finite number above 0 ({})", unit));
+        }
+    }
+    void require_not_negative(double value, std::string_view what, std::string_view unit) const {
+        if (!(value >= 0.0) || !std::isfinite(value)) {
+            refuse(what, value,
+                   fmt::format("a finite number of at least 0{}", unit.empty() ? "" : fmt::format(" ({})", unit)));
+        }
+    }
+    /// Every component finite and at most kLargestCoordinate.
+    void require_coordinates(const Vec3& value, std::string_view what, std::string_view unit) const {
+        if (is_finite(value) && max_abs(value) <= kLargestCoordinate) return;
+        refuse(what, fmt::format("[{}, {}, {}]", value.x, value.y, value.z),
+               fmt::format("finite numbers of at most {:g} {}", kLargestCoordinate, unit));
+    }
+    void require_direction(const Vec3& value, std::string_view what) const {
+        if (is_finite(value) && length(value) > 0.0 && std::isfinite(length(value))) return;
+        refuse(what, fmt::format("[{}, {}, {}]", value.x, value.y, value.z), "a direction of finite length above 0");
+    }
+    void require_index(std::size_t index, std::size_t count, std::string_view what, std::string_view of) const {
+        if (index >= count) refuse(what, index, fmt::format("a number below {}, the number of {}", count, of));
+    }
+
+private:
+    std::string name_;
+};
+
+void validate_steps(const SimulationOptions& options) {
+    const Subject subject("options");
+    subject.require_positive(options.time_step, "time_step", "s");
+    subject.require_not_negative(options.duration, "duration", "s");
+    if (options.duration / options.time_step > kMostSteps) {
+        subject.refuse("duration / time_step", options.duration / options.time_step,
+                       fmt::format("at most {:g} steps", kMostSteps));
+    }
+}
+
+void validate(const SimulationOptions& options) {
+    const Subject subject("options");
+    validate_steps(options);
+    subject.require_not_negative(options.resting_speed, "resting_speed", "m/s");
+    subject.require_positive(options.frame_rate, "frame_rate", "frames a second");
+    if (options.bounce_budget == 0) subject.refuse("bounce_budget", 0, "at least 1");
+    if (options.most_particles > std::numeric_limits<std::uint32_t>::max()) {
+        subject.refuse("most_particles", options.most_particles, "a number below 2^32");
+    }
+    const auto kinds = response_kinds();
+    if (std::find(kinds.begin(), kinds.end(), options.response) == kinds.end()) {
+        subject.refuse("response", static_cast<int>(options.response), "one of the responses");
+    }
+    const auto method = static_cast<std::size_t>(options.integrator.kind);
+    subject.require_index(method, integrator_names().size(), "integrator", "methods");
+}
+
+void validate(const Material& material, std::size_t number) {
+    const Subject subject("material", number, material.name);
+    subject.require_in(material.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
+    subject.require_not_negative(material.restitution_threshold, "restitution_threshold", "m/s");
+    subject.require_not_negative(material.friction, "friction", "");
+    subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
+    subject.require_in(material.diffuse, 0.0, 1.0, "diffuse", "a number from 0 to 1");
+    subject.require_in(material.absorption, 0.0, 1.0, "absorption", "a number from 0 to 1");
+    if (material.wall_temperature) subject.require_positive(*material.wall_temperature, "wall_temperature", "K");
+}
+
+void validate(const Placement& placement, const Subject& subject) {
+    subject.require_coordinates(placement.position, "position", "m");
+    subject.require_direction(placement.rotation_axis, "rotation axis");
+    if (!std::isfinite(placement.rotation_degrees)) {
+        subject.refuse("rotation", placement.rotation_degrees, "a finite number of degrees");
+    }
+    subject.require_coordinates(placement.scale, "scale", "");
+}
+
+/// Null pointers and indices past the end.
+void validate(const TriangleMesh* mesh, const Subject& subject) {
+    if (mesh == nullptr) subject.refuse("mesh", "a null pointer", "a mesh");
+    for (const Triangle& triangle : mesh->triangles) {
+        for (const std::uint32_t vertex : triangle) {
+            subject.require_index(vertex, mesh->vertices.size(), "corner of a triangle", "vertices");
+        }
+    }
+}
+
+void validate(const MeshShape& shape, const Subject& subject, std::size_t materials) {
+    validate(shape.mesh.get(), subject);
+    validate(shape.placement, subject);
+    const auto& list = shape.triangle_materials;
+    if (!list.empty() && list.size() != shape.mesh->triangles.size()) {
+        subject.refuse("triangle_materials", list.size(),
+                       fmt::format("none or one for each of the {} triangles", shape.mesh->triangles.size()));
+    }
+    for (const std::uint32_t material : list) {
+        subject.require_index(material, materials, "material of a triangle", "materials");
+    }
+}
+
+void validate(const ColliderShape& shape, const Subject& subject, std::size_t materials) {
+    if (const auto* plane = std::get_if<PlaneShape>(&shape)) {
+        subject.require_coordinates(plane->point, "point", "m");
+        subject.require_direction(plane->normal, "normal");
+    } else if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
+        validate(*mesh, subject, materials);
+    } else if (const auto* ball = std::get_if<BallShape>(&shape)) {
+        subject.require_positive(ball->radius, "radius", "m");
+        validate(ball->placement, subject);
+    } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+        subject.require_positive(cylinder->radius, "radius", "m");
+        subject.require_positive(cylinder->height, "height", "m");
+        validate(cylinder->placement, subject);
+    } else if (const auto* cuboid = std::get_if<CuboidShape>(&shape)) {
+        for (int axis = 0; axis < 3; ++axis) subject.require_positive(cuboid->size[axis], "size", "m");
+        validate(cuboid->placement, subject);
+    }
+}
+
+/// Positions of the shape and the mesh that it samples; its sizes are checked by its sampler.
+void validate(const EmitterShape& shape, const Subject& subject) {
+    const auto check_center = [&](const Vec3& center) { subject.require_coordinates(center, "center", "m"); };
+    if (const auto* point = std::get_if<PointShape>(&shape)) check_center(point->center);
+    if (const auto* disk = std::get_if<DiskShape>(&shape)) check_center(disk->center);
+    if (const auto* box = std::get_if<BoxShape>(&shape)) check_center(box->center);
+    if (const auto* sphere = std::get_if<SphereShape>(&shape)) check_center(sphere->center);
+    if (const auto* cone = std::get_if<ConeShape>(&shape)) subject.require_coordinates(cone->apex, "apex", "m");
+    if (const auto* surface = std::get_if<MeshSurfaceShape>(&shape)) validate(surface->mesh.get(), subject);
+    if (const auto* volume = std::get_if<MeshVolumeShape>(&shape)) validate(volume->mesh.get(), subject);
+}
+
+/// What it gives birth to by itself, at most; rates per screen area are left out.
+double most_births(const EmitterDescription& emitter, const SimulationOptions& options) {
+    if (emitter.parent) return 0.0;
+    const double rate = emitter.rate.mean + emitter.rate.spread +
+                        (emitter.rate_per_frame.mean + emitter.rate_per_frame.spread) * options.frame_rate;
+    const double time = std::max(0.0, std::min(options.duration, emitter.stop) - emitter.start);
+    const double births = static_cast<double>(emitter.burst) + (time > 0.0 ? rate * time : 0.0);
+    return std::min(births, static_cast<double>(emitter.limit));
+}
+
+void validate_emitters(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        const Subject subject("emitter", k, emitter.name);
+        validate(emitter.shape, subject);
+        if (emitter.parent) {
+            subject.require_index(emitter.parent->emitter, setup.emitters.size(), "parent", "emitters");
+        }
+        if (emitter.frames) subject.require_index(emitter.frame, emitter.frames->size(), "frame", "frames");
+        const double births = most_births(emitter, setup.options);
+        if (births > kMostBirths) subject.refuse("births", births, fmt::format("at most {:g}", kMostBirths));
+    }
+}
+
+void validate_springs(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.springs.size(); ++k) {
+        for (const std::uint64_t end : {setup.springs[k].first, setup.springs[k].second}) {
+            Subject("spring", k).require_index(end, setup.particles.size(), "end", "particles");
+        }
+    }
+    for (std::size_t k = 0; k < setup.spring_faces.size(); ++k) {
+        const Subject subject("spring face", k);
+        for (const std::uint64_t corner : setup.spring_faces[k].corners) {
+            subject.require_index(corner, setup.particles.size(), "corner", "particles");
+        }
+        for (const std::uint32_t spring : setup.spring_faces[k].springs) {
+            subject.require_index(spring, setup.springs.size(), "edge", "springs");
+        }
+    }
+}
+
+void validate(const Box3& bounds) {
+    const Subject subject("bounds");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (bounds.lower[axis] < bounds.upper[axis]) continue;
+        subject.refuse(fmt::format("{}", "xyz"[axis]), fmt::format("{} to {}", bounds.lower[axis], bounds.upper[axis]),
+                       "a lower end below the upper one");
+    }
+}
+
+void validate(const ReferenceCamera& camera) {
+    const Subject subject("reference camera");
+    subject.require_coordinates(camera.position, "position", "m");
+    subject.require_coordinates(camera.target, "target", "m");
+    subject.require_direction(camera.target - camera.position, "direction to the target");
+    subject.require_in(camera.field_of_view_degrees, 1.0, 170.0, "field_of_view", "1 to 170 degrees");
+    subject.require_positive(camera.image_height, "image_height", "pixels");
+}
+
+}  // namespace
+
+void validate(const Particle& particle, std::size_t number, std::size_t columns) {
+    const Subject subject("particle", number);
+    subject.require_coordinates(particle.position, "position", "m");
+    subject.require_coordinates(particle.velocity, "velocity", "m/s");
+    subject.require_coordinates(particle.spin, "spin", "rad/s");
+    subject.require_positive(particle.mass, "mass", "kg");
+    subject.require_in(particle.radius, 0.0, kLargestCoordinate, "radius", "a finite number of at least 0 (m)");
+    if (!std::isfinite(particle.birth_time)) subject.refuse("birth_time", particle.birth_time, "a time (s)");
+    if (!(particle.lifetime >= 0.0)) subject.refuse("lifetime", particle.lifetime, "at least 0 (s)");
+    if (particle.attributes.size() > columns) {
+        subject.refuse("attributes", particle.attributes.size(), fmt::format("at most {}, one a column", columns));
+    }
+}
+
+void validate(std::span<const std::unique_ptr<Force>> forces) {
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+        if (forces[k] == nullptr) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
+    }
+}
+
+void validate(const ColliderDescription& collider, std::size_t number, std::size_t materials) {
+    const Subject subject("collider", number, collider.name);
+    subject.require_index(collider.material, materials, "material", "materials");
+    validate(collider.shape, subject, materials);
+}
+
+const SimulationSetup& validated(const SimulationSetup& setup) {
+    validate(setup.options);
+    validate(std::span(setup.forces));
+    for (std::size_t k = 0; k < setup.materials.size(); ++k) validate(setup.materials[k], k);
+    for (std::size_t k = 0; k < setup.colliders.size(); ++k) validate(setup.colliders[k], k, setup.materials.size());
+    for (std::size_t k = 0; k < setup.particles.size(); ++k) validate(setup.particles[k], k, setup.attributes.size());
+    validate_emitters(setup);
+    validate_springs(setup);
+    if (setup.bounds) validate(*setup.bounds);
+    if (setup.reference_camera) validate(*setup.reference_camera);
+    return setup;
+}
+
+}  // namespace ricochet

@@ -154,20 +154,20 @@ double gap_from(const Box3& box, const Vec3& p) {
 /// Bytes that the ray library holds; its own threads count too.
 struct MemoryCount {
     std::atomic<std::ptrdiff_t> bytes{0};
-    HandOver begun;
-    HandOver counted;
+    SyncPoint begun;
+    SyncPoint counted;
 
-    MemoryCount() { begun.give(); }
-    ~MemoryCount() { counted.take(); }
+    MemoryCount() { begun.release(); }
+    ~MemoryCount() { counted.acquire(); }
     MemoryCount(const MemoryCount&) = delete;
     MemoryCount& operator=(const MemoryCount&) = delete;
 };
 
 bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
     auto& count = *static_cast<MemoryCount*>(user);
-    count.begun.take();
+    count.begun.acquire();
     count.bytes.fetch_add(bytes, std::memory_order_relaxed);
-    count.counted.give();
+    count.counted.release();
     return true;
 }
 
@@ -187,7 +187,7 @@ struct TriangleBvh::Impl {
     /// What the ray library's threads are given while they build.
     struct Build {
         const Impl* impl;
-        LoopOrder order;  // after impl: it tells that impl was set before the loop
+        LoopSync sync;  // after impl: it is constructed when impl is set
     };
 
     void build();
@@ -235,7 +235,7 @@ void TriangleBvh::Impl::build() {
         geometry,
         [](const RTCBoundsFunctionArguments* args) {
             auto& build = *static_cast<Build*>(args->geometryUserPtr);
-            const LoopOrder::Body in_order(build.order);
+            const LoopSync::Iteration iteration(build.sync);
             build.impl->write_bounds(args->primID, *args->bounds_o);
         },
         nullptr);

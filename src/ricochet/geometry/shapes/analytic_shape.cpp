@@ -18,29 +18,11 @@ constexpr double kPreciseError = 0x1p-98;
 /// What can_cull() adds to the reach, relative to all lengths involved.
 constexpr double kDistanceFieldSlack = 0x1p-44;
 
-/// Corners of the path's Bezier hull: path and chords lie inside.
-struct Hull {
-    std::array<Vec3, 4> point;
-    int count = 0;
-};
-
-Hull hull_of(const Path& path) {
-    const double h = path.duration;
-    if (path.degree < 2) return {{path.c[0], path.end, {}, {}}, 2};
-    const Vec3 second = path.c[0] + (h / path.degree) * path.c[1];
-    if (path.degree == 2) return {{path.c[0], second, path.end, {}}, 3};
-    return {{path.c[0], second, path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2]), path.end}, 4};
-}
-
-bool is_apart(const Hull& hull, const Box3& box, double reach) {
-    Vec3 lower = hull.point[0];
-    Vec3 upper = hull.point[0];
-    for (int k = 1; k < hull.count; ++k) {
-        lower = min(lower, hull.point[static_cast<std::size_t>(k)]);
-        upper = max(upper, hull.point[static_cast<std::size_t>(k)]);
-    }
+bool is_apart(const ControlPoints& hull, const Box3& box, double reach) {
+    Box3 reached{hull.point[0], hull.point[0]};
+    for (const Vec3& point : hull) reached.include(point);
     for (int i = 0; i < 3; ++i) {
-        if (lower[i] > box.upper[i] + reach || upper[i] < box.lower[i] - reach) return true;
+        if (reached.lower[i] > box.upper[i] + reach || reached.upper[i] < box.lower[i] - reach) return true;
     }
     return false;
 }
@@ -52,26 +34,26 @@ Vec3 in_units(const CentredEllipsoid& around, const Vec3& y) {
 
 /// Is the hull inside the shape by at least `reach`? The map to the unit ball stretches nothing by more than 1 /
 /// smallest half axis.
-bool is_deep_inside(const LocalShape& shape, const Hull& local, double reach) {
+bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double reach) {
     const CentredEllipsoid& around = shape.around();
     const double largest = 1.0 - reach / around.smallest();
     if (!(largest > 0.0)) return false;
-    return std::all_of(local.point.begin(), local.point.begin() + local.count, [&](const Vec3& y) {
+    return std::all_of(local.begin(), local.end(), [&](const Vec3& y) {
         if (shape.is_capped() && std::fabs(y.z) > shape.half_height() - reach) return false;
         return length_squared(in_units(around, y)) <= largest * largest;
     });
 }
 
 /// Is the hull beyond a tangent plane across n by at least `reach`?
-bool is_beyond_plane(const LocalShape& shape, const Hull& local, const Vec3& n, double reach) {
+bool is_beyond_plane(const LocalShape& shape, const ControlPoints& local, const Vec3& n, double reach) {
     const double height = shape.support(n) + reach * length(n);
-    return std::all_of(local.point.begin(), local.point.begin() + local.count,
+    return std::all_of(local.begin(), local.end(),
                        [&](const Vec3& y) { return dot(n, y) > height; });
 }
 
 /// Tries the caps, and the plane that separates the path's chord from the side: where the shape is the unit ball, that
 /// across the chord's point nearest to the centre.
-bool is_far_outside(const LocalShape& shape, const Hull& local, double reach) {
+bool is_far_outside(const LocalShape& shape, const ControlPoints& local, double reach) {
     if (shape.is_capped() &&
         (is_beyond_plane(shape, local, {0, 0, 1}, reach) || is_beyond_plane(shape, local, {0, 0, -1}, reach))) {
         return true;
@@ -176,9 +158,9 @@ double AnalyticShape::distance_to_segment(const Vec3& p, const Vec3& q) const {
 }
 
 bool AnalyticShape::can_cull(const Path& path, double reach) const {
-    const Hull hull = hull_of(path);
+    const ControlPoints hull = path.control_points();
     if (is_apart(hull, bounds_, reach)) return true;
-    Hull local = hull;
+    ControlPoints local = hull;
     double size = shape_.extent();
     for (int k = 0; k < hull.count; ++k) {
         Vec3& y = local.point[static_cast<std::size_t>(k)];

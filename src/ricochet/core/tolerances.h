@@ -204,8 +204,8 @@ inline constexpr double kNewtonTolerance = 1e-10;
 /// Smaller: coarse but stable runs are stopped. Larger: more nonsense is written before the stop.
 inline constexpr double kDivergedGain = 100.0;
 
-/// Strain of springs whose energy counts as rounding where nothing else moves. Smaller than some 1e-8: a network at rest
-/// counts as diverged by its own rounding. Larger: explosions from perfect rest are detected later.
+/// Strain of springs whose energy counts as rounding where nothing else moves. Smaller than some 1e-8: a network at
+/// rest counts as diverged by its own rounding. Larger: explosions from perfect rest are detected later.
 inline constexpr double kNegligibleStretch = 1e-6;
 
 /// Speed that forces may not exceed, m/s: that of light (exact by the definition of the metre). Forces that do so are
@@ -224,8 +224,8 @@ inline constexpr double kTautRope = 1e-9;
 /// Smaller than some 1e-300: exponentials overflow. Larger: narrow catenaries lose their curvature.
 inline constexpr double kFoldedRope = 1e-9;
 
-/// Unit of the per-triangle impulse totals, N s: 128-bit integers in this unit, so that sums do not depend on the order.
-/// The largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
+/// Unit of the per-triangle impulse totals, N s: 128-bit integers in this unit, so that sums do not depend on the
+/// order. The largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;
 
 /// Distance from x, which is finite, to the next larger double magnitude.

@@ -16,7 +16,8 @@
 namespace ricochet {
 
 /// A number as the exact sum of at most Capacity doubles, in increasing order of magnitude, strongly non-overlapping,
-/// none zero. Exact while no component overflows and none has bits below 2^-1074. Only the first `size` are initialised.
+/// none zero. Exact while no component overflows and none has bits below 2^-1074. Only the first `size` are
+/// initialised.
 template <int Capacity>
 struct Expansion {
     std::array<double, static_cast<std::size_t>(Capacity)> components;

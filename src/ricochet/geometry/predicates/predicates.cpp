@@ -76,7 +76,8 @@ bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
 /// Both ends of the segment in the plane of the triangle, or a triangle without area.
 bool coplanar_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int axis = projection_axis(a, b, c);
-    if (axis < 0) return segments_intersect(p, q, a, b) || segments_intersect(p, q, b, c) || segments_intersect(p, q, c, a);
+    if (axis < 0)
+        return segments_intersect(p, q, a, b) || segments_intersect(p, q, b, c) || segments_intersect(p, q, c, a);
     return coplanar_point_in_triangle(p, a, b, c, axis) || coplanar_segments_intersect(p, q, a, b, axis) ||
            coplanar_segments_intersect(p, q, b, c, axis) || coplanar_segments_intersect(p, q, c, a, axis);
 }

@@ -74,8 +74,8 @@ struct FilteredCross {
 }
 
 /// Error of filtered_sign's determinant relative to its magnitude. Each of the six terms passes at most 8 roundings
-/// u = 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions): 8 u and a little, so 8.5 u. Underflow is harmless:
-/// terms are multiples of 2^-1020, so sums below 2^-967 are exact.
+/// u = 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions): 8 u and a little, so 8.5 u. Underflow is
+/// harmless: terms are multiples of 2^-1020, so sums below 2^-967 are exact.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
 /// Sign of (u x v) . w when the error bound allows to tell it, else 0. All of u, v, w are rounded differences of

@@ -9,8 +9,8 @@
 
 namespace ricochet {
 
-/// Results are those of the predicates of the same names, to the bit, for the triangle (a, b, c). Not thread-safe, since
-/// const functions fill the cache.
+/// Results are those of the predicates of the same names, to the bit, for the triangle (a, b, c). Not thread-safe,
+/// since const functions fill the cache.
 class TrianglePlane {
 public:
     TrianglePlane() = default;

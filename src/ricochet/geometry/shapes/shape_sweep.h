@@ -12,7 +12,7 @@ namespace ricochet {
 struct LocalContact {
     double time = 0.0;  ///< s
     Vec3 normal;        ///< unit, from the surface to the side the path comes from
-    Vec3 foot;          ///< on the surface
+    Vec3 point;         ///< on the surface
 };
 
 /// See AnalyticShape::first_contact.

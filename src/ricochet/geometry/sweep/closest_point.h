@@ -35,8 +35,8 @@ struct ClosestPointOnTriangle {
 /// Nearest point of the closed segment [a, b], which may be a point.
 [[nodiscard]] ClosestPointOnSegment closest_point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 
-/// True when p projects into the closed triangle along its unit normal (counter-clockwise rule, within 2^-48). Decided in
-/// double-double near the edges: at the tip of a slender triangle, plain doubles would accept points far beyond it.
+/// True when p projects into the closed triangle along its unit normal (counter-clockwise rule, within 2^-48). Decided
+/// in double-double near the edges: at the tip of a slender triangle, plain doubles would accept points far beyond it.
 [[nodiscard]] bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
                                           const Vec3& normal);
 
@@ -45,8 +45,8 @@ struct ClosestPointOnTriangle {
                                                                const Vec3& c);
 
 /// Barycentric coordinates of a point of a triangle that closest_point_on_triangle() found, for the corners a, b and c:
-/// none negative, their sum 1; exactly 0 opposite an edge or vertex that the point lies on. In double-double for slender
-/// triangles, so that they reproduce the point.
+/// none negative, their sum 1; exactly 0 opposite an edge or vertex that the point lies on. In double-double for
+/// slender triangles, so that they reproduce the point.
 [[nodiscard]] Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b,
                                            const Vec3& c);
 
@@ -57,13 +57,13 @@ struct ClosestPointOnTriangle {
 [[nodiscard]] double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, const Vec3& a,
                                                                const Vec3& b, const Vec3& c);
 
-/// A direction, of any length, from the triangle's closest point to p, in plain doubles. It may be anything, also zero or
-/// NaN, where plain doubles do not suffice.
+/// A direction, of any length, from the triangle's closest point to p, in plain doubles. It may be anything, also zero
+/// or NaN, where plain doubles do not suffice.
 [[nodiscard]] Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A certain lower bound of p's distance from the triangle (a, b, c), m: the separation along the direction (separating
-/// axes, e.g. C. Ericson, "Real-Time Collision Detection", Morgan Kaufmann 2005, section 5.2.1). Negative or NaN where the
-/// direction does not separate. Points of a segment are at least as far as the smaller bound of its ends.
+/// axes, e.g. C. Ericson, "Real-Time Collision Detection", Morgan Kaufmann 2005, section 5.2.1). Negative or NaN where
+/// the direction does not separate. Points of a segment are at least as far as the smaller bound of its ends.
 [[nodiscard]] double distance_lower_bound(const Vec3& direction, const Vec3& p, const Vec3& a, const Vec3& b,
                                           const Vec3& c);
 

@@ -29,8 +29,8 @@ struct TriangleSurface {
     [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
     /// True when a direction certainly leads towards the given side, for the rounded normal as well.
     [[nodiscard]] bool leads_to(int side, const Vec3& direction) const;
-    /// Fraction of a segment in the triangle's plane, which intersects the triangle, at which it enters: the last of the
-    /// crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
+    /// Fraction of a segment in the triangle's plane, which intersects the triangle, at which it enters: the last of
+    /// the crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
     /// Clipping", Computers & Graphics 3, 1978).
     [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };

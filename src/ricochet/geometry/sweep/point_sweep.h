@@ -1,9 +1,9 @@
 /// \file
 /// Sweep of a point against one surface: does its path cross, when first, and from which side? Pure functions.
 ///
-/// Straight paths are decided exactly, by the segment between their stored ends. Curved paths are decided by the signs of
-/// exact orientations at points of the path; only the time is a rounded root. An arc that slips between two triangles by
-/// rounding is caught by the certificate of its chords.
+/// Straight paths are decided exactly, by the segment between their stored ends. Curved paths are decided by the signs
+/// of exact orientations at points of the path; only the time is a rounded root. An arc that slips between two
+/// triangles by rounding is caught by the certificate of its chords.
 #pragma once
 
 #include <limits>

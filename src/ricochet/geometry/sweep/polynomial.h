@@ -6,8 +6,8 @@
 /// Bernstein coefficients, else by cutting the interval at the roots of the derivative, and polished by Newton's method
 /// inside their bracket. Degrees 1 and 2 have closed forms. Sources and error bounds: docs/exactness.md.
 ///
-/// A pair of roots may be missed when the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The work
-/// is bounded, without heap.
+/// A pair of roots may be missed when the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The
+/// work is bounded, without heap.
 #pragma once
 
 #include <array>

@@ -155,7 +155,8 @@ std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) cons
     return contact_at(crossings[0]);
 }
 
-// The distance from a convex set is convex along a line, so an end from which the segment recedes decides for all of it.
+// The distance from a convex set is convex along a line, so an end from which the segment recedes decides for all of
+// it.
 bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double tolerance, const Vec3& a,
                              const Vec3& b, const Vec3& c) {
     const double least = std::max(0.0, radius - tolerance);

@@ -1,5 +1,6 @@
 /// \file
-/// Sweep of a sphere along a path against a triangle or a plane: first contact, closest point and normal. Pure geometry.
+/// Sweep of a sphere along a path against a triangle or a plane: first contact, closest point and normal. Pure
+/// geometry.
 ///
 /// The centre must stay out of the triangle thickened by the radius: a prism between two offset faces, three cylinders
 /// around the edges, three balls around the vertices. Contact is the first root over all of them (e.g. C. Ericson,
@@ -89,8 +90,8 @@ private:
     Vec3 lower_;  ///< their box
     Vec3 upper_;
     double max_distance_ = 0.0;  ///< bound of the distance from the start, m
-    double scale_ = 0.0;  ///< largest coordinate of the whole path's hull plus radius, m
-    double slack_ = 0.0;  ///< kCandidateSlack of that, m
+    double scale_ = 0.0;         ///< largest coordinate of the whole path's hull plus radius, m
+    double slack_ = 0.0;         ///< kCandidateSlack of that, m
     Coefficients<double> squared_displacement_{};
     Coefficients<DoubleDouble> precise_squared_displacement_{};
 };

@@ -331,8 +331,8 @@ Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     return rounded(w - dot_of(w, line->direction) * line->direction);
 }
 
-/// A contact with an edge or vertex along the face's normal to rounding is reported as one with the face: with its normal,
-/// and with its time where the plane is reached at that time to rounding.
+/// A contact with an edge or vertex along the face's normal to rounding is reported as one with the face: with its
+/// normal, and with its time where the plane is reached at that time to rounding.
 SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
     const Vec3 p = path_.position(candidate.time);
     if (candidate.feature != TriangleFeature::kFace) {

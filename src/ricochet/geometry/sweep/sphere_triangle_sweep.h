@@ -60,9 +60,9 @@ private:
     int count_ = 0;
 };
 
-/// Follows a path that starts in overlap, which is a distance up to `radius` (with its rounding). `cuts` are the times, in
-/// order, at which the distance from the surface may have an extremum, so that it is monotone between two cuts and the
-/// middle tells its direction; offset_at(p) is the vector from the surface's closest point to p.
+/// Follows a path that starts in overlap, which is a distance up to `radius` (with its rounding). `cuts` are the times,
+/// in order, at which the distance from the surface may have an extremum, so that it is monotone between two cuts and
+/// the middle tells its direction; offset_at(p) is the vector from the surface's closest point to p.
 template <class OffsetAt>
 [[nodiscard]] OverlapEnd follow_overlap(const Path& path, double radius, std::span<const double> cuts,
                                         const OffsetAt& offset_at) {

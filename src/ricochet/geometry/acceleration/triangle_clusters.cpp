@@ -369,7 +369,8 @@ Shear::Shear(const Vec3& direction) {
 unsigned TriangleCluster::overlaps(const Tube& tube, TubeIntervals& intervals) const {
     if (tube.is_straight) {
         const Vec3 start = per_unit * (tube.from - center);
-        const Mask projected = projected_lanes(*this, start, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
+        const Mask projected =
+            projected_lanes(*this, start, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
         if (is_empty(projected)) return 0;
         const LocalSegment segment = localized(*this, tube);
         return segment.begin > segment.end ? 0 : overlapping_lanes(*this, segment, projected, intervals);

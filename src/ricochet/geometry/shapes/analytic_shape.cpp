@@ -5,7 +5,6 @@
 #include <type_traits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shapes/shape_sweep.h"
 
 namespace ricochet {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shapes/shape_sweep.h"
+#include "ricochet/geometry/shapes/local_shape.h"
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,7 @@ using std::size_t;
 
 /// Evaluations per root. Newton needs about five; every third step halves the bracket at least, and 60 halvings reach
 /// the last place of the duration.
-constexpr int kMostRootSteps = 200;
+constexpr int kMaxRootSteps = 200;
 
 /// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes: at
 /// most 7 additions and 9 products act on a term, 16 u; twice that is used.
@@ -129,7 +129,7 @@ int sign_of(double x) { return static_cast<int>(x > 0.0) - static_cast<int>(x < 
 double bracketed_root(const Polynomial& p, double low, double high, int sign_at_low, double enough) {
     double s = 0.5 * (low + high);
     double width = high - low;
-    for (int step = 0; step < kMostRootSteps; ++step) {
+    for (int step = 0; step < kMaxRootSteps; ++step) {
         const double slope = p.slope(s);
         const BoundedValue rough = bounded_value(p, s);
         double value = rough.value;

@@ -86,7 +86,7 @@ void look_at_clusters(benchmark::State& state, double bend) {
     std::size_t near = 0;
     for ([[maybe_unused]] auto _ : state) {
         TubeIntervals stretches;
-        near += clusters[i].near(tubes[i], stretches) != 0 ? 1 : 0;
+        near += clusters[i].overlaps(tubes[i], stretches) != 0 ? 1 : 0;
         i = i + 1 == clusters.size() ? 0 : i + 1;
     }
     state.counters["near"] = benchmark::Counter(static_cast<double>(near), benchmark::Counter::kAvgIterations);

@@ -67,7 +67,7 @@ TEST(DistanceField, TellsMostOfTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
         const TriangleMesh mesh = testing::sphere_mesh({3, 4, 5}, 1.0, levels);
         const DistanceField grid = grid_of(mesh);
         EXPECT_LT(grid.cell(), 0.1);
-        EXPECT_LE(grid.memory_bytes(), DistanceField::kMostCells);
+        EXPECT_LE(grid.memory_bytes(), DistanceField::kMaxCells);
         RandomSequence random(42, 0, 0);
         for (int k = 0; k < test::scaled(200); ++k) {
             const bool is_inside = k % 2 == 0;

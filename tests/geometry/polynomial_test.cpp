@@ -209,7 +209,6 @@ TEST(PolynomialRoots, AreNotInventedWhereADipStopsShortOfZero) {
             const Polynomial p = dipping_polynomial(index, -std::exp2(-exponent));
             EXPECT_EQ(sign_changes(p).count, 0);
             EXPECT_EQ(down_crossings(p, 0.0, 1.0).count, 0);
-            EXPECT_FALSE(first_descent(p, 0.0, 1.0).has_value());
         }
     }
 }
@@ -283,24 +282,6 @@ TEST(DownCrossings, AreTheSameHoweverTheIntervalIsCut) {
         for (int i = 0; i < early.count; ++i) EXPECT_EQ(early[i], whole[i]);
         for (int i = 0; i < late.count; ++i) EXPECT_EQ(late[i], whole[early.count + i]);
     }
-}
-
-TEST(FirstDescent, FromOverlapStopsApproachAtOnceAndLetsSeparationGo) {
-    EXPECT_EQ(first_descent(polynomial({-1, -1}, 1.0), 0.0, 1.0), 0.0);
-    EXPECT_FALSE(first_descent(polynomial({-1, 0.5}, 1.0), 0.0, 1.0));
-    EXPECT_FALSE(first_descent(polynomial({-1}, 1.0), 0.0, 1.0));
-    EXPECT_EQ(first_descent(polynomial({0, -1}, 1.0), 0.0, 1.0), 0.0);
-}
-
-TEST(FirstDescent, FromOverlapIsTheFirstMaximumThatStaysBelowZero) {
-    EXPECT_EQ(first_descent(polynomial({-2, 2, -1}, 3.0), 0.0, 3.0), 1.0);  // -1 - (s - 1)^2
-}
-
-TEST(FirstDescent, AfterLeavingAnOverlapIsTheNextReturn) {
-    // (s - 1)(3 - s): out at 1, back at 3.
-    const std::optional<double> back = first_descent(polynomial({-3, 4, -1}, 4.0), 0.0, 4.0);
-    ASSERT_TRUE(back);
-    EXPECT_EQ(*back, 3.0);
 }
 
 TEST(CertainlyPositive, NeverHoldsForAPolynomialThatReachesZero) {

@@ -310,7 +310,7 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
                                      : parabola_path(s.p, s.q - s.p, length(s.q - s.p) * random.unit_vector(), 1.0);
         // As the search has it; the second part is for coordinates that safe_position places replace by zero.
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
-        if (!stays_on_one_side(path, s.a, s.b, s.c, slack)) continue;
+        if (!stays_on_one_side(path, TrianglePlane(s.a, s.b, s.c), slack)) continue;
         ++cleared;
         const Vec3 from = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();
         const Vec3 to = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();

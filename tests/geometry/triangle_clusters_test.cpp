@@ -63,7 +63,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
         const Tube tube(from + shift, to + shift, margin, curve);
         for (const TriangleCluster& cluster : clusters) {
             TubeIntervals stretches;
-            const unsigned bits = cluster.near(tube, stretches);
+            const unsigned bits = cluster.overlaps(tube, stretches);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if (cluster.triangle[lane] == kNoTriangle) continue;
                 const auto& [a, b, c] = mesh.triangles[cluster.triangle[lane]];
@@ -95,7 +95,7 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
         for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
             TubeIntervals stretches;
-            EXPECT_EQ(clusters[0].near(Tube({}, size * direction, 1e-12), stretches), 1U) << size;
+            EXPECT_EQ(clusters[0].overlaps(Tube({}, size * direction, 1e-12), stretches), 1U) << size;
         }
     }
 }
@@ -112,7 +112,7 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
         const Tube tube(from, to, 1e-9);
         for (const TriangleCluster& cluster : clusters) {
             TubeIntervals stretches;
-            const unsigned bits = cluster.near(tube, stretches);
+            const unsigned bits = cluster.overlaps(tube, stretches);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if ((bits & (1U << lane)) == 0) continue;
                 const auto& [a, b, c] = mesh.triangles[cluster.triangle[lane]];

@@ -8,26 +8,27 @@
 
 namespace ricochet {
 
-/// Calls visit(i), in ascending order, for every i in [begin, end) with is_one(i). Fast where they are few and
-/// is_one(i), which must not have effects, compiles to vector instructions: runs without any are passed over at once.
+/// Calls visit(i), in ascending order, for every i in [begin, end) with predicate(i). Fast where matches are rare and
+/// the predicate, which must not have side effects, compiles to vector instructions: blocks of 16 without a match are
+/// skipped at once.
 template <class Predicate, class Visit>
-void for_each_if(std::size_t begin, std::size_t end, const Predicate& is_one, const Visit& visit) {
-    constexpr std::size_t kRun = 16;
-    for (; begin + kRun <= end; begin += kRun) {
+void for_each_if(std::size_t begin, std::size_t end, const Predicate& predicate, const Visit& visit) {
+    constexpr std::size_t kBlock = 16;
+    for (; begin + kBlock <= end; begin += kBlock) {
         unsigned any = 0;
-        for (std::size_t k = 0; k < kRun; ++k) any |= is_one(begin + k) ? 1U : 0U;
+        for (std::size_t k = 0; k < kBlock; ++k) any |= predicate(begin + k) ? 1U : 0U;
         if (any == 0) continue;
-        for (std::size_t i = begin; i < begin + kRun; ++i) {
-            if (is_one(i)) visit(i);
+        for (std::size_t i = begin; i < begin + kBlock; ++i) {
+            if (predicate(i)) visit(i);
         }
     }
     for (; begin < end; ++begin) {
-        if (is_one(begin)) visit(begin);
+        if (predicate(begin)) visit(begin);
     }
 }
 
-/// Makes room for `more` entries at the list's end, so that millions are neither moved time and again while they are
-/// appended nor held twice over. Many calls for a few entries each do not copy the list every time.
+/// Reserves capacity for `more` entries at the list's end: exactly for a large batch, geometrically for many small
+/// ones, so that appending neither reallocates time and again nor holds millions of entries twice.
 template <class T>
 void grow_capacity_by(std::vector<T>& list, std::size_t more) {
     const std::size_t wanted = list.size() + more;

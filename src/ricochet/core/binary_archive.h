@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: values as bytes and back, for states that are saved and resumed on one kind of machine.
+/// Values as bytes and back, for states that are saved and resumed on one kind of machine.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// Gives exactly as many bytes as the span holds, at least one, in order; throws when there are not so many.
 using ByteSource = std::function<void(std::span<std::byte>)>;
 
-/// Types that are saved as they lie in memory: they hold neither pointers nor gaps.
+/// Types that are saved as they are in memory: without pointers and padding.
 template <class T>
 inline constexpr bool kIsFlat = std::is_arithmetic_v<T> || std::is_enum_v<T>;  // std::byte is an enumeration
 template <>
@@ -30,7 +30,7 @@ inline constexpr bool kIsFlat<Vec3> = true;
 template <class T, std::size_t n>
 inline constexpr bool kIsFlat<std::array<T, n>> = kIsFlat<T>;
 
-/// Writes. Reading and writing one thing is one function template over both archives: a(x.member) for every member.
+/// Writes. One function template over both archives, archive(x.member) for every member, saves and restores a type.
 class BinaryWriter {
 public:
     static constexpr bool kReads = false;
@@ -59,7 +59,7 @@ private:
 class BinaryReader {
 public:
     static constexpr bool kReads = true;
-    /// Longest list, entries: a damaged length must not ask for all memory there is.
+    /// Longest list, entries: a damaged length must not exhaust the memory.
     static constexpr std::uint64_t kLongestList = std::uint64_t{1} << 34;
 
     explicit BinaryReader(ByteSource source) : source_(std::move(source)) {}

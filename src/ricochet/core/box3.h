@@ -1,5 +1,5 @@
 /// \file
-/// Axis-aligned box.
+/// Axis-aligned box, and Morton codes of the points in one.
 #pragma once
 
 #include <algorithm>
@@ -44,25 +44,26 @@ struct Box3 {
     return (x | x << 2U) & 0x1249249249249249ULL;
 }
 
-/// The cell of a point among 2^21 an axis of the box, 63 bits; points outside belong to the nearest cell, any number
-/// will do for places that are no numbers.
+/// Position of a point along the Z-order curve through 2^21 cells per axis of the box, 63 bits: close codes are close
+/// points. Points outside belong to the nearest cell, points that are NaN to any.
+/// Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
 [[nodiscard]] inline std::uint64_t morton_code(const Vec3& p, const Box3& box) {
     constexpr double kCells = 1 << 21;
     const Vec3 size = box.size();
     const auto cell = [&](int axis) {
-        const double place = (p[axis] - box.lower[axis]) / size[axis] * kCells;
-        return place > 0.0 ? static_cast<std::uint64_t>(std::min(place, kCells - 1.0)) : 0U;
+        const double x = (p[axis] - box.lower[axis]) / size[axis] * kCells;
+        return x > 0.0 ? static_cast<std::uint64_t>(std::min(x, kCells - 1.0)) : 0U;
     };
     return spread_bits(cell(0)) | spread_bits(cell(1)) << 1U | spread_bits(cell(2)) << 2U;
 }
 
-/// A number to sort by: as much of the code as leaves room for an index below 2^index_bits, then the index.
+/// Sort key: the code's leading bits, then an index below 2^index_bits.
 [[nodiscard]] inline std::uint64_t morton_key(const Vec3& p, const Box3& box, std::uint32_t index,
                                               unsigned index_bits) {
     return morton_code(p, box) << 1U >> index_bits << index_bits | index;
 }
 
-/// The index that a key ends with.
+/// The index in a sort key.
 [[nodiscard]] constexpr std::uint32_t index_of_key(std::uint64_t key, unsigned index_bits) {
     return static_cast<std::uint32_t>(key & ((std::uint64_t{1} << index_bits) - 1U));
 }

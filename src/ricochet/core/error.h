@@ -1,5 +1,5 @@
 /// \file
-/// The two kinds of failure a user can meet, and how they read.
+/// The kinds of failure that reach the user, and how they read.
 #pragma once
 
 #include <stdexcept>
@@ -14,13 +14,13 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// A failure while running that is not the input's fault (disk full, device error). Exit code 1.
+/// A failure that the input did not cause (disk full, device error). Exit code 1.
 class RunError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// The numbers of a run have become nonsense: a step too long for its forces, for example. Says when and where.
+/// A run has diverged: for example by a step too long for its forces. The text says when and where.
 class DivergedError : public RunError {
 public:
     using RunError::RunError;

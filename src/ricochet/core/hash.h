@@ -1,5 +1,5 @@
 /// \file
-/// The hash that reports print for a state: equal hashes mean equal bits.
+/// The state hash that reports print: equal hashes mean equal bits.
 #pragma once
 
 #include <bit>

@@ -31,9 +31,9 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
     if (count == 0) return;
     const std::size_t blocks = (count + block_size - 1) / block_size;
-    LoopOrder order;
+    LoopSync sync;
     const auto run_block = [&](std::size_t block) {
-        const LoopOrder::Body in_order(order);
+        const LoopSync::Iteration iteration(sync);
         // Bodies keep working memory per thread: a body that waits for tasks of its own must not meanwhile be given
         // another body of this loop or of one around it.
         tbb::this_task_arena::isolate(
@@ -56,8 +56,8 @@ double ordered_sum(std::size_t count, std::size_t block_size,
     return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// The thread sanitizer cannot see the order that the packaged library keeps among the threads of its sort, and there is
-// no place of ours inside it to tell.
+// The thread sanitizer does not see how the packaged library synchronises the threads of its sort, and nothing of ours
+// runs inside it to say so.
 void parallel_sort(std::vector<std::uint64_t>& values) {
 #if defined(RICOCHET_THREAD_SANITIZER)
     std::sort(values.begin(), values.end());

@@ -1,6 +1,6 @@
 /// \file
-/// The one door to the thread library. Results must not depend on the number of threads: work is cut into blocks whose
-/// borders depend on the amount of work only.
+/// Parallel loops and sums: the only interface to TBB. Results do not depend on the number of threads, since block
+/// boundaries depend on the amount of work only.
 #pragma once
 
 #include <array>
@@ -30,10 +30,9 @@ private:
 /// Worker threads that a parallel loop can use now.
 [[nodiscard]] int thread_count();
 
-/// Calls body(block, begin, end) for [0, count) cut into blocks of block_size, in any order, on any thread.
-/// Runs serially when there is one block. A body that waits for tasks of its own is not interrupted by another body on
-/// the same thread, so that bodies may use thread_local memory. An exception of any body is rethrown here (which one is
-/// not fixed).
+/// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread; serially when
+/// there is one block. A body that waits for tasks of its own is not interrupted by another body on the same thread, so
+/// bodies may use thread_local memory. One of the exceptions thrown by bodies, unspecified which, is rethrown.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 
@@ -44,12 +43,12 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 /// Sorts in ascending order with all threads.
 void parallel_sort(std::vector<std::uint64_t>& values);
 
-/// The thread library's version, for `--version` and reports.
+/// TBB's version, for `--version` and reports.
 [[nodiscard]] const char* tbb_version();
 
-/// A 128-bit two's complement integer counter of `unit`s. Terms are rounded to the unit when they are added; everything
-/// after that is exact, so the total depends on the set of terms alone. Terms beyond 2^126 units and NaN are refused
-/// (the caller is told), totals wrap beyond 2^127 units.
+/// A sum whose bits do not depend on the order of its terms, accumulated from any number of threads: a 128-bit two's
+/// complement count of `unit`s. Terms are rounded to the unit, everything after that is exact. Terms beyond 2^126 units
+/// and NaN are refused, totals wrap beyond 2^127 units.
 class FixedPointSum {
 public:
     /// Adds a term; thread-safe. Returns false, and adds nothing, when the term cannot be represented.

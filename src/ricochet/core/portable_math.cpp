@@ -51,7 +51,7 @@ double polynomial(const std::array<double, N>& terms, double x) {
 }  // namespace
 
 double portable_exp(double x) {
-    if (!(x >= kSmallestExponent)) return x < kSmallestExponent ? 0.0 : x;  // not a number stays so
+    if (!(x >= kSmallestExponent)) return x < kSmallestExponent ? 0.0 : x;  // NaN stays NaN
     if (x > kLargestExponent) return std::numeric_limits<double>::infinity();
     const double k = std::floor(x * std::numbers::log2e + 0.5);
     const double rest = (x - k * kLn2High) - k * kLn2Low;

@@ -1,5 +1,5 @@
 /// \file
-/// Counter-based random numbers: the value depends on the key and the counter only, never on who draws when.
+/// Counter-based random numbers: the value depends on the key and the counter only, not on the order of draws.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ public:
     /// Uniform point of the unit ball.
     Vec3 in_unit_ball();
 
-    /// Draws made so far; hand it to the constructor to go on from here.
+    /// Draws made so far; a sequence constructed with this number continues here.
     [[nodiscard]] std::uint32_t draws() const { return draw_; }
 
 private:

@@ -1,16 +1,16 @@
 /// \file
-/// A straight piece of way.
+/// A straight piece of a trajectory.
 #pragma once
 
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
 
-/// A straight piece of way that a particle's centre has travelled.
+/// A straight piece of a trajectory that a particle's centre has travelled.
 struct Segment {
     Vec3 from;
     Vec3 to;
-    double time = 0.0;  ///< s, simulation time at which the flight (or slide) that it belongs to began
+    double time = 0.0;  ///< s, simulation time at which the flight (or contact phase) that it belongs to began
 };
 
 }  // namespace ricochet

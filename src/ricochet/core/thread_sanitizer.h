@@ -1,6 +1,6 @@
 /// \file
-/// Private: what the thread sanitizer cannot see. The packaged libraries are built without it, so it does not know that
-/// their loops order memory: what happened before the loop, before what its threads do, before what happens after it.
+/// Private: happens-before edges that the thread sanitizer cannot see, because the packaged TBB and Embree are built
+/// without it. Without the sanitizer every call compiles to nothing.
 #pragma once
 
 #ifdef RICOCHET_THREAD_SANITIZER
@@ -12,48 +12,47 @@ void __tsan_release(void* address);
 
 namespace ricochet {
 
-/// Memory handed from one thread to others by a library's own means. Without the sanitizer every call does nothing.
-/// Aligned, so that two of them never share a word of the sanitizer's books.
-class alignas(16) HandOver {
+/// One synchronisation point. Aligned, so that two of them never share a word of the sanitizer's shadow memory.
+class alignas(16) SyncPoint {
 public:
-    /// What this thread did so far is visible to those who take.
-    void give() {
+    /// What this thread did so far is visible to every later acquire().
+    void release() {
 #ifdef RICOCHET_THREAD_SANITIZER
         __tsan_release(this);
 #endif
     }
-    /// What those did who gave is visible to this thread.
-    void take() {
+    /// What happened before every earlier release() is visible to this thread.
+    void acquire() {
 #ifdef RICOCHET_THREAD_SANITIZER
         __tsan_acquire(this);
 #endif
     }
 };
 
-/// A loop that a library runs on its own threads: the calling thread makes one around the loop, every body a Body. The
-/// bodies are not ordered among each other, so that a race between two of them is still found.
-class LoopOrder {
+/// A parallel loop on a library's threads: construct one around the loop and an Iteration in every body. Iterations are
+/// not ordered among each other, so a race between two of them is still found.
+class LoopSync {
 public:
-    LoopOrder() { start_.give(); }
-    ~LoopOrder() { end_.take(); }
-    LoopOrder(const LoopOrder&) = delete;
-    LoopOrder& operator=(const LoopOrder&) = delete;
+    LoopSync() { start_.release(); }
+    ~LoopSync() { end_.acquire(); }
+    LoopSync(const LoopSync&) = delete;
+    LoopSync& operator=(const LoopSync&) = delete;
 
     /// Lives while one body runs.
-    class Body {
+    class Iteration {
     public:
-        explicit Body(LoopOrder& loop) : loop_(loop) { loop_.start_.take(); }
-        ~Body() { loop_.end_.give(); }
-        Body(const Body&) = delete;
-        Body& operator=(const Body&) = delete;
+        explicit Iteration(LoopSync& loop) : loop_(loop) { loop_.start_.acquire(); }
+        ~Iteration() { loop_.end_.release(); }
+        Iteration(const Iteration&) = delete;
+        Iteration& operator=(const Iteration&) = delete;
 
     private:
-        LoopOrder& loop_;
+        LoopSync& loop_;
     };
 
 private:
-    HandOver start_;
-    HandOver end_;
+    SyncPoint start_;
+    SyncPoint end_;
 };
 
 }  // namespace ricochet

@@ -1,12 +1,12 @@
 /// \file
-/// Placement of a collider or emitter in the world: scale, then rotate, then move.
+/// Placement of a collider or emitter in the world: scale, then rotate, then translate.
 #pragma once
 
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
 
-/// How a shape in its own coordinates stands in the world, as a scene file says it.
+/// Transform of a local shape into the world, as a scene file states it.
 struct Placement {
     Vec3 position;                  ///< m
     Vec3 rotation_axis{0, 0, 1};    ///< need not be of unit length; not zero

@@ -11,16 +11,16 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kTrianglesPerBlock = 1 << 12;
-constexpr std::size_t kFewestCells = 1 << 15;
+constexpr std::size_t kMinCells = 1 << 15;
 constexpr std::size_t kCellsPerTriangle = 2;
 
-/// Cells along the longest axis. Distances beyond what a byte holds are told as that: less than they are.
-constexpr double kMostAlongAxis = 1024.0;
+/// Cells along the longest axis. Distances beyond what a byte holds are clamped to it.
+constexpr double kMaxAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Marks that are afforded for each triangle, and for a million more in every grid.
-constexpr double kMostMarks = 16.0;
+/// Budget of marks for each triangle, and for a million more in every grid.
+constexpr double kMaxMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }
 
@@ -29,13 +29,13 @@ std::size_t cell_of(double coordinate, std::size_t count) {
     return static_cast<std::size_t>(std::clamp(coordinate, 0.0, static_cast<double>(count - 1)));
 }
 
-/// Extents of triangles, to tell how much work there is for cells of some size.
+/// Extents of triangles, from which the work for a cell size follows.
 struct Extents {
     double count = 0.0;
     double sum = 0.0;      ///< m
     double squares = 0.0;  ///< m^2
 
-    /// Marks for cells of an edge: no triangle needs more than the square of its cells along an axis.
+    /// Bound of the marks for a cell size: a triangle needs at most the square of its cells along an axis.
     [[nodiscard]] double marks(double cell) const { return count + 2.0 * sum / cell + squares / (cell * cell); }
 };
 
@@ -71,8 +71,8 @@ DistanceField::DistanceField(std::span<const Vec3> vertices, std::span<const Tri
     : box_(box) {
     if (triangles.empty()) return;
     const Extents extents = extents_of(vertices, triangles);
-    const std::size_t most = std::clamp(kCellsPerTriangle * triangles.size(), kFewestCells, kMostCells);
-    choose_cells(most, [&](double cell) { return extents.marks(cell) <= kMostMarks * (extents.count + 1.0e6); });
+    const std::size_t most = std::clamp(kCellsPerTriangle * triangles.size(), kMinCells, kMaxCells);
+    choose_cells(most, [&](double cell) { return extents.marks(cell) <= kMaxMarks * (extents.count + 1.0e6); });
     if (cell_ == 0.0) return;
     cells_.assign(count_[0] * count_[1] * count_[2], kFar);
     parallel_for_blocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -84,11 +84,11 @@ DistanceField::DistanceField(std::span<const Vec3> vertices, std::span<const Tri
     spread();
 }
 
-// Next to their coordinates' rounding there are no cells.
+// Cells near the coordinates' rounding are refused.
 void DistanceField::choose_cells(std::size_t most, const std::function<bool(double cell)>& is_cheap) {
     const Vec3 extent = box_.size();
     const double smallest = kSmallestDistanceCell * max_abs(max(abs(box_.lower), abs(box_.upper)));
-    double cell = max_abs(extent) / kMostAlongAxis;
+    double cell = max_abs(extent) / kMaxAlongAxis;
     if (!(cell > 0.0)) return;
     const auto cells = [&] {
         return cells_along(extent.x, cell) * cells_along(extent.y, cell) * cells_along(extent.z, cell);
@@ -102,7 +102,7 @@ void DistanceField::choose_cells(std::size_t most, const std::function<bool(doub
     }
 }
 
-/// Marks the cells that a triangle, with corners in units of cells, may lie in: large ones in halves.
+/// Marks the cells that a triangle, with corners in units of cells, may lie in; large triangles are bisected.
 void DistanceField::mark(const std::array<Vec3, 3>& corners) {
     Box3 box;
     for (const Vec3& corner : corners) box.include(corner);
@@ -134,8 +134,8 @@ void DistanceField::mark_cells_of(const Box3& box) {
     }
 }
 
-// Two passes over the cells, each of which takes one more than the least of the neighbours that the pass has been to:
-// those of the rows before it, then the one before it in its own row.
+// The two passes of the chessboard distance transform: each cell becomes at most one more than the neighbours that the
+// pass has visited, those in earlier rows first, then the previous one in its own row.
 void DistanceField::spread() {
     for (std::size_t z = 0; z < count_[2]; ++z) {
         for (std::size_t y = 0; y < count_[1]; ++y) spread_rows(z, y, 1);
@@ -145,18 +145,18 @@ void DistanceField::spread() {
     }
 }
 
-/// back: 1 when the rows of smaller numbers have been passed, -1 when those of larger ones.
-void DistanceField::spread_rows(std::size_t z, std::size_t y, int back) {
+/// direction: 1 for the pass upwards, -1 for the one downwards.
+void DistanceField::spread_rows(std::size_t z, std::size_t y, int direction) {
     const std::size_t columns = count_[0];
     std::uint8_t* row = &cells_[index(0, y, z)];
     const auto one_more = [](std::uint8_t distance) {
         return distance == kFar ? kFar : static_cast<std::uint8_t>(distance + 1);
     };
     const auto take = [&](std::size_t x, std::uint8_t distance) { row[x] = std::min(row[x], one_more(distance)); };
-    constexpr std::array<std::array<int, 2>, 4> kPassed{{{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}}};  // z, y
-    for (const auto& [dz, dy] : kPassed) {
-        const auto other_z = static_cast<std::ptrdiff_t>(z) + back * dz;
-        const auto other_y = static_cast<std::ptrdiff_t>(y) + back * dy;
+    constexpr std::array<std::array<int, 2>, 4> kVisited{{{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}}};  // z, y
+    for (const auto& [dz, dy] : kVisited) {
+        const auto other_z = static_cast<std::ptrdiff_t>(z) + direction * dz;
+        const auto other_y = static_cast<std::ptrdiff_t>(y) + direction * dy;
         if (other_z < 0 || other_y < 0 || other_z >= static_cast<std::ptrdiff_t>(count_[2]) ||
             other_y >= static_cast<std::ptrdiff_t>(count_[1])) {
             continue;
@@ -167,22 +167,22 @@ void DistanceField::spread_rows(std::size_t z, std::size_t y, int back) {
         for (std::size_t x = 1; x < columns; ++x) take(x, other[x - 1]);
         for (std::size_t x = 1; x < columns; ++x) take(x - 1, other[x]);
     }
-    if (back > 0) {
+    if (direction > 0) {
         for (std::size_t x = 1; x < columns; ++x) take(x, row[x - 1]);
     } else {
         for (std::size_t x = columns; x-- > 1;) take(x - 1, row[x]);
     }
 }
 
-// Distances are largest differences of coordinates, which are at most the distance. A point outside the box is as far
-// from what is in it, along each axis, as the nearest point of the box, or further.
+// Chessboard distances are at most Euclidean ones. A point outside the box is at least as far from what is in it, along
+// each axis, as the closest point of the box.
 double DistanceField::lower_bound(const Vec3& p) const {
     if (cell_ == 0.0) return 0.0;
     const Vec3 outside = max(box_.lower - p, p - box_.upper);
     const double gap = std::max({outside.x, outside.y, outside.z}) * (1.0 - kDistanceFieldRounding);
-    const Vec3 place = per_cell_ * (p - box_.lower);
+    const Vec3 scaled = per_cell_ * (p - box_.lower);
     const std::size_t distance =
-        cells_[index(cell_of(place.x, count_[0]), cell_of(place.y, count_[1]), cell_of(place.z, count_[2]))];
+        cells_[index(cell_of(scaled.x, count_[0]), cell_of(scaled.y, count_[1]), cell_of(scaled.z, count_[2]))];
     const double cells = static_cast<double>(distance) - (1.0 + kDistanceFieldRounding);
     return std::max({0.0, gap, cells * cell_});
 }

@@ -1,6 +1,5 @@
 /// \file
-/// Private: the one place that knows whether Embree 3 or Embree 4 is installed. Only the two .cpp files behind which
-/// Embree lives (triangle_bvh.cpp, preview.cpp) and the benchmark's reference rays include it.
+/// Private: hides the difference between Embree 3 and 4. Included by the .cpp files that use Embree only.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -16,7 +15,7 @@
 
 namespace ricochet::embree {
 
-/// What travels with a query into the callbacks. The library's own context must stay the first member: callbacks get a
+/// Context of a query, passed to the callbacks. Embree's own context must stay the first member: callbacks get a
 /// pointer to it and cast it back.
 struct QueryContext {
 #if RTC_VERSION_MAJOR >= 4
@@ -53,8 +52,7 @@ inline void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit
 #endif
 }
 
-/// Sixteen rays at once; those whose entry of `valid` is -1 are shot, the others (0) are left alone. `valid` wants to
-/// be aligned to 64 bytes.
+/// Sixteen rays at once: those whose entry of `valid` is -1, not 0. `valid` must be aligned to 64 bytes.
 inline void intersect16(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit16& ray_hits) {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -66,7 +64,7 @@ inline void intersect16(const int* valid, RTCScene scene, QueryContext& context,
 #endif
 }
 
-/// Shoots a shadow ray; afterwards ray.tfar is -infinity when something is in the way.
+/// Shadow ray: afterwards ray.tfar is -infinity when it is occluded.
 inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4
     RTCOccludedArguments arguments;
@@ -76,13 +74,6 @@ inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #else
     rtcOccluded1(scene, &context.base, &ray);
 #endif
-}
-
-/// Asks for everything within query.radius of a point; both releases of the library agree on how.
-inline void point_query1(RTCScene scene, RTCPointQuery& query, RTCPointQueryFunction function, void* user) {
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    rtcPointQuery(scene, &query, &context, function, user);
 }
 
 /// Throws RunError when the device has recorded an error since the last call.
@@ -118,10 +109,10 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// A new device on large pages where the system has them; other settings in Embree's own words. Geometries want mask -1
-/// and rays mask -1: Embree 4 masks always.
-[[nodiscard]] inline Device make_device(const std::string& settings = {}) {
-    Device device(rtcNewDevice(("hugepages=1," + settings).c_str()));
+/// A new device, on huge pages where the system has them, with further Embree configuration. Geometries and rays need
+/// mask -1: Embree 4 always masks.
+[[nodiscard]] inline Device make_device(const std::string& config = {}) {
+    Device device(rtcNewDevice(("hugepages=1," + config).c_str()));
     if (device.get() == nullptr) throw RunError("Embree could not create a device");
     return device;
 }

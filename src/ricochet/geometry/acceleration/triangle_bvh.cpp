@@ -14,12 +14,12 @@
 namespace ricochet {
 namespace {
 
-std::string& ray_library_settings() {
-    static std::string settings;
-    return settings;
+std::string& embree_config() {
+    static std::string config;
+    return config;
 }
 
-/// Maps world doubles to the floats that the ray library sees: centred, and scaled by a power of two to about 1.
+/// Maps world doubles to the floats that Embree sees: centred, and scaled by a power of two to about 1.
 struct FloatFrame {
     Vec3 center;
     double scale = 1.0;
@@ -27,9 +27,9 @@ struct FloatFrame {
     [[nodiscard]] Vec3 apply(const Vec3& p) const { return scale * (p - center); }
 };
 
-/// Segments that reach further out than this (in units of the float frame, about the scene's half extent) are not
-/// clipped: the clipped point's own rounding could exceed the boxes' padding. Every triangle is proposed instead; that
-/// is rare, since such a segment must also point at the collider.
+/// Segments that extend further out than this (in units of the float frame, about the scene's half extent) are not
+/// clipped: the clipped point's own rounding could exceed the boxes' padding. Every triangle is a candidate instead;
+/// that is rare, since such a segment must also point at the collider.
 constexpr double kFarAway = 0x1p20;
 
 /// Rays shorter than this have no direction in single precision.
@@ -80,11 +80,11 @@ std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const 
     return ClippedRange{begin, end};
 }
 
-/// One query on its way through the callbacks.
+/// State of a segment or tube query during traversal.
 struct Query {
     void* context;
     const std::vector<TriangleCluster>* clusters;
-    TriangleBvh::Visit visit = nullptr;           ///< this one or the next
+    TriangleBvh::VisitSegment visit = nullptr;    ///< this one or the next
     TriangleBvh::VisitTube query_tube = nullptr;  ///< triangles that the tube may touch
     Tube tube = {};
     double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
@@ -92,10 +92,10 @@ struct Query {
     double fraction_limit = 1.0;
 
     /// Visits the triangles of a cluster; returns the narrowed fraction.
-    double look_at(const TriangleCluster& cluster);
+    double visit_cluster(const TriangleCluster& cluster);
 };
 
-double Query::look_at(const TriangleCluster& cluster) {
+double Query::visit_cluster(const TriangleCluster& cluster) {
     double limit = fraction_limit;
     if (visit != nullptr) {
         for (const std::uint32_t triangle : cluster.triangle) {
@@ -103,20 +103,20 @@ double Query::look_at(const TriangleCluster& cluster) {
         }
         return limit;
     }
-    TubeIntervals stretches;
-    unsigned bits = cluster.near(tube, stretches);
+    TubeIntervals intervals;
+    unsigned bits = cluster.overlaps(tube, intervals);
     for (; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         limit =
-            std::min(limit, query_tube(context, cluster.triangle[lane], stretches.enter[lane], stretches.leave[lane]));
+            std::min(limit, query_tube(context, cluster.triangle[lane], intervals.enter[lane], intervals.leave[lane]));
     }
     return limit;
 }
 
-/// A query for what is near a point, on its way through the callback.
-struct NearQuery {
+/// State of a point query during traversal.
+struct PointQuery {
     void* context;
-    TriangleBvh::VisitNear visit;
+    TriangleBvh::VisitPoint visit;
     const std::vector<TriangleCluster>* clusters;
     double within;  ///< m, narrowed so far
     double scale;   ///< of the float frame
@@ -125,16 +125,16 @@ struct NearQuery {
 };
 
 /// Distances are compared as squares in single precision: some 8 roundings. The point itself is rounded to 2^-23 of its
-/// largest coordinate, which is within the boxes' padding plus as much of the distance. 2^-20 is plenty for both. An
-/// infinite radius would also reach the empty boxes that the ray library keeps; from a point that is not far away,
-/// everything is nearer than the largest one.
-float NearQuery::radius() const {
+/// largest coordinate, which is within the boxes' padding plus as much of the distance. 2^-20 covers both. An infinite
+/// radius would also include the empty boxes that Embree keeps; from a point that is not far away, everything is nearer
+/// than the largest one.
+float PointQuery::radius() const {
     constexpr double kEverything = 4.0 * kFarAway;
     return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
 }
 
-bool visit_near_cluster(RTCPointQueryFunctionArguments* args) {
-    auto& query = *static_cast<NearQuery*>(args->userPtr);
+bool visit_cluster_near_point(RTCPointQueryFunctionArguments* args) {
+    auto& query = *static_cast<PointQuery*>(args->userPtr);
     double limit = query.within;
     for (const std::uint32_t triangle : (*query.clusters)[args->primID].triangle) {
         if (triangle != kNoTriangle) limit = std::min(limit, std::max(query.visit(query.context, triangle), 0.0));
@@ -146,28 +146,28 @@ bool visit_near_cluster(RTCPointQueryFunctionArguments* args) {
 }
 
 /// Largest distance of a point from a box along an axis, 0 inside: no more than its distance from the box.
-double gap_from(const Box3& box, const Vec3& p) {
+double distance_to_box(const Box3& box, const Vec3& p) {
     const Vec3 outside = max(box.lower - p, p - box.upper);
     return std::max({outside.x, outside.y, outside.z, 0.0});
 }
 
-/// Bytes that the ray library holds; its own threads count too.
+/// Bytes that Embree holds; its own threads count too.
 struct MemoryCount {
     std::atomic<std::ptrdiff_t> bytes{0};
-    HandOver begun;
-    HandOver counted;
+    SyncPoint begun;
+    SyncPoint counted;
 
-    MemoryCount() { begun.give(); }
-    ~MemoryCount() { counted.take(); }
+    MemoryCount() { begun.release(); }
+    ~MemoryCount() { counted.acquire(); }
     MemoryCount(const MemoryCount&) = delete;
     MemoryCount& operator=(const MemoryCount&) = delete;
 };
 
 bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
     auto& count = *static_cast<MemoryCount*>(user);
-    count.begun.take();
+    count.begun.acquire();
     count.bytes.fetch_add(bytes, std::memory_order_relaxed);
-    count.counted.give();
+    count.counted.release();
     return true;
 }
 
@@ -175,19 +175,19 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
 
 struct TriangleBvh::Impl {
     Clusters clusters;
-    double reach = 0.0;
+    double margin = 0.0;
     double slack = 0.0;
     FloatFrame frame;
-    double padding = 0.0;  ///< in the float frame: rounding, slack and reach
+    double padding = 0.0;  ///< in the float frame: rounding, slack and margin
     Box3 clip_box;         ///< world; generously larger than the padded boxes
     MemoryCount memory;
     embree::Device device;
     embree::Scene scene;
 
-    /// What the ray library's threads are given while they build.
+    /// What Embree's threads are given while they build.
     struct Build {
         const Impl* impl;
-        LoopOrder order;  // after impl: it tells that impl was set before the loop
+        LoopSync sync;  // after impl: it is constructed when impl is set
     };
 
     void build();
@@ -195,7 +195,7 @@ struct TriangleBvh::Impl {
     void write_bounds(std::uint32_t number, RTCBounds& bounds) const;
     void visit_all(Query& query) const;
     void visit_segment(const Vec3& from, const Vec3& to, Query& query) const;
-    void ask_near(NearQuery& query, const Vec3& point) const;
+    void query_near(PointQuery& query, const Vec3& point) const;
     void cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const;
 };
 
@@ -206,7 +206,7 @@ void TriangleBvh::Impl::set_frame() {
     // Half extent H and a clipped segment of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
     slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
-    const double beside = frame.scale * (reach + slack);
+    const double beside = frame.scale * (margin + slack);
     padding = kBoxPaddingUnits * 0x1p-24 * (4.5 * half_extent + beside) + beside;
     clip_box = grown(box, 2.0 * padding / frame.scale);
 }
@@ -224,7 +224,7 @@ void TriangleBvh::Impl::write_bounds(std::uint32_t number, RTCBounds& bounds) co
 
 void TriangleBvh::Impl::build() {
     set_frame();
-    device = embree::make_device(ray_library_settings());
+    device = embree::make_device(embree_config());
     rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
     scene = embree::Scene(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -235,14 +235,14 @@ void TriangleBvh::Impl::build() {
         geometry,
         [](const RTCBoundsFunctionArguments* args) {
             auto& build = *static_cast<Build*>(args->geometryUserPtr);
-            const LoopOrder::Body in_order(build.order);
+            const LoopSync::Iteration iteration(build.sync);
             build.impl->write_bounds(args->primID, *args->bounds_o);
         },
         nullptr);
     rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments* args) {
         if (args->valid[0] == 0) return;
         auto& query = *static_cast<Query*>(embree::user_of(args));
-        const double limit = query.look_at((*query.clusters)[args->primID]);
+        const double limit = query.visit_cluster((*query.clusters)[args->primID]);
         if (limit >= query.fraction_limit) return;
         query.fraction_limit = limit;
         // Rounded up generously: a shorter ray must still reach everything up to the limit.
@@ -261,24 +261,24 @@ void TriangleBvh::Impl::build() {
     embree::check_device(device.get(), "building the hierarchy of a collider");
 }
 
-TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach)
-    : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), reach) {}
+TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin)
+    : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), margin) {}
 
-TriangleBvh::TriangleBvh(Clusters clusters, double reach) : impl_(std::make_unique<Impl>()) {
+TriangleBvh::TriangleBvh(Clusters clusters, double margin) : impl_(std::make_unique<Impl>()) {
     impl_->clusters = std::move(clusters);
-    impl_->reach = reach;
+    impl_->margin = margin;
     if (!impl_->clusters->empty()) impl_->build();
 }
 TriangleBvh::~TriangleBvh() = default;
 TriangleBvh::TriangleBvh(TriangleBvh&&) noexcept = default;
 TriangleBvh& TriangleBvh::operator=(TriangleBvh&&) noexcept = default;
 
-double TriangleBvh::margin() const { return impl_->reach; }
+double TriangleBvh::margin() const { return impl_->margin; }
 double TriangleBvh::slack() const { return impl_->slack; }
 std::size_t TriangleBvh::memory_bytes() const { return static_cast<std::size_t>(impl_->memory.bytes.load()); }
 
 void TriangleBvh::Impl::visit_all(Query& query) const {
-    for (const TriangleCluster& cluster : *clusters) (void)query.look_at(cluster);
+    for (const TriangleCluster& cluster : *clusters) (void)query.visit_cluster(cluster);
 }
 
 void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direction, double ray_length) const {
@@ -298,7 +298,7 @@ void TriangleBvh::Impl::cast(Query& query, const Vec3& begin, const Vec3& direct
     embree::intersect1(scene.get(), context, ray);
 }
 
-void TriangleBvh::query_segment(const Vec3& from, const Vec3& to, void* context, Visit visitor) const {
+void TriangleBvh::query_segment(const Vec3& from, const Vec3& to, void* context, VisitSegment visitor) const {
     Query query{context, impl_->clusters.get(), visitor};
     impl_->visit_segment(from, to, query);
 }
@@ -328,19 +328,21 @@ void TriangleBvh::Impl::visit_segment(const Vec3& from, const Vec3& to, Query& q
     cast(query, frame.apply(from + range->begin * delta), direction, ray_length);
 }
 
-void TriangleBvh::Impl::ask_near(NearQuery& query, const Vec3& point) const {
+void TriangleBvh::Impl::query_near(PointQuery& query, const Vec3& point) const {
     RTCPointQuery around{};
     around.x = static_cast<float>(point.x);
     around.y = static_cast<float>(point.y);
     around.z = static_cast<float>(point.z);
     around.radius = query.radius();
-    embree::point_query1(scene.get(), around, visit_near_cluster, &query);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene.get(), &around, &context, visit_cluster_near_point, &query);
 }
 
-void TriangleBvh::query_point(const Vec3& p, double within, void* context, VisitNear visitor) const {
+void TriangleBvh::query_point(const Vec3& p, double within, void* context, VisitPoint visitor) const {
     // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
     // covered by the factor.
-    if (impl_->clusters->empty() || gap_from(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
+    if (impl_->clusters->empty() || distance_to_box(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
     const FloatFrame& frame = impl_->frame;
     if (max_abs(p - frame.center) * frame.scale > kFarAway) {
         for (const TriangleCluster& cluster : *impl_->clusters) {
@@ -350,11 +352,11 @@ void TriangleBvh::query_point(const Vec3& p, double within, void* context, Visit
         }
         return;
     }
-    NearQuery query{context, visitor, impl_->clusters.get(), within, frame.scale};
-    impl_->ask_near(query, frame.apply(p));
+    PointQuery query{context, visitor, impl_->clusters.get(), within, frame.scale};
+    impl_->query_near(query, frame.apply(p));
 }
 
-void set_embree_config(std::string settings) { ray_library_settings() = std::move(settings); }
+void set_embree_config(std::string config) { embree_config() = std::move(config); }
 
 std::string embree_version() {
     const embree::Device device = embree::make_device();

@@ -1,10 +1,10 @@
-/// \file
-/// Which triangles may a segment touch, which are near a point? A bounding volume hierarchy over padded boxes; the ray
-/// library lives behind it.
+/// ile
+/// The broad phase: which triangles may a segment touch, which are near a point? A bounding volume hierarchy over
+/// padded boxes, traversed by Embree in single precision.
 ///
-/// The hierarchy works in single precision and only proposes: every triangle that comes within the reach
-/// of the segment or point (in exact arithmetic) is visited, and some that do not. Nothing that the ray library
-/// computes about triangles is used, so results do not depend on its version, instruction set or layout.
+/// It only proposes candidates: every triangle within the margin of the segment or point (in exact arithmetic), and
+/// some others. No number that Embree computes about triangles is used, so results do not depend on its version,
+/// instruction set or layout.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -24,18 +23,18 @@ namespace ricochet {
 /// Broad phase over static triangles in world coordinates.
 class TriangleBvh {
 public:
-    /// Called for a proposed triangle. Returns the fraction of the segment, in [0, 1], beyond which triangles are no
-    /// longer of interest (1: all are). A pure narrowing: the smallest value returned so far holds.
-    using Visit = double (*)(void* context, std::uint32_t triangle);
+    /// Called for a candidate. Returns the fraction of the segment, in [0, 1], beyond which triangles are no longer of
+    /// interest (1: all are). The smallest value returned so far holds.
+    using VisitSegment = double (*)(void* context, std::uint32_t triangle);
 
     using Clusters = std::shared_ptr<const std::vector<TriangleCluster>>;
 
     /// Builds the hierarchy with all threads. Coordinates must be finite and, after centring, below kLargestCoordinate.
-    /// reach (m, >= 0): paths may bulge that far off the segments that are asked about. Throws RunError when memory is
+    /// margin (m, >= 0): AABB margin, by which paths may leave the segments of queries. Throws RunError when memory is
     /// short.
-    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double reach);
+    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin);
     /// The same over clusters that several hierarchies share.
-    TriangleBvh(Clusters clusters, double reach);
+    TriangleBvh(Clusters clusters, double margin);
     ~TriangleBvh();
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
@@ -43,7 +42,7 @@ public:
     /// Visits every triangle whose distance from the segment [from, to] is at most margin() + slack() (and
     /// possibly more), up to the narrowed fraction, in unspecified order. Safe from any number of threads. Both ends
     /// must be finite.
-    void query_segment(const Vec3& from, const Vec3& to, void* context, Visit visit) const;
+    void query_segment(const Vec3& from, const Vec3& to, void* context, VisitSegment visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle)`.
     template <class Callable>
@@ -54,12 +53,12 @@ public:
             [](void* context, std::uint32_t triangle) { return (*static_cast<Function*>(context))(triangle); });
     }
 
-    /// Called for a triangle that the tube may touch, with the stretch of its way (fractions of it) outside of which it
-    /// certainly does not. Returns as Visit does.
+    /// Called for a triangle that the tube may touch, with the interval (fractions of the path) outside of which it
+    /// certainly does not. Returns as VisitSegment does.
     using VisitTube = double (*)(void* context, std::uint32_t triangle, double enter, double leave);
 
-    /// Visits every triangle that the tube touches, and few others: TriangleCluster::near() decides, four triangles at
-    /// a time. The tube's margin and sagitta together must be at most margin() + slack().
+    /// Visits every triangle that the tube touches, and few others: TriangleCluster::overlaps() decides, four triangles
+    /// at a time. The tube's margin and sagitta together must be at most margin() + slack().
     void query_tube(const Tube& tube, void* context, VisitTube visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle, double enter, double leave)`.
@@ -72,14 +71,14 @@ public:
                    });
     }
 
-    /// Called for a proposed triangle. Returns the distance, m, beyond which triangles are no longer of interest. A
-    /// pure narrowing: the smallest value returned so far holds.
-    using VisitNear = double (*)(void* context, std::uint32_t triangle);
+    /// Called for a candidate. Returns the distance, m, beyond which triangles are no longer of interest. The smallest
+    /// value returned so far holds.
+    using VisitPoint = double (*)(void* context, std::uint32_t triangle);
 
     /// Visits every triangle whose distance from p is at most within + margin() + slack() (and possibly more), where
     /// `within` (m, >= 0, may be infinite) is replaced by the narrowed distance; in unspecified order. Safe from any
     /// number of threads. p must be finite.
-    void query_point(const Vec3& p, double within, void* context, VisitNear visit) const;
+    void query_point(const Vec3& p, double within, void* context, VisitPoint visit) const;
 
     /// The same with any callable `double(std::uint32_t triangle)`.
     template <class Callable>
@@ -91,7 +90,7 @@ public:
 
     /// m, as given.
     [[nodiscard]] double margin() const;
-    /// m, what the boxes allow for places beside the segment (see kBoxSlack).
+    /// m, what the boxes allow for positions beside the segment (see kBoxSlack).
     [[nodiscard]] double slack() const;
     /// Bytes that the hierarchy holds (without the vertices and triangles).
     [[nodiscard]] std::size_t memory_bytes() const;
@@ -101,11 +100,11 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Settings that hierarchies built from now on hand to the ray library, in its own words ("isa=sse2"); empty: its
-/// defaults. No result depends on them, which is what they are for: to show it. Not while hierarchies are being built.
-void set_embree_config(std::string settings);
+/// Embree device configuration of hierarchies built from now on ("isa=sse2"); empty: defaults. For tests that no result
+/// depends on it. Not while hierarchies are being built.
+void set_embree_config(std::string config);
 
-/// Name, version and instruction sets of the ray library, for `--version` and reports.
+/// Embree's name and version, for `--version` and reports.
 [[nodiscard]] std::string embree_version();
 
 }  // namespace ricochet

@@ -16,30 +16,28 @@ constexpr std::size_t kBlock = 1 << 12;
 /// Half the largest extent of a cluster in its units, at most.
 constexpr float kExtent = 0x1p15F;
 
-/// Units by which a corner may lie beside where its whole numbers say: half of one along each axis, and one at the
-/// largest number, which is no power of two.
+/// Units by which a corner may differ from its quantised position: half of one along each axis, and one at the largest
+/// number, which is not a power of two.
 constexpr double kCornerRounding = 2.0;
 
-/// Of the height of a point above a triangle's plane, times the length of its normal, in single precision: some sixty
-/// roundings of 2^-24 of edges that are no longer than two extents.
-constexpr float kRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
+/// Rounding of the height over a triangle's plane, times the length of its normal, in single precision: some sixty
+/// roundings of 2^-24 of edges of at most two extents.
+constexpr float kHeightRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
 
-/// Of twice the area that two points and a place span as seen along a way, in squares of what all of them are within:
-/// some thirty roundings of 2^-24.
-constexpr float kViewRounding = 0x1p-18F;
+/// Rounding of twice a projected area, in squares of the largest coordinate: some thirty roundings of 2^-24.
+constexpr float kAreaRounding = 0x1p-18F;
 
-/// A shorter direction is none: its reciprocal would leave the range of doubles.
+/// Shorter directions count as zero: their reciprocal would leave the range of doubles.
 constexpr double kShortestDirection = 1e-290;
 
-/// Of a fraction that is a quotient of such numbers.
+/// Rounding of a fraction, a quotient of such numbers.
 constexpr float kFractionRounding = 0x1p-20F;
 
-/// 1/m: the square of a shorter segment's length would leave the range of doubles. It counts as a point, all of which
-/// is looked at.
-constexpr double kMostPerLength = 1e140;
+/// 1/m: the square of a shorter segment's length would leave the range of doubles. It is not cut.
+constexpr double kMaxPerLength = 1e140;
 
-/// What a cluster costs in memory and time beside what its box's surface costs, in surfaces of the mean triangle's box.
-/// Next to each other along the curve need not be next to each other in space, so full clusters are not the best ones.
+/// Cost of a cluster in memory and time besides its box's surface, in surfaces of the mean triangle's box. Neighbours
+/// along the curve need not be neighbours in space, so full clusters are not the best ones.
 constexpr double kCostOfCluster = 2.0;
 
 // Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
@@ -52,8 +50,7 @@ struct QuadVec {
     Quad z;
 };
 
-// Each number into the upper half of a wider one and down again with its sign: what all 64-bit processors do in three
-// instructions.
+// Sign extension by an arithmetic shift: three instructions on all 64-bit processors.
 Quad loaded(const TriangleCluster::Lanes& lanes) {
     using Numbers = std::int16_t __attribute__((vector_size(16)));
     const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
@@ -80,29 +77,29 @@ Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
 /// |x| + |y| + |z|, at least the length and at most sqrt(3) of it.
 Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
-/// The chord of the part of a way that passes by a cluster, in the cluster's units.
+/// The chord of the part of a path that passes by a cluster, in the cluster's units.
 struct LocalSegment {
-    double begin;  ///< fractions of the whole way
+    double begin;  ///< fractions of the whole path
     double end;
-    Vec3 place;  ///< of the beginning, from the centre
+    Vec3 start;  ///< from the centre
     Vec3 chord;
     double width;               ///< margin
     std::array<float, 3> from;  ///< the same in single precision
     std::array<float, 3> along;
     float margin;
-    float reach;  ///< at least the size of all numbers here and of differences to the corners
+    float size;  ///< at least that of all numbers here and of differences to the corners
 };
 
 /// What else rounding does to the margin here is far below the bounds' own.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
 /// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part
-/// is empty (begin > end) when nothing is. It leaves its chord by less than the whole way leaves its own: by the square
-/// of its share.
+/// is empty (begin > end) when nothing is. It leaves its chord by less than the whole path leaves its own: by the
+/// square of its share.
 LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
-    if (tube.per_length < kMostPerLength) {
+    if (tube.per_length < kMaxPerLength) {
         const double middle = dot(offset, tube.along) * tube.per_length * tube.per_length;
         const double margin = (tube.margin + tube.sagitta) * kMarginRounding;
         const double half = (2.0 * kExtent / cluster.per_unit + margin) * tube.per_length;
@@ -111,45 +108,45 @@ LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     }
     const double share = local.end - local.begin;
     const Vec3 begin = tube.offset(local.begin);
-    const Vec3 from = local.place = cluster.per_unit * (begin - offset);
+    const Vec3 from = local.start = cluster.per_unit * (begin - offset);
     const Vec3 along = local.chord = cluster.per_unit * (tube.offset(local.end) - begin);
     const double margin = tube.margin + share * share * tube.sagitta;
     local.width = kCornerRounding + cluster.per_unit * margin * kMarginRounding;
     local.margin = static_cast<float>(local.width);
     local.from = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
     local.along = {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
-    local.reach = 2.0F * kExtent + static_cast<float>(max_abs(from) + max_abs(along));
+    local.size = 2.0F * kExtent + static_cast<float>(max_abs(from) + max_abs(along));
     return local;
 }
 
-/// The other axes, as seen along a shear whose axis is kAhead.
-template <int kAhead>
-struct Seen {
-    static constexpr int kRight = (kAhead + 1) % 3;
-    static constexpr int kUp = (kAhead + 2) % 3;
+/// The axes of the projection by a shear along kAxis.
+template <int kAxis>
+struct Projection {
+    static constexpr int kRight = (kAxis + 1) % 3;
+    static constexpr int kUp = (kAxis + 2) % 3;
 };
 
-/// A way as it looks along itself from a cluster's centre, in the cluster's units: a place.
+/// A path projected along itself to a point, relative to a cluster's centre and in its units.
 struct View {
     float right;  ///< of the shear
     float up;
     float x;  ///< to the right
     float y;  ///< up
     float margin;
-    float reach;  ///< at least the size of all numbers here and of differences to the corners
+    float size;  ///< at least that of all numbers here and of differences to the corners
 };
 
-/// Along the shear, through a place relative to the cluster's centre and up to `extent` beyond.
-template <int kAhead>
-View view_through(const Vec3& place, const Shear& shear, double margin, float extent) {
-    using Axes = Seen<kAhead>;
+/// Along the shear, through a point relative to the cluster's centre and up to `extent` beyond.
+template <int kAxis>
+View view_along(const Vec3& point, const Shear& shear, double margin, float extent) {
+    using Axes = Projection<kAxis>;
     View view{static_cast<float>(shear.right),
               static_cast<float>(shear.up),
-              static_cast<float>(place[Axes::kRight] - shear.right * place[kAhead]),
-              static_cast<float>(place[Axes::kUp] - shear.up * place[kAhead]),
-              static_cast<float>(margin * (shear.stretch * kMarginRounding)),
+              static_cast<float>(point[Axes::kRight] - shear.right * point[kAxis]),
+              static_cast<float>(point[Axes::kUp] - shear.up * point[kAxis]),
+              static_cast<float>(margin * (shear.norm * kMarginRounding)),
               0.0F};
-    view.reach = 4.0F * kExtent + view.margin + std::fabs(view.x) + std::fabs(view.y) + extent;
+    view.size = 4.0F * kExtent + view.margin + std::fabs(view.x) + std::fabs(view.y) + extent;
     return view;
 }
 
@@ -158,19 +155,19 @@ bool is_empty(const Mask& mask) {
     return (halves[0] | halves[1]) == 0;
 }
 
-struct QuadPlace {
+struct QuadPoint {
     Quad x;
     Quad y;
 };
 
-/// Twice the area that a place, the origin, and an edge span, and by how much it must differ from 0 for the place to be
-/// certainly more than the margin on one side of the edge.
-struct Beside {
+/// Twice the area of the origin and an edge, and by how much it must differ from 0 for the origin to be certainly more
+/// than the margin on one side of the edge.
+struct EdgeSide {
     Quad area;
     Quad bound;
 };
 
-Beside beside(const QuadPlace& from, const QuadPlace& to, const View& view, float rounding) {
+EdgeSide side_of_edge(const QuadPoint& from, const QuadPoint& to, const View& view, float rounding) {
     const Quad length = abs(to.x - from.x) + abs(to.y - from.y);
     return {from.x * to.y - from.y * to.x, view.margin * length + rounding};
 }
@@ -180,55 +177,55 @@ const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& 
     return kAxis == 0 ? cluster.x : (kAxis == 1 ? cluster.y : cluster.z);
 }
 
-// A triangle as seen along the way is away from the way's place when the place is certainly beyond one of its edges, or
-// of its box. Which way round the triangle's corners are seen does not matter: the areas add up to that of the
-// triangle, so beyond an edge one has the sign that the other two do not have. A triangle that is seen as a line has
-// its box.
-template <int kAhead>
-Mask in_view(const TriangleCluster& cluster, const View& view) {
-    using Axes = Seen<kAhead>;
-    std::array<QuadPlace, 3> corner;
+// The projected triangle misses the path's point when that is certainly beyond one of its edges or of its box. Winding
+// does not matter: the areas add up to that of the triangle, so beyond an edge one has the sign that the other two do
+// not have. A triangle that is projected to a line has its box.
+template <int kAxis>
+Mask lanes_of(const TriangleCluster& cluster, const View& view) {
+    using Axes = Projection<kAxis>;
+    std::array<QuadPoint, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Quad depth = loaded(coordinates<kAhead>(cluster)[k]);
+        const Quad depth = loaded(coordinates<kAxis>(cluster)[k]);
         corner[k].x = loaded(coordinates<Axes::kRight>(cluster)[k]) - view.right * depth - view.x;
         corner[k].y = loaded(coordinates<Axes::kUp>(cluster)[k]) - view.up * depth - view.y;
     }
     const auto& [a, b, c] = corner;
-    const float rounding = kViewRounding * view.reach * view.reach;
-    const Beside ab = beside(a, b, view, rounding);
-    const Beside bc = beside(b, c, view, rounding);
-    const Beside ca = beside(c, a, view, rounding);
+    const float rounding = kAreaRounding * view.size * view.size;
+    const EdgeSide ab = side_of_edge(a, b, view, rounding);
+    const EdgeSide bc = side_of_edge(b, c, view, rounding);
+    const EdgeSide ca = side_of_edge(c, a, view, rounding);
     const Quad none{};
     const Mask beyond = (min(min(ab.area + ab.bound, bc.area + bc.bound), ca.area + ca.bound) < none) &
                         (max(max(ab.area - ab.bound, bc.area - bc.bound), ca.area - ca.bound) > none);
-    const float near = view.margin + kViewRounding * view.reach;
-    const Mask beside_box = (min(min(a.x, b.x), c.x) > near) | (max(max(a.x, b.x), c.x) < -near) |
-                            (min(min(a.y, b.y), c.y) > near) | (max(max(a.y, b.y), c.y) < -near);
-    return ~(beyond | beside_box);
+    const float near = view.margin + kAreaRounding * view.size;
+    const Mask outside_box = (min(min(a.x, b.x), c.x) > near) | (max(max(a.x, b.x), c.x) < -near) |
+                             (min(min(a.y, b.y), c.y) > near) | (max(max(a.y, b.y), c.y) < -near);
+    return ~(beyond | outside_box);
 }
 
-/// The lanes that may be near a way that goes along the shear. Straight ways need not be cut first: their whole line is
-/// one place.
-Mask lanes_in_view(const TriangleCluster& cluster, const Vec3& place, const Shear& shear, double margin, float extent) {
-    switch (shear.ahead) {
+/// The lanes that may be near a path along the shear. Straight paths need not be cut first: the whole line is projected
+/// to one point.
+Mask projected_lanes(const TriangleCluster& cluster, const Vec3& point, const Shear& shear, double margin,
+                     float extent) {
+    switch (shear.axis) {
         case 0:
-            return in_view<0>(cluster, view_through<0>(place, shear, margin, extent));
+            return lanes_of<0>(cluster, view_along<0>(point, shear, margin, extent));
         case 1:
-            return in_view<1>(cluster, view_through<1>(place, shear, margin, extent));
+            return lanes_of<1>(cluster, view_along<1>(point, shear, margin, extent));
         default:
-            return in_view<2>(cluster, view_through<2>(place, shear, margin, extent));
+            return lanes_of<2>(cluster, view_along<2>(point, shear, margin, extent));
     }
 }
 
 // The tube can touch a triangle only while the chord is within the margin of the triangle's plane. Everything is
 // compared without dividing by the normal's length, so slivers only make the bound larger.
-unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& seen,
-                    TubeIntervals& stretches) {
+unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& projected,
+                           TubeIntervals& intervals) {
     const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
     const QuadVec ab = QuadVec{loaded(cluster.x[1]), loaded(cluster.y[1]), loaded(cluster.z[1])} - a;
     const QuadVec ac = QuadVec{loaded(cluster.x[2]), loaded(cluster.y[2]), loaded(cluster.z[2])} - a;
     const QuadVec normal = cross(ab, ac);
-    const float rounding = kRounding * segment.reach;
+    const float rounding = kHeightRounding * segment.size;
     const Quad bound = segment.margin * size_of(normal) + rounding;
     const QuadVec start{segment.from[0] - a.x, segment.from[1] - a.y, segment.from[2] - a.z};
     const Quad height = dot(normal, start);
@@ -243,14 +240,14 @@ unsigned near_lanes(const TriangleCluster& cluster, const LocalSegment& segment,
     const Mask is_level = abs(slope) <= rounding;
     const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
     const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);
-    const Mask near = seen & (is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave);
+    const Mask near = projected & (is_level ? abs(height) <= bound + 2.0F * rounding : enter <= leave);
     const double span = segment.end - segment.begin;
     unsigned bits = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
         if (near[lane] == 0 || cluster.triangle[lane] == kNoTriangle) continue;
         bits |= 1U << lane;
-        stretches.enter[lane] = segment.begin + static_cast<double>(enter[lane]) * span;
-        stretches.leave[lane] = segment.begin + static_cast<double>(leave[lane]) * span;
+        intervals.enter[lane] = segment.begin + static_cast<double>(enter[lane]) * span;
+        intervals.leave[lane] = segment.begin + static_cast<double>(leave[lane]) * span;
     }
     return bits;
 }
@@ -310,8 +307,8 @@ double half_area(const Box3& box) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-/// Where clusters end along a stretch of the order, given the triangles' boxes, such that the sum of their costs is
-/// least: dynamic programming over what the last cluster of a beginning holds.
+/// Where clusters end along a block of the order, given the triangles' boxes, such that the sum of their costs is
+/// least: dynamic programming over the size of the last cluster.
 std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
     double area = 0.0;
     for (const Box3& box : boxes) area += half_area(box);
@@ -336,52 +333,53 @@ std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
 }
 
 /// A block of the order and where its clusters end in it.
-struct Stretch {
+struct Block {
     std::span<const std::uint32_t> triangles;
     std::vector<std::uint32_t> ends;
-    std::size_t first = 0;  ///< number of its first cluster
+    std::size_t first = 0;  ///< index of its first cluster
 };
 
-std::vector<Stretch> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                            std::span<const std::uint32_t> order) {
-    std::vector<Stretch> stretches((order.size() + kBlock - 1) / kBlock);
+std::vector<Block> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                          std::span<const std::uint32_t> order) {
+    std::vector<Block> blocks((order.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(order.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         const auto members = order.subspan(begin, end - begin);
         std::vector<Box3> boxes;
         boxes.reserve(members.size());
         for (const std::uint32_t triangle : members) boxes.push_back(box_of(vertices, triangles[triangle]));
-        stretches[block] = {members, cluster_ends(boxes)};
+        blocks[block] = {members, cluster_ends(boxes)};
     });
-    for (std::size_t k = 1; k < stretches.size(); ++k) {
-        stretches[k].first = stretches[k - 1].first + stretches[k - 1].ends.size();
+    for (std::size_t k = 1; k < blocks.size(); ++k) {
+        blocks[k].first = blocks[k - 1].first + blocks[k - 1].ends.size();
     }
-    return stretches;
+    return blocks;
 }
 
 }  // namespace
 
 Shear::Shear(const Vec3& direction) {
     const Vec3 size = abs(direction);
-    ahead = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    if (!(size[ahead] > kShortestDirection)) return;
-    right = direction[(ahead + 1) % 3] / direction[ahead];
-    up = direction[(ahead + 2) % 3] / direction[ahead];
-    stretch = std::sqrt(1.0 + right * right + up * up);
+    axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    if (!(size[axis] > kShortestDirection)) return;
+    right = direction[(axis + 1) % 3] / direction[axis];
+    up = direction[(axis + 2) % 3] / direction[axis];
+    norm = std::sqrt(1.0 + right * right + up * up);
 }
 
-unsigned TriangleCluster::near(const Tube& tube, TubeIntervals& stretches) const {
+unsigned TriangleCluster::overlaps(const Tube& tube, TubeIntervals& intervals) const {
     if (tube.is_straight) {
-        const Vec3 place = per_unit * (tube.from - center);
-        const Mask seen = lanes_in_view(*this, place, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
-        if (is_empty(seen)) return 0;
+        const Vec3 start = per_unit * (tube.from - center);
+        const Mask projected =
+            projected_lanes(*this, start, tube.shear, kCornerRounding + per_unit * tube.margin, 0.0F);
+        if (is_empty(projected)) return 0;
         const LocalSegment segment = localized(*this, tube);
-        return segment.begin > segment.end ? 0 : near_lanes(*this, segment, seen, stretches);
+        return segment.begin > segment.end ? 0 : overlapping_lanes(*this, segment, projected, intervals);
     }
     const LocalSegment segment = localized(*this, tube);
     if (segment.begin > segment.end) return 0;
     const Shear shear(segment.chord);
-    const Mask seen = lanes_in_view(*this, segment.place, shear, segment.width, segment.reach);
-    return is_empty(seen) ? 0 : near_lanes(*this, segment, seen, stretches);
+    const Mask projected = projected_lanes(*this, segment.start, shear, segment.width, segment.size);
+    return is_empty(projected) ? 0 : overlapping_lanes(*this, segment, projected, intervals);
 }
 
 Box3 TriangleCluster::box() const {
@@ -401,11 +399,11 @@ Box3 TriangleCluster::box() const {
 
 std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     const std::vector<std::uint32_t> order = in_spatial_order(vertices, triangles);
-    const std::vector<Stretch> stretches = divide(vertices, triangles, order);
-    if (stretches.empty()) return {};
-    std::vector<TriangleCluster> clusters(stretches.back().first + stretches.back().ends.size());
-    parallel_for_blocks(stretches.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-        const auto& [members, ends, first] = stretches[k];
+    const std::vector<Block> blocks = divide(vertices, triangles, order);
+    if (blocks.empty()) return {};
+    std::vector<TriangleCluster> clusters(blocks.back().first + blocks.back().ends.size());
+    parallel_for_blocks(blocks.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+        const auto& [members, ends, first] = blocks[k];
         std::size_t begin = 0;
         for (std::size_t c = 0; c < ends.size(); ++c) {
             clusters[first + c] = cluster_of(vertices, triangles, members.subspan(begin, ends[c] - begin));

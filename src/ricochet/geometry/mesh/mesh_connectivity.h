@@ -1,5 +1,5 @@
 /// \file
-/// Private to mesh_topology and pseudonormals: which faces use which edge.
+/// Private: which faces use which edge, which elements are connected, which positions are equal.
 #pragma once
 
 #include <algorithm>
@@ -89,7 +89,7 @@ public:
     /// Vertices are appended to a list of the caller's.
     explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices) {}
 
-    /// Makes room for that many different positions: 8 to 16 bytes each, besides the list.
+    /// Reserves for that many different positions: 8 to 16 bytes each, besides the list.
     void reserve(std::size_t positions);
     /// Number of the position; a new one is appended to the list (with -0 stored as 0).
     [[nodiscard]] std::uint32_t index_of(const Vec3& position);

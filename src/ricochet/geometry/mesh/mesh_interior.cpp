@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-constexpr double kMostCells = 1024.0;  // along either axis: a million columns are enough for any mesh
+constexpr double kMaxCells = 1024.0;  // along either axis: a million columns are enough for any mesh
 
 Point2 flat(const Vec3& p) { return {p.x, p.y}; }
 
@@ -42,7 +42,7 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 
 MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
     cells_ =
-        static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMostCells));
+        static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMaxCells));
     fill_columns();
 }
 

@@ -1,10 +1,10 @@
 /// \file
 /// Inside or outside of a closed mesh, exactly, for many points of one mesh.
 ///
-/// Method: crossings of the ray upwards (along z) from the point are counted. The point counts as moved by an
-/// infinitesimal amount along y and a still smaller one along x (symbolic perturbation: H. Edelsbrunner, E. P. Muecke,
-/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so the ray meets neither edges nor vertices, and
-/// neighbouring triangles agree about the edge between them. Signs come from the exact predicates.
+/// Counts the crossings of the ray upwards (along z) from the point, which counts as moved by an infinitesimal amount
+/// along y and a still smaller one along x (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of
+/// Simplicity", ACM Transactions on Graphics 9, 1990), so that the ray hits neither edges nor vertices. Signs come from
+/// the exact predicates.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@
 
 namespace ricochet {
 
-/// Answers for one mesh, safe from any number of threads. Means something for meshes without open edges only
-/// (TopologyReport::closed). A place inside an even number of nested shells is outside.
+/// Thread-safe. For closed meshes only (TopologyReport::closed). A point inside an even number of nested shells is
+/// outside.
 class MeshInterior {
 public:
     explicit MeshInterior(std::shared_ptr<const TriangleMesh> mesh);
 
-    /// Exact; false for a place on the surface itself.
+    /// Exact; false for a point on the surface itself.
     [[nodiscard]] bool contains(const Vec3& point) const;
     [[nodiscard]] const Box3& box() const { return box_; }
 

@@ -98,20 +98,6 @@ ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes
     return finish(parse_checked(name, bytes), content);
 }
 
-const char* mesh_format_name(MeshFormat format) {
-    switch (format) {
-        case MeshFormat::kObj:
-            return "OBJ";
-        case MeshFormat::kPly:
-            return "PLY";
-        case MeshFormat::kStl:
-            return "STL";
-        case MeshFormat::kOff:
-            break;
-    }
-    return "OFF";
-}
-
 std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path) {
     const std::string extension = ascii_lower(path.extension().string());
     if (extension == ".obj") return MeshFormat::kObj;

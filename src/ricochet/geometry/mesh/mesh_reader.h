@@ -70,9 +70,6 @@ enum class MeshContent : std::uint8_t {
 
 enum class MeshFormat { kObj, kPly, kStl, kOff };
 
-/// "OBJ", "PLY", "STL" or "OFF".
-[[nodiscard]] const char* mesh_format_name(MeshFormat format);
-
 /// Format by the file name's extension (.obj, .ply, .stl, .off in any case); nothing when it is another one or none.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path);
 

@@ -3,11 +3,168 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <string_view>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
+
+/// A balanced tree over boxes, in double precision: nothing is rounded, so nothing is missed.
+class BoxTree {
+public:
+    explicit BoxTree(const std::vector<Box3>& boxes);
+
+    /// Calls visit(number) for every box that has a point in common with the given one. May be called from several
+    /// threads at once.
+    template <typename Visit>
+    void for_each_overlap(const Box3& box, Visit&& visit) const {
+        std::array<std::uint32_t, kMaxLevels> stack;
+        std::size_t size = 0;
+        if (!nodes_.empty()) stack[size++] = 0;
+        while (size > 0) {
+            const Node& node = nodes_[stack[--size]];
+            if (!boxes_overlap(node.box, box)) continue;
+            if (node.first_child != 0) {
+                stack[size++] = node.first_child;
+                stack[size++] = node.first_child + 1;
+                continue;
+            }
+            for (std::uint32_t i = node.begin; i < node.end; ++i) {
+                if (boxes_overlap(boxes_[order_[i]], box)) visit(order_[i]);
+            }
+        }
+    }
+
+private:
+    // Halves are equal, so 32-bit numbers of boxes make at most 32 levels, each of which leaves one node waiting.
+    static constexpr std::size_t kMaxLevels = 64;
+
+    struct Node {
+        Box3 box;
+        std::uint32_t begin = 0;  // leaf: order_[begin, end)
+        std::uint32_t end = 0;
+        std::uint32_t first_child = 0;  // the other one follows; 0 for a leaf
+    };
+
+    [[nodiscard]] static bool boxes_overlap(const Box3& a, const Box3& b) {
+        return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+               a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+    }
+    void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+
+    const std::vector<Box3>& boxes_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+BoxTree::BoxTree(const std::vector<Box3>& boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (boxes.empty()) return;
+    nodes_.emplace_back();
+    split(0, 0, static_cast<std::uint32_t>(boxes.size()));
+}
+
+void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+    constexpr std::uint32_t kLeafSize = 4;
+    Box3 box;
+    for (std::uint32_t i = begin; i < end; ++i) box.include(boxes_[order_[i]]);
+    nodes_[node].box = box;
+    nodes_[node].begin = begin;
+    nodes_[node].end = end;
+    if (end - begin <= kLeafSize) return;
+    const Vec3 size = box.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(
+        order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
+            return boxes_[a].lower[axis] + boxes_[a].upper[axis] < boxes_[b].lower[axis] + boxes_[b].upper[axis];
+        });
+    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    nodes_[node].first_child = child;
+    split(child, begin, middle);
+    split(child + 1, middle, end);
+}
+
+// Two triangles turned so that the vertices that both name come first, in the same order.
+struct TrianglePair {
+    Triangle first;
+    Triangle second;
+    int shared = 0;
+};
+
+TrianglePair align(Triangle first, Triangle second) {
+    TrianglePair pair{first, second, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto at = std::find(pair.second.begin() + pair.shared, pair.second.end(), first[i]);
+        if (at == pair.second.end()) continue;
+        const auto next = static_cast<std::size_t>(pair.shared);
+        std::iter_swap(at, pair.second.begin() + pair.shared);
+        std::swap(pair.first[i], pair.first[next]);
+        ++pair.shared;
+    }
+    return pair;
+}
+
+class PairTest {
+public:
+    explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh) {}
+
+    [[nodiscard]] bool operator()(std::uint32_t i, std::uint32_t j) const {
+        const TrianglePair pair = align(mesh_.triangles[i], mesh_.triangles[j]);
+        switch (pair.shared) {
+            case 0:
+                return cross(pair.first, pair.second);
+            case 1:
+                return intersect_besides_vertex(pair);
+            case 2:
+                return overlap_in_plane(pair);
+            default:
+                return true;
+        }
+    }
+
+private:
+    [[nodiscard]] const Vec3& at(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
+
+    [[nodiscard]] bool edge_intersects(std::uint32_t p, std::uint32_t q, const Triangle& t) const {
+        return segment_intersects_triangle(at(p), at(q), at(t[0]), at(t[1]), at(t[2]));
+    }
+
+    // Triangles without a common vertex intersect when an edge of one intersects the other.
+    [[nodiscard]] bool cross(const Triangle& s, const Triangle& t) const {
+        return edge_intersects(s[0], s[1], t) || edge_intersects(s[1], s[2], t) || edge_intersects(s[2], s[0], t) ||
+               edge_intersects(t[0], t[1], s) || edge_intersects(t[1], t[2], s) || edge_intersects(t[2], t[0], s);
+    }
+
+    // From a common vertex, what else is common reaches an edge that is opposite to it.
+    [[nodiscard]] bool intersect_besides_vertex(const TrianglePair& pair) const {
+        return edge_intersects(pair.first[1], pair.first[2], pair.second) ||
+               edge_intersects(pair.second[1], pair.second[2], pair.first);
+    }
+
+    // With a common edge: in one plane and on the same side of the edge.
+    [[nodiscard]] bool overlap_in_plane(const TrianglePair& pair) const {
+        const Vec3& a = at(pair.first[0]);
+        const Vec3& b = at(pair.first[1]);
+        const Vec3& c = at(pair.first[2]);
+        const Vec3& d = at(pair.second[2]);
+        if (orient3d(a, b, c, d) != 0) return false;
+        return point_on_triangle(d, a, b, c) || point_on_triangle(c, a, b, d) ||
+               segment_intersects_triangle(a, d, b, c, c) || segment_intersects_triangle(b, d, a, c, c);
+    }
+
+    const TriangleMesh& mesh_;
+};
 
 std::size_t count_degenerate(const TriangleMesh& mesh) {
     const auto without_area = [&mesh](const Triangle& t) {
@@ -30,12 +187,11 @@ void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) 
     if (report.weld) {
         warnings.push_back(
             "STL corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
-            "wide "
-            "as the difference, through which particles can pass");
+            "wide as the difference, through which particles can pass");
     }
 }
 
-void warn_of_nonmanifold_places(const TopologyReport& topology, std::vector<std::string>& warnings) {
+void warn_of_nonmanifold_parts(const TopologyReport& topology, std::vector<std::string>& warnings) {
     if (topology.nonmanifold_edges > 0) {
         warnings.push_back(
             fmt::format("{} three faces or more: every face stops particles, so nothing leaks, but inside "
@@ -97,7 +253,7 @@ void warn_of_self_intersections(const MeshReport& report, std::vector<std::strin
 std::vector<std::string> warnings_for(const MeshReport& report) {
     std::vector<std::string> warnings;
     warn_of_gaps(report, warnings);
-    warn_of_nonmanifold_places(report.topology, warnings);
+    warn_of_nonmanifold_parts(report.topology, warnings);
     warn_of_orientation(report, warnings);
     warn_of_odd_faces(report, warnings);
     warn_of_self_intersections(report, warnings);
@@ -109,6 +265,32 @@ std::vector<std::string> warnings_for(const MeshReport& report) {
 }
 
 }  // namespace
+
+std::size_t count_self_intersections(const TriangleMesh& mesh) {
+    const PairTest intersect(mesh);
+    std::vector<std::uint32_t> numbers;
+    std::vector<Box3> boxes;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[i];
+        if (is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
+        Box3 box;
+        for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
+        boxes.push_back(box);
+        numbers.push_back(i);
+    }
+    const BoxTree tree(boxes);
+    std::atomic<std::size_t> pairs{0};
+    constexpr std::size_t kBlock = 1024;
+    parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::size_t found = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            tree.for_each_overlap(
+                boxes[i], [&](std::uint32_t j) { found += j > i && intersect(numbers[i], numbers[j]) ? 1 : 0; });
+        }
+        pairs += found;
+    });
+    return pairs;
+}
 
 MeshReport report_on(const ImportedMesh& imported) {
     MeshReport report;

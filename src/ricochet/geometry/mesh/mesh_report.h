@@ -1,5 +1,5 @@
 /// \file
-/// What is to be known about an imported mesh before particles are let loose on it.
+/// Sizes, topology and defects of an imported mesh.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace ricochet {
 
-/// Sizes, topology and defects of a mesh file.
+/// What `ricochet info` shows.
 struct MeshReport {
     std::string format;
     std::size_t vertices = 0;              ///< in the file, used or not

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the mesh readers: the bytes of a file, the limits of what is accepted, and how errors read.
+/// Private to the mesh readers: a file's bytes, a cursor over its text, limits, errors, and the reader of each format.
 #pragma once
 
 #include <cmath>
@@ -59,17 +59,16 @@ inline void close_face(PolygonMesh& mesh) {
     mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
 }
 
-/// A word of a file as it may stand in a message: printable, short, in quotes.
+/// A word of a file for a message: printable, short, in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-/// Refuses NUL bytes and UTF-16, which no text format here holds.
+/// Refuses NUL bytes and UTF-16.
 void require_plain_text(const MeshSource& source);
 
-/// Walks through a text once. Lines end with LF, CR LF or CR. Numbers are read without any locale.
+/// Reads a text once, in words, numbers and lines. Lines end with LF, CR LF or CR; numbers are read without locale.
 ///
-/// What is asked for every character or word is inline and answers the common case (a printable character, one blank,
-/// a lone LF) at once; everything else, comments and continuation lines too, is left to the `_slowly` functions, which
-/// hold the whole rule.
+/// Inline functions decide the common case (a printable character, one blank, a lone LF), the `_slowly` functions hold
+/// the whole rule, with comments and continuation lines.
 class TextCursor {
 public:
     /// How a format writes what is not data.
@@ -163,7 +162,7 @@ private:
 /// True when the text's first statement is one that OBJ has.
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
 
-/// Reads OFF text with any of the prefixes ST, C and N; every vertex and every face stands on a line of its own. Values
+/// Reads OFF text with any of the prefixes ST, C and N; every vertex and every face has a line of its own. Values
 /// after the coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used.
 [[nodiscard]] ParsedMesh read_off(const MeshSource& source);
 
@@ -171,17 +170,17 @@ private:
 [[nodiscard]] bool looks_like_off(const MeshSource& source);
 
 /// Reads the elements vertex (x, y, z of any type), face (list vertex_indices or vertex_index) and tristrips
-/// (list vertex_indices, -1 starts a new strip); everything else is skipped. In an ASCII file every element stands on a
+/// (list vertex_indices, -1 starts a new strip); everything else is skipped. In an ASCII file every element has a
 /// line of its own. Triangles of a strip that repeat a vertex only turn the strip; they are not faces.
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 
-/// True when the size is exactly what the triangle count at byte 80 asks for; the header's text does not matter.
+/// True when the size is exactly what the triangle count at byte 80 requires; the header's text does not matter.
 [[nodiscard]] bool has_binary_stl_size(const MeshSource& source);
 
 /// True when the text starts with the word "solid".
 [[nodiscard]] bool starts_with_solid(const MeshSource& source);
 
-/// Reads STL and joins corners of equal coordinates. The facets' normals are not used: the corners say it better.
+/// Reads STL and joins corners of equal coordinates. The facets' normals are not used.
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 
 }  // namespace ricochet

@@ -53,7 +53,7 @@ FaceList faces_of(const PolygonMesh& mesh) {
     return faces;
 }
 
-// Triangles stand one after the other in memory, and so do their corners.
+// Triangles are contiguous in memory, and so are their corners.
 Corners corners_of(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};

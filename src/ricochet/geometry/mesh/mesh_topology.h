@@ -1,5 +1,5 @@
 /// \file
-/// How the faces of a mesh hang together: the one place that uses OpenMesh.
+/// How the faces of a mesh are connected; the only header in front of OpenMesh.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace ricochet {
 
-/// Counts that say whether a surface is watertight and two-manifold. Everything is by vertex index (vertices at one
-/// place with different numbers are different). A face that names a vertex several times in a row counts it once; faces
-/// with fewer than three corners left have no part in this.
+/// Counts that say whether a surface is watertight and two-manifold, by vertex index: coincident vertices with
+/// different indices are different. A face that names a vertex several times in a row counts it once; faces with fewer
+/// than three corners left are ignored.
 struct TopologyReport {
     bool closed = false;                   ///< no boundary edge
-    std::size_t shells = 0;                ///< sets of faces that hang together by edges
+    std::size_t shells = 0;                ///< sets of faces connected by edges
     std::size_t boundary_edges = 0;        ///< edges of one face
     std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
     std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
@@ -27,7 +27,7 @@ struct TopologyReport {
     std::size_t unused_vertices = 0;       ///< vertices that no face names
 };
 
-/// In place of a vertex number: none.
+/// Instead of a vertex index: none.
 inline constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 
 /// An edge of a mesh, and what lies across it.
@@ -40,8 +40,8 @@ struct MeshEdge {
 };
 
 /// Half-edge structure of a polygon mesh. Where it is not manifold (edges of several faces, vertices that join separate
-/// sheets, neighbours of opposite winding) the structure is cut open, as half-edges cannot say it; the counts of the
-/// report are those of the index list all the same. Time and memory are linear in the number of corners.
+/// sheets, neighbours of opposite winding) the structure is cut open, as half-edges cannot represent it; the counts of
+/// the report are those of the index list all the same. Time and memory are linear in the number of corners.
 class MeshTopology {
 public:
     explicit MeshTopology(const PolygonMesh& mesh);

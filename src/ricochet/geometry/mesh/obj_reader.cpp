@@ -13,7 +13,7 @@
 namespace ricochet {
 namespace {
 
-// Statements that hold nothing a particle can meet: normals and texture coordinates, points and lines (no area),
+// Statements that hold nothing a particle can hit: normals and texture coordinates, points and lines (no area),
 // render settings, other files, and attributes of curves, which matter only where a curve or surface is drawn.
 constexpr std::array<std::string_view, 32> kIgnored = {
     "vt",       "vn",       "s",     "mtllib", "p",   "l",      "vp",         "maplib",    "usemap", "lod",  "bevel",
@@ -136,7 +136,7 @@ private:
         if (mesh_.corners.size() > kLargestIndexCount)
             cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         close_face(mesh_);
-        note_group();
+        record_group();
     }
 
     // v, v/t, v//n or v/t/n; only v counts.
@@ -174,7 +174,7 @@ private:
     }
 
     // Files without names keep empty lists; the first name found gives the faces before it the empty names.
-    void note_group() {
+    void record_group() {
         if (!has_names_) return;
         if (!group_is_known_) {
             if (mesh_.group_names.empty()) (void)name_number("");
@@ -190,16 +190,16 @@ private:
     }
 
     std::uint32_t group_number(const FaceGroup& group) {
-        const auto [place, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh_.groups.size()));
+        const auto [entry, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh_.groups.size()));
         if (is_new) mesh_.groups.push_back(group);
-        return place->second;
+        return entry->second;
     }
 
     // Every name is stored once, however many combinations it is part of, so that memory stays bounded by the file.
     std::uint32_t name_number(const std::string& name) {
-        const auto [place, is_new] = names_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
+        const auto [entry, is_new] = names_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
         if (is_new) mesh_.group_names.push_back(name);
-        return place->second;
+        return entry->second;
     }
 
     TextCursor cursor_;

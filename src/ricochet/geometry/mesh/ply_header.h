@@ -34,7 +34,7 @@ struct PlyElement {
     [[nodiscard]] bool has_lists() const;
     /// Bytes of one element in a binary file if all its lists are empty.
     [[nodiscard]] std::size_t smallest_size() const;
-    /// Place of a property; nothing if there is none of that name.
+    /// Index of a property; nothing if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
 };
 

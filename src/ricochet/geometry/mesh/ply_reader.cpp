@@ -132,12 +132,12 @@ private:
 enum class Use { kSkip, kX, kY, kZ, kFace, kStrip };
 
 std::size_t require_property(const MeshSource& source, const PlyElement& element, std::string_view name) {
-    const std::optional<std::size_t> place = element.find(name);
-    if (!place || element.properties[*place].is_list) {
+    const std::optional<std::size_t> index = element.find(name);
+    if (!index || element.properties[*index].is_list) {
         source.fail_at_line(element.line, fmt::format("element {} has no number {}, expected properties x, y and z",
                                                       in_quotes(element.name), in_quotes(name)));
     }
-    return *place;
+    return *index;
 }
 
 std::size_t require_index_list(const MeshSource& source, const PlyElement& element) {
@@ -148,12 +148,12 @@ std::size_t require_index_list(const MeshSource& source, const PlyElement& eleme
             element.line, fmt::format("element {} has {} index list, expected one named vertex_indices or vertex_index",
                                       in_quotes(element.name), plural ? "more than one" : "no"));
     }
-    const std::size_t place = plural ? *plural : *singular;
-    const PlyProperty& list = element.properties[place];
+    const std::size_t index = plural ? *plural : *singular;
+    const PlyProperty& list = element.properties[index];
     if (!list.is_list || !is_integer(list.type)) {
         source.fail_at_line(element.line, fmt::format("property {} is not a list of integers", in_quotes(list.name)));
     }
-    return place;
+    return index;
 }
 
 std::vector<Use> plan(const MeshSource& source, const PlyElement& element) {
@@ -248,7 +248,7 @@ private:
         end_face();
     }
 
-    // Every second triangle of a strip is wound the other way round.
+    // Every second triangle of a strip is wound in the opposite direction.
     void read_strips(const PlyProperty& list) {
         const std::int64_t length = list_length(list);
         std::array<std::uint32_t, 2> last{};

@@ -13,9 +13,9 @@
 namespace ricochet {
 namespace {
 
-/// Marks a triangle without area, in place of its first neighbour.
+/// Marks a triangle without area, instead of its first neighbour.
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
-/// Added to places in the list of irregular edges, to tell them from triangles.
+/// Added to indices into the list of irregular edges, to tell them from triangles.
 constexpr std::uint32_t kIrregularEdge = 1U << 31U;
 
 /// Arc tangent of t in [0, 1] within some 2^-51. The library's own, because that of the system may differ in its last
@@ -117,7 +117,7 @@ void Pseudonormals::link_edges(std::size_t vertex_count) {
 }
 
 void Pseudonormals::link_edge(std::span<const TriangleSide> sides) {
-    note_copies(sides);
+    record_copies(sides);
     if (sides.size() == 2) {
         sides_[sides[0].triangle][sides[0].side] = sides[1].triangle;
         sides_[sides[1].triangle][sides[1].side] = sides[0].triangle;
@@ -136,8 +136,8 @@ void Pseudonormals::link_edge(std::span<const TriangleSide> sides) {
     irregular_edges_.push_back(edge);
 }
 
-/// Copies of a triangle share every edge; each is noted at the one that is opposite to its largest vertex.
-void Pseudonormals::note_copies(std::span<const TriangleSide> sides) {
+/// Copies of a triangle share every edge; each is recorded at the one opposite to its largest vertex.
+void Pseudonormals::record_copies(std::span<const TriangleSide> sides) {
     struct Use {
         std::uint32_t opposite;
         std::uint32_t triangle;

@@ -62,11 +62,11 @@ private:
 Vec3 binary_point(const MeshSource& source, std::size_t byte) {
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t place = byte + 4 * static_cast<std::size_t>(axis);
-        const auto value = static_cast<double>(value_at<float>(source, place));
+        const std::size_t start = byte + 4 * static_cast<std::size_t>(axis);
+        const auto value = static_cast<double>(value_at<float>(source, start));
         const std::optional<double> accepted = accepted_coordinate(value);
         if (!accepted)
-            source.fail_at_byte(place, fmt::format("vertex coordinate is {}, expected a finite number", value));
+            source.fail_at_byte(start, fmt::format("vertex coordinate is {}, expected a finite number", value));
         point[axis] = *accepted;
     }
     return point;

@@ -25,7 +25,7 @@ struct TriangleMesh {
 /// The names under which an OBJ file lists a face, as indices into PolygonMesh::group_names; 0 where there is none.
 struct FaceGroup {
     std::uint32_t material = 0;  ///< of `usemtl`
-    std::uint32_t group = 0;     ///< of `g`, with all its names as they stand
+    std::uint32_t group = 0;     ///< of `g`, with all its names as written
     std::uint32_t object = 0;    ///< of `o`
 
     bool operator==(const FaceGroup&) const = default;
@@ -54,9 +54,9 @@ struct PolygonMesh {
 /// True when the corners of a triangle are exactly collinear or coincide (decided with exact arithmetic).
 [[nodiscard]] bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// The mesh in world coordinates: scaled, turned and moved in double precision, tiny coordinates made zero
-/// (flush_tiny), the winding turned round where the placement mirrors, so that outward stays outward. Triangles and
-/// vertices keep their places in the lists. Results that are not finite are left for the caller to refuse.
+/// The mesh in world coordinates, tiny ones made zero (flush_tiny), the winding reversed where the placement mirrors,
+/// so that outward stays outward. The order of triangles and vertices stays. Callers refuse results that are not
+/// finite.
 [[nodiscard]] TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement);
 
 /// A ball of that radius (m) about the local origin, placed; vertices on the surface, wound outward.

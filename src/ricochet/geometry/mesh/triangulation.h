@@ -1,18 +1,16 @@
 /// \file
 /// Polygons cut into triangles between their own corners.
 ///
-/// Faces of a mesh share edges, so a polygon is cut along diagonals only: no corner is added, every edge of the outline
-/// is an edge of exactly one triangle, and a closed polygon mesh gives a closed triangle mesh, always. Also, whatever
-/// diagonals are taken, the triangles together cover every point that the projected outline winds around.
+/// Polygons are cut along diagonals only, so that every edge of the outline is an edge of exactly one triangle, a
+/// closed polygon mesh gives a closed triangle mesh, and the triangles cover every point that the projected outline
+/// winds around.
 ///
-/// A polygon is projected along the axis nearest to its normal (Newell's method) and cut by clipping ears; all
-/// decisions are signs of exact 2D orientations. For an outline that is simple in that projection (concave, with
-/// collinear corners, with a bridge to a hole), the triangles do not overlap and their areas add up to the polygon's.
-/// An outline that crosses itself has no such triangulation: what is left when no ear can be found is fanned from one
-/// corner, covers the outline as said, may overlap, and is counted in `crossing_faces`.
+/// A polygon is projected along the axis nearest to its normal (Newell's method) and cut by ear clipping; all decisions
+/// are signs of exact 2D orientations. The triangles of an outline that is simple in that projection do not overlap. An
+/// outline that crosses itself is fanned where no ear is left, may overlap, and is counted in `crossing_faces`.
 ///
-/// Repeated corners: neighbours that are the same vertex count once; a face with fewer than three corners left, and a
-/// triangle that names a vertex twice, stay as one degenerate triangle, so that every face is there and is counted.
+/// Neighbouring corners that are the same vertex count once; a face with fewer than three corners left, and a triangle
+/// that names a vertex twice, stay as one degenerate triangle.
 ///
 /// Sources: G. H. Meisters, "Polygons Have Ears", American Mathematical Monthly 82, 1975; M. Held, "FIST: Fast
 /// Industrial-Strength Triangulation of Polygons", Algorithmica 30, 2001 (tests against reflex corners only).

@@ -1,10 +1,9 @@
-/// \file
-/// Floating-point expansions: exact numbers as sums of doubles that do not overlap, in fixed storage on the stack.
+/// ile
+/// Exact and bounded arithmetic behind the predicates' filters: double-double with error bounds, then floating-point
+/// expansions, on the stack. Bounds and their reasons: docs/exactness.md.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-/// Discrete & Computational Geometry 18, 1997. Components stand in increasing order of magnitude, none is zero, and
-/// every operation here keeps them strongly non-overlapping (rounding to nearest even). Exact as long as no component
-/// overflows and none has bits below 2^-1074.
+/// Discrete & Computational Geometry 18, 1997.
 #pragma once
 
 #include <array>
@@ -16,13 +15,15 @@
 
 namespace ricochet {
 
-/// A number as the exact sum of at most Capacity doubles. Only the first `size` components have a value.
+/// A number as the exact sum of at most Capacity doubles, in increasing order of magnitude, strongly non-overlapping,
+/// none zero. Exact while no component overflows and none has bits below 2^-1074. Only the first `size` are
+/// initialised.
 template <int Capacity>
 struct Expansion {
     std::array<double, static_cast<std::size_t>(Capacity)> components;
     int size = 0;
 
-    // No initialisation of the components: they are written before they are read, and this is an inner loop.
+    // The components are not initialised: this is an inner loop, and they are written before they are read.
     Expansion() {}  // NOLINT(modernize-use-equals-default)
     explicit Expansion(const DoubleDouble& x) {
         static_assert(Capacity >= 2);
@@ -34,7 +35,7 @@ struct Expansion {
         if (component != 0.0) components[static_cast<std::size_t>(size++)] = component;
     }
     [[nodiscard]] double operator[](int i) const { return components[static_cast<std::size_t>(i)]; }
-    /// Sign of the number: that of the largest component, which outweighs the others together.
+    /// That of the largest component, which outweighs the others together.
     [[nodiscard]] int sign() const {
         if (size == 0) return 0;
         return (*this)[size - 1] > 0.0 ? 1 : -1;
@@ -92,8 +93,7 @@ template <int N>
     return (e * factor.lo) + (e * factor.hi);
 }
 
-/// The number rounded to double-double, relative error below 2^-100: summed from the smallest component up, each
-/// addition errs by 2 u^2 of a partial sum, and partial sums of a strongly non-overlapping expansion shrink downwards.
+/// The number rounded to double-double, relative error below 2^-100.
 template <int N>
 [[nodiscard]] DoubleDouble rounded(const Expansion<N>& e) {
     DoubleDouble sum;
@@ -138,9 +138,8 @@ struct BoundedCross {
           z(u.x * v.y - u.y * v.x),
           magnitude(detail::filtered_cross(u.rounded(), v.rounded()).magnitude) {}
 
-    /// (u x v) . w. The differences are exact, so each of the six terms errs by two products (7 u^2 each), one
-    /// subtraction and at most two additions (3 u^2 each): 23 u^2 of its magnitude, u = 2^-53. The next power of two
-    /// also covers the higher orders and the rounding of the magnitude itself (some 10 u of it).
+    /// (u x v) . w. Each of the six terms errs by two products (7 u^2 each), a subtraction and at most two additions
+    /// (3 u^2 each); 32 u^2 also covers higher orders and the rounding of the magnitude.
     [[nodiscard]] BoundedValue dot(const ExactDifference& w) const {
         const double terms =
             magnitude.x * std::fabs(w.x.hi) + magnitude.y * std::fabs(w.y.hi) + magnitude.z * std::fabs(w.z.hi);

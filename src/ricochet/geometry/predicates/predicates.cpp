@@ -41,7 +41,7 @@ bool in_box(const Vec3& p, const Vec3& a, const Vec3& b) {
 bool point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) { return in_box(p, a, b) && are_collinear(a, b, p); }
 
 /// Closed segments whose four ends lie in one plane, onto which the projection along `axis` is one to one.
-bool coplanar_segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, int axis) {
+bool coplanar_segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, int axis) {
     const int p_side = orient2d(a, b, p, axis);
     const int q_side = orient2d(a, b, q, axis);
     if (p_side * q_side > 0) return false;
@@ -54,12 +54,12 @@ bool coplanar_segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const V
 }
 
 /// Closed segments in space, both possibly a point.
-bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+bool segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     if (orient3d(p, q, a, b) != 0) return false;
     const std::array<int, 4> axes{projection_axis(p, q, a), projection_axis(p, q, b), projection_axis(a, b, p),
                                   projection_axis(a, b, q)};
     for (const int axis : axes) {
-        if (axis >= 0) return coplanar_segments_meet(p, q, a, b, axis);
+        if (axis >= 0) return coplanar_segments_intersect(p, q, a, b, axis);
     }
     return in_box(p, a, b) || in_box(q, a, b) || in_box(a, p, q) || in_box(b, p, q);  // all on one line
 }
@@ -74,11 +74,12 @@ bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
 }
 
 /// Both ends of the segment in the plane of the triangle, or a triangle without area.
-bool coplanar_segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+bool coplanar_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int axis = projection_axis(a, b, c);
-    if (axis < 0) return segments_meet(p, q, a, b) || segments_meet(p, q, b, c) || segments_meet(p, q, c, a);
-    return coplanar_point_in_triangle(p, a, b, c, axis) || coplanar_segments_meet(p, q, a, b, axis) ||
-           coplanar_segments_meet(p, q, b, c, axis) || coplanar_segments_meet(p, q, c, a, axis);
+    if (axis < 0)
+        return segments_intersect(p, q, a, b) || segments_intersect(p, q, b, c) || segments_intersect(p, q, c, a);
+    return coplanar_point_in_triangle(p, a, b, c, axis) || coplanar_segments_intersect(p, q, a, b, axis) ||
+           coplanar_segments_intersect(p, q, b, c, axis) || coplanar_segments_intersect(p, q, c, a, axis);
 }
 
 bool have_opposite_signs(int a, int b, int c) { return a * b < 0 || b * c < 0 || c * a < 0; }
@@ -99,18 +100,6 @@ int detail::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, 
     return bounded.sign_is_known() ? sign(bounded.value) : detail::exact_determinant(u, v, w).sign();
 }
 
-DoubleDouble orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const ExactDifference u(b, a);
-    const ExactDifference v(c, a);
-    const ExactDifference w(d, a);
-    const BoundedValue bounded = BoundedCross(u, v).dot(w);
-    return bounded.is_accurate(0x1p-91) ? bounded.value : rounded(detail::exact_determinant(u, v, w));
-}
-
-DoubleDouble orient3d_estimate(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    return BoundedCross(ExactDifference(b, a), ExactDifference(c, a)).dot(ExactDifference(d, a)).value;
-}
-
 bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return projection_axis(a, b, c) < 0; }
 
 bool detail::segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
@@ -129,7 +118,7 @@ bool detail::segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3
     if (p_side == 0) p_side = orient3d_beyond_filter(a, b, c, p);
     if (q_side == 0) q_side = orient3d_beyond_filter(a, b, c, q);
     if (p_side * q_side > 0) return false;
-    if (p_side == 0 && q_side == 0) return coplanar_segment_meets_triangle(p, q, a, b, c);
+    if (p_side == 0 && q_side == 0) return coplanar_segment_intersects_triangle(p, q, a, b, c);
 
     if (ab == 0) ab = orient3d_beyond_filter(p, a, b, q);
     if (bc == 0) bc = orient3d_beyond_filter(p, b, c, q);

@@ -3,9 +3,8 @@
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 /// Discrete & Computational Geometry 18, 1997: a floating-point filter with a proven error bound, then double-double
-/// with its own bound, then expansions.
-/// Exact as long as no intermediate product leaves the range of doubles: coordinates are multiples of 2^-340 and below
-/// 2^300 in magnitude; flush_tiny() and the readers' extent check see to it.
+/// with its own bound, then expansions (docs/exactness.md). Exact while no product leaves the range of doubles:
+/// coordinates are multiples of 2^-340 and below 2^300, which flush_tiny() and the mesh readers ensure.
 #pragma once
 
 #include <cmath>
@@ -37,20 +36,11 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 /// points to, -1 on the other side, 0 in the plane (or when a, b, c are collinear).
 [[nodiscard]] int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The value whose sign orient3d gives, six times the signed volume, with a relative error below 2^-90 (exactly 0 when
-/// 0).
-[[nodiscard]] DoubleDouble orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-
-/// The same value in plain double-double: its error is below 2^-100 of the sum of the magnitudes of the determinant's
-/// terms, so that its sign means nothing for a point that is nearer to the plane than some 2^-100 of the coordinates'
-/// differences. Several times cheaper next to the plane.
-[[nodiscard]] DoubleDouble orient3d_estimate(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-
 /// True when a, b and c are exactly collinear (coincident points included).
 [[nodiscard]] bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// True when the closed segment [p, q] and the closed triangle (a, b, c) have a point in common. Exact in every case:
-/// coplanar segments, a segment that is a point, triangles that are a segment or a point.
+/// coplanar and degenerate segments, degenerate triangles.
 [[nodiscard]] bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                const Vec3& c);
 
@@ -58,13 +48,12 @@ inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 [[nodiscard]] bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Fraction t in [0, 1] at which p + t (q - p) crosses the plane of (a, b, c), for p and q whose exact orientations
-/// differ in sign (one of them may be zero). The result is within 2 ulp of the exact rational, whatever the triangle's
-/// shape.
+/// differ in sign (one may be zero). Within 2 ulp of the exact rational, whatever the triangle's shape.
 [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Unit normal of (a, b, c) by the counter-clockwise rule. Every component is within 2^-51 of the exact one, also for
-/// slender triangles (the cross product is recomputed in higher precision when it cancels); an axis-aligned triangle
-/// gives exactly an axis, its zeros positive. The triangle must not be degenerate.
+/// slender triangles; an axis-aligned triangle gives exactly an axis, its zeros positive. The triangle must not be
+/// degenerate.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // The filters are inline because they decide nearly every call of the innermost loop.
@@ -84,12 +73,9 @@ struct FilteredCross {
             {std::fabs(yz) + std::fabs(zy), std::fabs(zx) + std::fabs(xz), std::fabs(xy) + std::fabs(yx)}};
 }
 
-/// Error of filtered_sign's determinant relative to its magnitude. With u = 2^-53, each of the six terms passes at most
-/// 8 roundings (3 differences, 2 products, 1 subtraction, 2 additions), so the error is at most (1 + u)^8 - 1 times the
-/// sum of the terms' exact magnitudes; the computed magnitude is at least (1 - u)^8 of that sum, and its product with
-/// this constant loses at most another factor 1 - u. Together below (8 + 100 u) u; 8.5 u = 0x1.1p-50 is used.
-/// Underflow changes nothing: every term is a multiple of 2^-1020, so that sums below 2^-967 are exact, and a bound
-/// that is lost to underflow belongs to such a sum.
+/// Error of filtered_sign's determinant relative to its magnitude. Each of the six terms passes at most 8 roundings
+/// u = 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions): 8 u and a little, so 8.5 u. Underflow is
+/// harmless: terms are multiples of 2^-1020, so sums below 2^-967 are exact.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
 /// Sign of (u x v) . w when the error bound allows to tell it, else 0. All of u, v, w are rounded differences of

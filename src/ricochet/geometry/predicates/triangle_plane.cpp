@@ -34,18 +34,18 @@ Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
 
 }  // namespace
 
-const TrianglePlane::Fine& TrianglePlane::fine() const {
-    if (!fine_) {
+const TrianglePlane::Precise& TrianglePlane::precise() const {
+    if (!precise_) {
         const ExactDifference u(b_, a_);
         const ExactDifference v(c_, a_);
-        fine_.emplace(Fine{u, v, BoundedCross(u, v)});
+        precise_.emplace(Precise{u, v, BoundedCross(u, v)});
     }
-    return *fine_;
+    return *precise_;
 }
 
 /// The six-fold volume with a relative error below the one asked for (not below 2^-100).
 DoubleDouble TrianglePlane::volume(const Vec3& p, double relative_error) const {
-    const auto& [u, v, normal] = fine();
+    const auto& [u, v, normal] = precise();
     const ExactDifference w(p, a_);
     const BoundedValue bounded = normal.dot(w);
     if (bounded.is_accurate(relative_error)) return bounded.value;
@@ -63,7 +63,7 @@ double TrianglePlane::crossing_fraction(const Vec3& p, const Vec3& q) const {
 
 const Vec3& TrianglePlane::unit_normal() const {
     if (unit_normal_) return *unit_normal_;
-    const Fine& known = fine();
+    const Precise& known = precise();
     const BoundedCross& normal = known.normal;
     // Each component errs by a product and a subtraction, 10 u^2 of its terms' magnitude; 16 u^2 covers the rest.
     constexpr double kError = 16.0 * 0x1p-53 * 0x1p-53;
@@ -78,7 +78,7 @@ const Vec3& TrianglePlane::unit_normal() const {
 }
 
 double TrianglePlane::signed_distance(const Vec3& p) const {
-    return fine().normal.dot(ExactDifference(p, a_)).value.hi / length(cross_.value);
+    return precise().normal.dot(ExactDifference(p, a_)).value.hi / length(cross_.value);
 }
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// The plane of one triangle, asked several times: what the questions have in common is worked out once.
+/// The predicates of one triangle, for several queries: common intermediate results are cached.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace ricochet {
 
-/// Answers as the predicates of the same names give them, to the last bit, for one triangle (a, b, c). For one thread:
-/// what is worked out is kept.
+/// Results are those of the predicates of the same names, to the bit, for the triangle (a, b, c). Not thread-safe,
+/// since const functions fill the cache.
 class TrianglePlane {
 public:
     TrianglePlane() = default;
@@ -23,12 +23,12 @@ public:
     /// (b - a) x (c - a) in plain doubles.
     [[nodiscard]] const detail::FilteredCross& cross() const { return cross_; }
 
-    /// orient3d(a, b, c, p) where plain doubles tell, else 0.
+    /// orient3d(a, b, c, p) where the filter decides, else 0.
     [[nodiscard]] int filtered_side(const Vec3& p) const { return detail::filtered_sign(cross_, p - a_); }
     /// orient3d(a, b, c, p). Exact.
     [[nodiscard]] int side(const Vec3& p) const {
-        const int likely = filtered_side(p);
-        return likely != 0 ? likely : detail::orient3d_beyond_filter(a_, b_, c_, p);
+        const int filtered = filtered_side(p);
+        return filtered != 0 ? filtered : detail::orient3d_beyond_filter(a_, b_, c_, p);
     }
     /// segment_intersects_triangle(p, q, a, b, c). Exact.
     [[nodiscard]] bool intersects_segment(const Vec3& p, const Vec3& q) const {
@@ -41,23 +41,23 @@ public:
     [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q) const;
     /// See unit_normal().
     [[nodiscard]] const Vec3& unit_normal() const;
-    /// See signed_distance() in sweep.h, m.
+    /// See signed_distance() in point_sweep.h, m.
     [[nodiscard]] double signed_distance(const Vec3& p) const;
 
 private:
-    struct Fine {
+    struct Precise {
         ExactDifference u;
         ExactDifference v;
         BoundedCross normal;
     };
-    [[nodiscard]] const Fine& fine() const;
+    [[nodiscard]] const Precise& precise() const;
     [[nodiscard]] DoubleDouble volume(const Vec3& p, double relative_error) const;
 
     Vec3 a_;
     Vec3 b_;
     Vec3 c_;
     detail::FilteredCross cross_;
-    mutable std::optional<Fine> fine_;
+    mutable std::optional<Precise> precise_;
     mutable std::optional<Vec3> unit_normal_;
 };
 

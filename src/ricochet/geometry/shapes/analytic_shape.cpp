@@ -5,88 +5,67 @@
 #include <type_traits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/shapes/shape_sweep.h"
 
 namespace ricochet {
 namespace {
 
 /// Relative error of a sum of squares or a scalar product and of a local coordinate: some 6 roundings; 8 and more are
 /// granted, in doubles and in double-doubles.
-constexpr double kRoughError = 0x1p-50;
-constexpr double kPreciseError = 0x1p-98;
+constexpr double kDoubleError = 0x1p-50;
+constexpr double kDoubleDoubleError = 0x1p-98;
 
-/// What can_cull() adds to the reach, relative to all lengths involved.
-constexpr double kDistanceFieldSlack = 0x1p-44;
+/// What can_cull() adds to the margin, relative to all lengths involved.
+constexpr double kCullSlack = 0x1p-44;
 
-/// Corners of the path's Bezier hull: path and chords lie inside.
-struct Hull {
-    std::array<Vec3, 4> point;
-    int count = 0;
-};
-
-Hull hull_of(const Path& path) {
-    const double h = path.duration;
-    if (path.degree < 2) return {{path.c[0], path.end, {}, {}}, 2};
-    const Vec3 second = path.c[0] + (h / path.degree) * path.c[1];
-    if (path.degree == 2) return {{path.c[0], second, path.end, {}}, 3};
-    return {{path.c[0], second, path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2]), path.end}, 4};
-}
-
-bool is_apart(const Hull& hull, const Box3& box, double reach) {
-    Vec3 lower = hull.point[0];
-    Vec3 upper = hull.point[0];
-    for (int k = 1; k < hull.count; ++k) {
-        lower = min(lower, hull.point[static_cast<std::size_t>(k)]);
-        upper = max(upper, hull.point[static_cast<std::size_t>(k)]);
-    }
+bool is_apart(const ControlPoints& hull, const Box3& box, double margin) {
+    Box3 reached{hull.point[0], hull.point[0]};
+    for (const Vec3& point : hull) reached.include(point);
     for (int i = 0; i < 3; ++i) {
-        if (lower[i] > box.upper[i] + reach || upper[i] < box.lower[i] - reach) return true;
+        if (reached.lower[i] > box.upper[i] + margin || reached.upper[i] < box.lower[i] - margin) return true;
     }
     return false;
 }
 
 /// y in the coordinates in which the (round part of the) shape is the unit ball, or disk.
-Vec3 in_units(const CentredEllipsoid& around, const Vec3& y) {
-    return {y.x / around.half_axis(0), y.y / around.half_axis(1), around.axes() == 3 ? y.z / around.half_axis(2) : 0.0};
+Vec3 in_units(const Ellipsoid& ellipsoid, const Vec3& y) {
+    return {y.x / ellipsoid.half_axis(0), y.y / ellipsoid.half_axis(1),
+            ellipsoid.axes() == 3 ? y.z / ellipsoid.half_axis(2) : 0.0};
 }
 
-/// Is the hull inside the shape by at least `reach`? The map to the unit ball stretches nothing by more than 1 /
+/// Is the hull inside the shape by at least `margin`? The map to the unit ball stretches nothing by more than 1 /
 /// smallest half axis.
-bool is_deep_inside(const LocalShape& shape, const Hull& local, double reach) {
-    const CentredEllipsoid& around = shape.around();
-    const double largest = 1.0 - reach / around.smallest();
+bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double margin) {
+    const Ellipsoid& ellipsoid = shape.ellipsoid();
+    const double largest = 1.0 - margin / ellipsoid.smallest();
     if (!(largest > 0.0)) return false;
-    return std::all_of(local.point.begin(), local.point.begin() + local.count, [&](const Vec3& y) {
-        if (shape.is_capped() && std::fabs(y.z) > shape.half_height() - reach) return false;
-        return length_squared(in_units(around, y)) <= largest * largest;
+    return std::all_of(local.begin(), local.end(), [&](const Vec3& y) {
+        if (shape.is_capped() && std::fabs(y.z) > shape.half_height() - margin) return false;
+        return length_squared(in_units(ellipsoid, y)) <= largest * largest;
     });
 }
 
-/// Is the hull beyond a tangent plane across n by at least `reach`?
-bool is_beyond_plane(const LocalShape& shape, const Hull& local, const Vec3& n, double reach) {
-    const double height = shape.support(n) + reach * length(n);
-    return std::all_of(local.point.begin(), local.point.begin() + local.count,
-                       [&](const Vec3& y) { return dot(n, y) > height; });
+/// Is the hull beyond a tangent plane across n by at least `margin`?
+bool is_beyond_plane(const LocalShape& shape, const ControlPoints& local, const Vec3& n, double margin) {
+    const double height = shape.support(n) + margin * length(n);
+    return std::all_of(local.begin(), local.end(), [&](const Vec3& y) { return dot(n, y) > height; });
 }
 
 /// Tries the caps, and the plane that separates the path's chord from the side: where the shape is the unit ball, that
 /// across the chord's point nearest to the centre.
-bool is_far_outside(const LocalShape& shape, const Hull& local, double reach) {
+bool is_far_outside(const LocalShape& shape, const ControlPoints& local, double margin) {
     if (shape.is_capped() &&
-        (is_beyond_plane(shape, local, {0, 0, 1}, reach) || is_beyond_plane(shape, local, {0, 0, -1}, reach))) {
+        (is_beyond_plane(shape, local, {0, 0, 1}, margin) || is_beyond_plane(shape, local, {0, 0, -1}, margin))) {
         return true;
     }
-    const CentredEllipsoid& around = shape.around();
-    const Vec3 from = in_units(around, local.point[0]);
-    const Vec3 step = in_units(around, local.point[static_cast<std::size_t>(local.count - 1)]) - from;
+    const Ellipsoid& ellipsoid = shape.ellipsoid();
+    const Vec3 from = in_units(ellipsoid, local.point[0]);
+    const Vec3 step = in_units(ellipsoid, local.point[static_cast<std::size_t>(local.count - 1)]) - from;
     const double square = length_squared(step);
     const double t = square > 0.0 ? std::clamp(-dot(from, step) / square, 0.0, 1.0) : 0.0;
     const Vec3 nearest = from + t * step;
     if (length_squared(nearest) <= 1.0) return false;
-    return is_beyond_plane(shape, local, in_units(around, nearest), reach);
+    return is_beyond_plane(shape, local, in_units(ellipsoid, nearest), margin);
 }
-
-using std::size_t;
 
 Vec3 column(const AffineMap& map, int i) { return {map.row_x[i], map.row_y[i], map.row_z[i]}; }
 
@@ -110,7 +89,7 @@ std::array<double, 3> column_lengths(const AffineMap& map) {
         const Vec3 c = column(map, i);
         const double scale = std::ldexp(1.0, std::ilogb(max_abs(c)));
         const PreciseVec3 v = near_one(c);
-        lengths[static_cast<size_t>(i)] = scale * sqrt(dot_of(v, v)).hi;
+        lengths[static_cast<std::size_t>(i)] = scale * sqrt(dot_of(v, v)).hi;
     }
     return lengths;
 }
@@ -142,9 +121,10 @@ LocalSegment<Scalar> AnalyticShape::segment(const Vec3& p, const Vec3& q) const 
     if constexpr (std::is_same_v<Scalar, double>) {
         const Vec3 from = frame_.local_point(p);
         const Vec3 to = frame_.local_point(q);
-        return {{from.x, from.y, from.z}, {to.x, to.y, to.z}, kRoughError * size, kRoughError};
+        return {{from.x, from.y, from.z}, {to.x, to.y, to.z}, kDoubleError * size, kDoubleError};
     } else {
-        return {frame_.precise_local_point(p), frame_.precise_local_point(q), kPreciseError * size, kPreciseError};
+        return {frame_.precise_local_point(p), frame_.precise_local_point(q), kDoubleDoubleError * size,
+                kDoubleDoubleError};
     }
 }
 
@@ -154,20 +134,20 @@ int AnalyticShape::side(const Vec3& p) const {
 }
 
 ShapePoint AnalyticShape::closest_point(const Vec3& p) const {
-    const LocalNearest near = shape_.nearest(frame_.precise_local_point(p));
+    const LocalPoint near = shape_.closest_point(frame_.precise_local_point(p));
     const Vec3 normal = frame_.world_normal(near.normal);
-    const bool is_near = std::fabs(near.distance) < length(near.foot);
-    return {is_near ? p - near.distance * normal : frame_.world_point(near.foot), normal, near.distance};
+    const bool is_near = std::fabs(near.distance) < length(near.point);
+    return {is_near ? p - near.distance * normal : frame_.world_point(near.point), normal, near.distance};
 }
 
 std::optional<ShapeContact> AnalyticShape::first_contact(const Path& path, double radius) const {
     const auto contact = ricochet::first_contact(shape_, frame_.local_path(path), radius);
     if (!contact) return std::nullopt;
-    return ShapeContact{contact->time, frame_.world_normal(contact->normal), frame_.world_point(contact->foot)};
+    return ShapeContact{contact->time, frame_.world_normal(contact->normal), frame_.world_point(contact->point)};
 }
 
 bool AnalyticShape::segment_is_clear(const Vec3& p, const Vec3& q) const {
-    return shape_.is_free(segment<double>(p, q)) || shape_.is_free(segment<DoubleDouble>(p, q));
+    return shape_.is_clear(segment<double>(p, q)) || shape_.is_clear(segment<DoubleDouble>(p, q));
 }
 
 double AnalyticShape::distance_to_segment(const Vec3& p, const Vec3& q) const {
@@ -175,17 +155,17 @@ double AnalyticShape::distance_to_segment(const Vec3& p, const Vec3& q) const {
     return shape_.distance_of(frame_.precise_local_point(p), frame_.precise_local_point(q));
 }
 
-bool AnalyticShape::can_cull(const Path& path, double reach) const {
-    const Hull hull = hull_of(path);
-    if (is_apart(hull, bounds_, reach)) return true;
-    Hull local = hull;
+bool AnalyticShape::can_cull(const Path& path, double margin) const {
+    const ControlPoints hull = path.control_points();
+    if (is_apart(hull, bounds_, margin)) return true;
+    ControlPoints local = hull;
     double size = shape_.extent();
     for (int k = 0; k < hull.count; ++k) {
         Vec3& y = local.point[static_cast<std::size_t>(k)];
         y = frame_.local_point(y);
         size = std::max(size, max_abs(y));
     }
-    const double widened = reach + kDistanceFieldSlack * size;
+    const double widened = margin + kCullSlack * size;
     return is_deep_inside(shape_, local, widened) || is_far_outside(shape_, local, widened);
 }
 
@@ -200,7 +180,7 @@ ShapeFrame::ShapeFrame(const AffineMap& world_from_local)
         axes_[1] = unit(second - dot_of(second, axes_[0]) * axes_[0]);
         axes_[2] = cross_of(axes_[0], axes_[1]);
     }
-    for (size_t i = 0; i < 3; ++i) rounded_axes_[i] = rounded(axes_[i]);
+    for (std::size_t i = 0; i < 3; ++i) rounded_axes_[i] = rounded(axes_[i]);
 }
 
 Vec3 ShapeFrame::local_point(const Vec3& p) const {
@@ -223,8 +203,8 @@ LocalPath ShapeFrame::local_path(const Path& path) const {
     local.component[0][0] = start.x;
     local.component[1][0] = start.y;
     local.component[2][0] = start.z;
-    for (size_t k = 1; k <= static_cast<size_t>(path.degree); ++k) {
-        for (size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(path.degree); ++k) {
+        for (std::size_t i = 0; i < 3; ++i) {
             local.component[i][k] =
                 is_aligned_ ? DoubleDouble(path.c[k][static_cast<int>(i)]) : dot_of(axes_[i], path.c[k]);
         }

@@ -1,11 +1,10 @@
 /// \file
-/// Shapes with a formula: ellipsoids (a ball under any placement) and capped cylinders, as surfaces that particles meet
-/// from outside or from inside. Pure geometry in world coordinates; no particle, no response.
+/// Shapes with a formula: ellipsoids (a ball under any placement) and capped cylinders, as two-sided surfaces. Pure
+/// geometry in world coordinates.
 ///
-/// The shape is the one whose axes are the directions of the placement's columns, made exactly orthonormal, and whose
-/// half axes are the columns' lengths, rounded; half axes that agree to rounding are equal. Unrotated placements are
-/// exact. Decisions and times are those of this shape, to double-double precision; the shape itself differs from the
-/// image under the rounded map by a few 2^-53 of its size.
+/// The axes are the directions of the placement's columns, made exactly orthonormal, the half axes their lengths,
+/// rounded; half axes that agree to rounding are equal, unrotated placements exact. Decisions and times are those of
+/// this shape, in double-double; it differs from the image under the rounded map by a few 2^-53 of its size.
 #pragma once
 
 #include <optional>
@@ -17,7 +16,7 @@
 
 namespace ricochet {
 
-/// Where a shape stands: world = center + sum of local_i * axis_i.
+/// Orthonormal frame of a shape: world = center + sum of local_i * axis_i.
 class ShapeFrame {
 public:
     /// Frame of an affine map whose columns are orthogonal up to rounding (rotation times scale) and not zero. The
@@ -47,7 +46,7 @@ private:
     bool is_aligned_ = false;  ///< the axes are those of the world: nothing is rotated
 };
 
-/// Where a moving sphere (or point, radius 0) first touches a shape.
+/// First contact of a moving sphere (or point, radius 0) with a shape.
 struct ShapeContact {
     double time = 0.0;  ///< s along the path
     Vec3 normal;        ///< unit, from the surface to the centre's side
@@ -71,39 +70,35 @@ public:
     static AnalyticShape cylinder(const AffineMap& world_from_local);
 
     /// +1 outside, -1 inside, 0 when p is so close to the surface (some 2^-96 of the distances involved) that rounding
-    /// decides; then it counts as on the surface. Never wrong: the rounding error is bounded.
+    /// decides. Never wrong: the rounding error is bounded.
     [[nodiscard]] int side(const Vec3& p) const;
 
-    /// Nearest point of the surface. The distance has an error of some 2^-50 of itself, also next to the surface and
-    /// far from the world's origin (of ellipsoids and elliptic cylinders, further away than a quarter of the smallest
-    /// radius of curvature, 2^-52 of the distances from the centre besides); the normal is that of a place as far off;
-    /// the point has that error and its coordinates' last places. Where several points are nearest (on the medial axis)
-    /// one of them is chosen.
+    /// Closest point of the surface; on the medial axis one of several. The distance has an error of some 2^-50 of
+    /// itself, also next to the surface and far from the origin (see Ellipsoid::closest_point); the point and its
+    /// normal have that error and the rounding of the coordinates.
     [[nodiscard]] ShapePoint closest_point(const Vec3& p) const;
 
     /// First time at which the distance between the path and the surface shrinks to `radius` (m, >= 0), from either
-    /// side. A sphere that starts nearer than that is stopped only when approaching: contact is then the first time at
-    /// which the distance is shrinking (faster than kMinApproach of the speed) while it is at most the radius. A
-    /// point that starts on the surface is turned back from the side it heads for, at time 0.
+    /// side. A sphere that starts in overlap is stopped only when approaching: at the first time at which the distance
+    /// shrinks (faster than kMinApproach of the speed) while it is at most the radius. A point that starts on the
+    /// surface is turned back from the side it heads for, at time 0.
     ///
-    /// Points, spheres of any radius against a sphere, and from inside against a circular cylinder: the root of a
-    /// polynomial of degree at most six with coefficients in double-double (polynomial.h); the time is right to about
-    /// an ulp. Spheres in all other cases: safe steps on the true distance (convex_march.h); the time is right to that
-    /// distance's error over the normal speed, and to an ulp. No contact is skipped in either case, save grazes that
-    /// dip in by less than those errors.
+    /// Points, spheres against spheres, and spheres inside circular cylinders: roots of polynomials in double-double,
+    /// right to about an ulp. Other cases: conservative advancement on the true distance, right to that distance's
+    /// error over the normal speed, and to an ulp. Only grazes that dip in by less than those errors can be missed.
     [[nodiscard]] std::optional<ShapeContact> first_contact(const Path& path, double radius) const;
 
-    /// True when the closed segment [p, q] surely does not meet the surface: both ends are on the same side by more
-    /// than the rounding bound and so is everything between them. Errs on the side of false, by some 2^-90.
+    /// True when the closed segment [p, q] certainly does not intersect the surface. Errs on the side of false, by some
+    /// 2^-90.
     [[nodiscard]] bool segment_is_clear(const Vec3& p, const Vec3& q) const;
 
-    /// A lower bound of the distance between the closed segment [p, q] and the surface, m; less than 2^-47 of itself
-    /// below it (and the error of closest_point). 0 when the segment is not free.
+    /// A lower bound of the distance between the closed segment [p, q] and the surface, m, tight to 2^-47 (and the
+    /// error of closest_point). 0 unless the segment is clear.
     [[nodiscard]] double distance_to_segment(const Vec3& p, const Vec3& q) const;
 
-    /// True when path, chords and everything within `reach` metres of them stay off the surface. The cheap test that
-    /// discards most shapes: errs on the side of false.
-    [[nodiscard]] bool can_cull(const Path& path, double reach) const;
+    /// True when path, chords and everything within `margin` metres of them certainly stay off the surface. Cheap; errs
+    /// on the side of false.
+    [[nodiscard]] bool can_cull(const Path& path, double margin) const;
 
     /// A box around the shape, larger by rounding at most.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }

@@ -14,10 +14,10 @@ constexpr double kEqualAxes = 0x1p-49;
 
 /// Newton's steps for sigma. It converges from below, at first cubically in the distance from a pole, in the end
 /// quadratically; a dozen steps have been seen at the most.
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 
-/// Error of a distance relative to itself, and, away from the surface, to the size of shape and place: four times what
-/// has been seen in 40 000 random cases.
+/// Error of a distance relative to itself, and, away from the surface, to the size of shape and position: four times
+/// what has been seen in 40 000 random cases.
 constexpr double kRelativeError = 0x1p-48;
 constexpr double kErrorOfSize = 0x1p-50;
 
@@ -26,14 +26,15 @@ double square(double x) { return x * x; }
 std::array<double, 3> as_array(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 /// Halvings and secants for the nearest point of a segment; the bound returned is valid after any number of them.
-constexpr int kMostSegmentSteps = 100;
+constexpr int kMaxSegmentSteps = 100;
 
-/// Room between a segment's least distance and its bound, relative: the search for the nearest point ends there.
+/// Difference between a segment's least distance and its bound, relative, at which the search for the closest point
+/// ends.
 constexpr double kSegmentError = 0x1p-50;
 
-/// Error of a squared length at the rounded foot of a perpendicular, relative to the square of the start: the foot errs
-/// by some 8 u, the square by the square of that.
-constexpr double kFootError = 0x1p-98;
+/// Error of a squared length at the rounded point of a perpendicular, relative to the square of the start: the point
+/// errs by some 8 u, the square by the square of that.
+constexpr double kMinimumError = 0x1p-98;
 
 double rounded_value(double x) { return x; }
 double rounded_value(const DoubleDouble& x) { return x.hi; }
@@ -53,7 +54,7 @@ VectorOf<Scalar> step_of(const LocalSegment<Scalar>& s) {
     return {s.to.x - s.from.x, s.to.y - s.from.y, s.to.z - s.from.z};
 }
 
-/// Part of the way from a height `before` > 0 to `after` < before at which zero is reached.
+/// Fraction at which a height changes from `before` > 0 through zero to `after` < before.
 template <class Scalar>
 Scalar crossing(const Scalar& before, const Scalar& after) {
     return before / (before - after);
@@ -88,7 +89,7 @@ Vec3 LocalPath::acceleration(double s) const {
 
 Vec3 LocalPath::jerk() const { return {6.0 * component[0][3].hi, 6.0 * component[1][3].hi, 6.0 * component[2][3].hi}; }
 
-CentredEllipsoid::CentredEllipsoid(const std::array<double, 3>& half_axes, int axes)
+Ellipsoid::Ellipsoid(const std::array<double, 3>& half_axes, int axes)
     : axes_(static_cast<size_t>(axes)), half_axes_(half_axes) {
     const double a = half_axes[0];
     const double b = half_axes[1];
@@ -111,7 +112,7 @@ CentredEllipsoid::CentredEllipsoid(const std::array<double, 3>& half_axes, int a
     constant_ = is_round_ ? two_product(smallest_, smallest_) : DoubleDouble(1.0);
 }
 
-double CentredEllipsoid::value_error(const Vec3& y, double coordinate_error, double unit) const {
+double Ellipsoid::value_error(const Vec3& y, double coordinate_error, double unit) const {
     const std::array<double, 3> magnitude = as_array(abs(y));
     double of_coordinates = 0.0;
     double terms = constant_.hi;
@@ -122,16 +123,16 @@ double CentredEllipsoid::value_error(const Vec3& y, double coordinate_error, dou
     return (1.0 + 0x1p-40) * (of_coordinates + unit * terms);
 }
 
-Polynomial CentredEllipsoid::value_along(const LocalPath& path, int sign) const {
+Polynomial Ellipsoid::value_along(const LocalPath& path, int sign) const {
     return value_along(path, sign, weights_, constant_);
 }
 
-Polynomial CentredEllipsoid::value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const {
+Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const {
     return value_along(path, sign, weights_, radius * radius);
 }
 
-Polynomial CentredEllipsoid::value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,
-                                         const DoubleDouble& constant) const {
+Polynomial Ellipsoid::value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,
+                                  const DoubleDouble& constant) const {
     Polynomial p;
     p.degree = 2 * path.degree;
     p.duration = path.duration;
@@ -153,38 +154,38 @@ Polynomial CentredEllipsoid::value_along(const LocalPath& path, int sign, const 
     return p;
 }
 
-Vec3 CentredEllipsoid::normal_at(const Vec3& y) const {
+Vec3 Ellipsoid::normal_at(const Vec3& y) const {
     const Vec3 gradient{weights_[0].hi * y.x, weights_[1].hi * y.y, axes_ == 3 ? weights_[2].hi * y.z : 0.0};
     return normalized(gradient);
 }
 
-double CentredEllipsoid::support(const Vec3& n) const {
+double Ellipsoid::support(const Vec3& n) const {
     const double sum = square(half_axes_[0] * n.x) + square(half_axes_[1] * n.y);
     return std::sqrt(axes_ == 3 ? sum + square(half_axes_[2] * n.z) : sum);
 }
 
-LocalNearest CentredEllipsoid::nearest_of_round(const PreciseVec3& y) const {
+LocalPoint Ellipsoid::closest_point_of_round(const PreciseVec3& y) const {
     Vec3 radial = rounded(y);
     if (axes_ == 2) radial.z = 0.0;
     const double from_axis = length(radial);
     const double distance = value(y).hi / (from_axis + smallest_);
     const Vec3 normal = from_axis > 0.0 ? radial / from_axis : Vec3{1.0, 0.0, 0.0};
-    Vec3 foot = smallest_ * normal;
-    if (axes_ == 2) foot.z = y.z.hi;
-    return {foot, normal, distance};
+    Vec3 point = smallest_ * normal;
+    if (axes_ == 2) point.z = y.z.hi;
+    return {point, normal, distance};
 }
 
-double CentredEllipsoid::distance_error(double distance, const Vec3& y) const {
+double Ellipsoid::distance_error(double distance, const Vec3& y) const {
     const double relative = kRelativeError * std::fabs(distance);
     const bool is_near = std::fabs(distance) < 0.25 * square(smallest_) / largest_;
     return is_round_ || is_near ? relative : relative + kErrorOfSize * (length(y) + largest_);
 }
 
-/// With t = distance / |gradient at the foot| the foot is x_i = y_i a_i^2 / (a_i^2 + t). For sigma = 1 + t / smallest^2
-/// and b_i = |y_i| a_i / smallest^2 it lies on the surface when sum (b_i / (excess_i + sigma))^2 = 1. The largest root
-/// is sought; it is >= 0, and 0 stands for the medial axis (unless b vanishes along the smallest axes there is no root
-/// at 0).
-double CentredEllipsoid::sigma_of(const std::array<double, 3>& y) const {
+/// With t = distance / |gradient at the point| the point is x_i = y_i a_i^2 / (a_i^2 + t). For sigma = 1 + t /
+/// smallest^2 and b_i = |y_i| a_i / smallest^2 it lies on the surface when sum (b_i / (excess_i + sigma))^2 = 1. The
+/// largest root is sought; it is >= 0, and 0 stands for the medial axis (unless b vanishes along the smallest axes
+/// there is no root at 0).
+double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
     std::array<double, 3> b{};
     double sum = 0.0;
     double largest_excess = 0.0;
@@ -196,7 +197,7 @@ double CentredEllipsoid::sigma_of(const std::array<double, 3>& y) const {
         sigma = std::max(sigma, b[i] - excess_[i]);
     }
     sigma = std::max(sigma, std::sqrt(sum) - largest_excess);
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
         double squares = 0.0;
         double cubes = 0.0;
         for (size_t i = 0; i < axes_; ++i) {
@@ -216,7 +217,7 @@ double CentredEllipsoid::sigma_of(const std::array<double, 3>& y) const {
 
 /// Two steps of Newton's method on value - sum (y_i / a_i)^2 (1 - (1 + tau_i)^-2) = 0 with tau_i = tau / ratio_i,
 /// written so that nothing cancels when tau is small: tau becomes accurate relative to itself.
-double CentredEllipsoid::polished(double tau, const std::array<double, 3>& y, double value) const {
+double Ellipsoid::polished(double tau, const std::array<double, 3>& y, double value) const {
     for (int step = 0; step < 2; ++step) {
         double residual = value;
         double slope = 0.0;
@@ -232,34 +233,34 @@ double CentredEllipsoid::polished(double tau, const std::array<double, 3>& y, do
     return tau;
 }
 
-LocalNearest CentredEllipsoid::nearest(const PreciseVec3& y) const {
-    if (is_round_) return nearest_of_round(y);
+LocalPoint Ellipsoid::closest_point(const PreciseVec3& y) const {
+    if (is_round_) return closest_point_of_round(y);
     const std::array<double, 3> coordinates{y.x.hi, y.y.hi, y.z.hi};
     const double sigma = sigma_of(coordinates);
     double tau = sigma - 1.0;
     const double height = value(y).hi;
     if (sigma > 0.5 && height < 1.0) tau = polished(tau, coordinates, height);
-    std::array<double, 3> foot = coordinates;
+    std::array<double, 3> point = coordinates;
     double rest = 1.0;  // of sum (x_i / a_i)^2, for the smallest axis when y has nothing along it
     for (size_t i = 0; i < axes_; ++i) {
         if (sigma == 0.0 && excess_[i] == 0.0) continue;
         // In terms of sigma deep inside and of tau near the surface: either has no cancellation there.
-        foot[i] =
+        point[i] =
             sigma > 0.5 ? coordinates[i] / (1.0 + tau / ratio_[i]) : coordinates[i] * ratio_[i] / (excess_[i] + sigma);
-        rest -= square(foot[i] / half_axes_[i]);
+        rest -= square(point[i] / half_axes_[i]);
     }
     if (sigma == 0.0) {
         const auto smallest = std::find(half_axes_.begin(), half_axes_.end(), smallest_) - half_axes_.begin();
-        foot[static_cast<size_t>(smallest)] = smallest_ * std::sqrt(std::max(0.0, rest));
+        point[static_cast<size_t>(smallest)] = smallest_ * std::sqrt(std::max(0.0, rest));
     }
     Vec3 gradient;  // times smallest^2
-    for (size_t i = 0; i < axes_; ++i) gradient[static_cast<int>(i)] = foot[i] / ratio_[i];
+    for (size_t i = 0; i < axes_; ++i) gradient[static_cast<int>(i)] = point[i] / ratio_[i];
     const double steepness = length(gradient);
-    return {{foot[0], foot[1], foot[2]}, gradient / steepness, tau * steepness};
+    return {{point[0], point[1], point[2]}, gradient / steepness, tau * steepness};
 }
 
 LocalShape::LocalShape(const std::array<double, 3>& half_axes, bool is_capped)
-    : around_(half_axes, is_capped ? 2 : 3), is_capped_(is_capped), half_height_(is_capped ? half_axes[2] : 0.0) {}
+    : ellipsoid_(half_axes, is_capped ? 2 : 3), is_capped_(is_capped), half_height_(is_capped ? half_axes[2] : 0.0) {}
 
 LocalShape LocalShape::ball(const std::array<double, 3>& half_axes) { return {half_axes, false}; }
 LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return {half_axes, true}; }
@@ -267,14 +268,14 @@ LocalShape LocalShape::cylinder(const std::array<double, 3>& half_axes) { return
 template <class Scalar>
 int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
     const Vec3 y = rounded_vector(segment.from);
-    const int around = sign_beyond(rounded_value(around_.value(segment.from)),
-                                   around_.value_error(y, segment.coordinate_error, segment.unit));
-    if (!is_capped_ || around > 0) return around;
+    const int lateral = sign_beyond(rounded_value(ellipsoid_.value(segment.from)),
+                                    ellipsoid_.value_error(y, segment.coordinate_error, segment.unit));
+    if (!is_capped_ || lateral > 0) return lateral;
     const double magnitude = std::fabs(y.z) + half_height_;
     const Scalar height = (y.z < 0.0 ? -segment.from.z : segment.from.z) + Scalar(-half_height_);
     const int beyond_cap = sign_beyond(rounded_value(height), segment.coordinate_error + segment.unit * magnitude);
     if (beyond_cap > 0) return 1;
-    return around < 0 && beyond_cap < 0 ? -1 : 0;
+    return lateral < 0 && beyond_cap < 0 ? -1 : 0;
 }
 
 /// The part of the segment between the caps' planes, a little more by rounding; nothing when it is all beyond one.
@@ -299,10 +300,10 @@ std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const Local
     return part;
 }
 
-/// Outside, the smallest value() between the caps decides: it is convex along the segment, and an error of the place of
-/// its minimum counts by its square.
+/// Outside, the smallest value() between the caps decides: it is convex along the segment, and an error of the
+/// minimum's position counts by its square.
 template <class Scalar>
-bool LocalShape::is_free(const LocalSegment<Scalar>& segment) const {
+bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
     const int side = side_of_start(segment);
     const LocalSegment<Scalar> reversed{segment.to, segment.from, segment.coordinate_error, segment.unit};
     if (side == 0 || side_of_start(reversed) != side) return false;
@@ -314,48 +315,48 @@ bool LocalShape::is_free(const LocalSegment<Scalar>& segment) const {
     const Vec3 d = rounded_vector(step);
     double slope = 0.0;
     double curvature = 0.0;
-    for (int i = 0; i < around_.axes(); ++i) {
-        slope += y[i] / around_.half_axis(i) * (d[i] / around_.half_axis(i));
-        curvature += d[i] / around_.half_axis(i) * (d[i] / around_.half_axis(i));
+    for (int i = 0; i < ellipsoid_.axes(); ++i) {
+        slope += y[i] / ellipsoid_.half_axis(i) * (d[i] / ellipsoid_.half_axis(i));
+        curvature += d[i] / ellipsoid_.half_axis(i) * (d[i] / ellipsoid_.half_axis(i));
     }
     const Scalar lowest(curvature > 0.0 ? -slope / curvature : 0.0);
     const VectorOf<Scalar> nearest = on_segment(segment.from, step, std::clamp(lowest, part->from, part->to));
     const Vec3 magnitude = abs(y) + abs(d);
     const double error =
-        around_.value_error(magnitude, 4.0 * segment.coordinate_error, 4.0 * segment.unit + kFootError);
-    return rounded_value(around_.value(nearest)) > error;
+        ellipsoid_.value_error(magnitude, 4.0 * segment.coordinate_error, 4.0 * segment.unit + kMinimumError);
+    return rounded_value(ellipsoid_.value(nearest)) > error;
 }
 
 template int LocalShape::side_of_start(const LocalSegment<double>&) const;
 template int LocalShape::side_of_start(const LocalSegment<DoubleDouble>&) const;
-template bool LocalShape::is_free(const LocalSegment<double>&) const;
-template bool LocalShape::is_free(const LocalSegment<DoubleDouble>&) const;
+template bool LocalShape::is_clear(const LocalSegment<double>&) const;
+template bool LocalShape::is_clear(const LocalSegment<DoubleDouble>&) const;
 
-LocalNearest LocalShape::nearest(const PreciseVec3& y) const {
-    LocalNearest around = around_.nearest(y);
-    if (!is_capped_) return around;
+LocalPoint LocalShape::closest_point(const PreciseVec3& y) const {
+    LocalPoint lateral = ellipsoid_.closest_point(y);
+    if (!is_capped_) return lateral;
     const double up = y.z.hi < 0.0 ? -1.0 : 1.0;
     const double height = (up * y.z + -half_height_).hi;
-    const bool is_beside = around.distance > 0.0;
-    if (height <= 0.0 && (is_beside || around.distance >= height)) return around;
-    if (!is_beside) return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, height};
-    const double distance = std::sqrt(around.distance * around.distance + height * height);
-    const Vec3 normal = (around.distance / distance) * around.normal + Vec3{0.0, 0.0, up * (height / distance)};
-    return {{around.foot.x, around.foot.y, up * half_height_}, normal, distance};
+    const bool is_outside_side = lateral.distance > 0.0;
+    if (height <= 0.0 && (is_outside_side || lateral.distance >= height)) return lateral;
+    if (!is_outside_side) return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, height};
+    const double distance = std::sqrt(lateral.distance * lateral.distance + height * height);
+    const Vec3 normal = (lateral.distance / distance) * lateral.normal + Vec3{0.0, 0.0, up * (height / distance)};
+    return {{lateral.point.x, lateral.point.y, up * half_height_}, normal, distance};
 }
 
 double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) const {
-    const LocalNearest at_from = nearest(from);
-    const LocalNearest at_to = nearest(to);
+    const LocalPoint at_from = closest_point(from);
+    const LocalPoint at_to = closest_point(to);
     double least = std::min(std::fabs(at_from.distance), std::fabs(at_to.distance));
     const Vec3 size = abs(rounded(from)) + abs(rounded(to));
     // The depth inside a convex body is concave along the segment: its least value is at an end.
     if (at_from.distance > 0.0 && at_to.distance > 0.0) least = std::min(least, distance_from_outside(from, to));
-    return std::max(0.0, least - around_.distance_error(least, size));
+    return std::max(0.0, least - ellipsoid_.distance_error(least, size));
 }
 
 /// The distance from a convex body is convex along the segment, so that it lies above its tangents. The root of its
-/// slope is bracketed by secants (with the Illinois rule) until the tangents leave no room.
+/// slope is bracketed by secants (with the Illinois rule) until the tangents meet.
 double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseVec3& to) const {
     struct Tangent {
         double t;
@@ -365,7 +366,7 @@ double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseV
     const PreciseVec3 step = to - from;
     const Vec3 direction = rounded(step);
     const auto tangent_at = [&](double t) {
-        const LocalNearest near = nearest(on_segment(from, step, DoubleDouble(t)));
+        const LocalPoint near = closest_point(on_segment(from, step, DoubleDouble(t)));
         return Tangent{t, near.distance, dot(near.normal, direction)};
     };
     Tangent low = tangent_at(0.0);
@@ -376,7 +377,7 @@ double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseV
     double high_weight = high.slope;
     int last_side = 0;
     double bound = 0.0;
-    for (int k = 0; k < kMostSegmentSteps; ++k) {
+    for (int k = 0; k < kMaxSegmentSteps; ++k) {
         const double width = high.t - low.t;
         const double where = (low.distance - high.distance + high.slope * width) / (high.slope - low.slope);
         bound = std::max(bound, low.distance + low.slope * std::clamp(where, 0.0, width));

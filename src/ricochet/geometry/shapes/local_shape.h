@@ -26,20 +26,19 @@ struct LocalPath {
     [[nodiscard]] Vec3 jerk() const;
 };
 
-/// The point of a surface nearest to a given one, in the shape's frame.
-struct LocalNearest {
-    Vec3 foot;              ///< on the surface
+/// The point of a surface closest to a given one, in the shape's frame.
+struct LocalPoint {
+    Vec3 point;             ///< on the surface
     Vec3 normal;            ///< unit, outward
     double distance = 0.0;  ///< signed, m: positive outside
 };
 
-/// sum over the axes of (y_i / a_i)^2 <= 1.
-///
-/// Equal half axes are treated as a circle or sphere, with closed forms.
-class CentredEllipsoid {
+/// An ellipsoid about the origin along the coordinate axes, or with two axes an endless elliptic cylinder along z:
+/// sum over the axes of (y_i / a_i)^2 <= 1. Equal half axes are a circle or sphere, with closed forms.
+class Ellipsoid {
 public:
     /// Half axes in m, > 0; the first `axes` (2 or 3) of them count. Those that agree to rounding are made equal.
-    CentredEllipsoid(const std::array<double, 3>& half_axes, int axes);
+    Ellipsoid(const std::array<double, 3>& half_axes, int axes);
 
     /// The function that is zero on the surface, negative inside: |y|^2 - R^2 when round, else sum (y_i / a_i)^2 - 1.
     /// Each term has an error of some 2^-100 (double-doubles) or 2^-51 (doubles) of itself.
@@ -54,14 +53,13 @@ public:
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign) const;
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const;
 
-    /// Nearest surface point. The distance is accurate to some 2^-50 of itself, however near the surface y is (down to
-    /// 2^-96 of the size); further from it than a quarter of the smallest radius of curvature add 2^-52 of |y| and of
-    /// the size. On the medial axis, where several points are nearest, one of them is chosen; foot and normal inside
-    /// are as well conditioned as the problem, which they are not near the rim of the medial axis.
+    /// Closest surface point; on the medial axis one of several. The distance is accurate to some 2^-50 of itself, also
+    /// next to the surface; further from it than a quarter of the smallest radius of curvature add 2^-52 of |y| and of
+    /// the size. Point and normal inside are ill-conditioned near the edge of the medial axis.
     /// Method: D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", Geometric Tools,
     /// 2013 (the equation in sigma below); J. More, D. Sorensen, "Computing a Trust Region Step", SIAM J. Sci. Stat.
     /// Comput. 4, 1983 (Newton's method on 1 / norm, which converges from below without overshooting).
-    [[nodiscard]] LocalNearest nearest(const PreciseVec3& y) const;
+    [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
     /// Bound of the error of that distance, m.
     [[nodiscard]] double distance_error(double distance, const Vec3& y) const;
 
@@ -77,7 +75,7 @@ public:
     [[nodiscard]] double support(const Vec3& n) const;
 
 private:
-    [[nodiscard]] LocalNearest nearest_of_round(const PreciseVec3& y) const;
+    [[nodiscard]] LocalPoint closest_point_of_round(const PreciseVec3& y) const;
     [[nodiscard]] double sigma_of(const std::array<double, 3>& y) const;
     [[nodiscard]] double polished(double tau, const std::array<double, 3>& y, double value) const;
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,
@@ -95,7 +93,7 @@ private:
 };
 
 template <class Scalar>
-Scalar CentredEllipsoid::value(const VectorOf<Scalar>& y) const {
+Scalar Ellipsoid::value(const VectorOf<Scalar>& y) const {
     const std::array<Scalar, 3> coordinates{y.x, y.y, y.z};
     Scalar sum = -static_cast<Scalar>(constant_);
     for (std::size_t i = 0; i < axes_; ++i) {
@@ -125,21 +123,21 @@ public:
     [[nodiscard]] int side_of_start(const LocalSegment<Scalar>& segment) const;
     /// True when both ends of the segment are certainly on the same side and all that is between them with them.
     template <class Scalar>
-    [[nodiscard]] bool is_free(const LocalSegment<Scalar>& segment) const;
+    [[nodiscard]] bool is_clear(const LocalSegment<Scalar>& segment) const;
 
-    [[nodiscard]] LocalNearest nearest(const PreciseVec3& y) const;
-    /// A lower bound, tight to rounding, of the distance of a segment that is_free() from the surface.
+    [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
+    /// A lower bound, tight to rounding, of the distance of a segment that is_clear() from the surface.
     [[nodiscard]] double distance_of(const PreciseVec3& from, const PreciseVec3& to) const;
 
-    [[nodiscard]] const CentredEllipsoid& around() const { return around_; }
+    [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
     [[nodiscard]] bool is_capped() const { return is_capped_; }
-    [[nodiscard]] bool is_sphere() const { return !is_capped_ && around_.is_round(); }
+    [[nodiscard]] bool is_sphere() const { return !is_capped_ && ellipsoid_.is_round(); }
     [[nodiscard]] double half_height() const { return half_height_; }
     /// Radius of a ball about the origin that holds the shape, m.
-    [[nodiscard]] double extent() const { return around_.largest() + half_height_; }
+    [[nodiscard]] double extent() const { return ellipsoid_.largest() + half_height_; }
     /// max over the shape of n . y.
     [[nodiscard]] double support(const Vec3& n) const {
-        return around_.support(n) + (is_capped_ ? half_height_ * std::fabs(n.z) : 0.0);
+        return ellipsoid_.support(n) + (is_capped_ ? half_height_ * std::fabs(n.z) : 0.0);
     }
 
 private:
@@ -154,9 +152,19 @@ private:
     [[nodiscard]] std::optional<Interval<Scalar>> between_caps(const LocalSegment<Scalar>& segment) const;
     [[nodiscard]] double distance_from_outside(const PreciseVec3& from, const PreciseVec3& to) const;
 
-    CentredEllipsoid around_;
+    Ellipsoid ellipsoid_;
     bool is_capped_;
     double half_height_;  ///< m; 0 for balls
 };
+
+/// The first contact with a shape, in its frame.
+struct LocalContact {
+    double time = 0.0;  ///< s
+    Vec3 normal;        ///< unit, from the surface to the side the path comes from
+    Vec3 point;         ///< on the surface
+};
+
+/// See AnalyticShape::first_contact.
+[[nodiscard]] std::optional<LocalContact> first_contact(const LocalShape& shape, const LocalPath& path, double radius);
 
 }  // namespace ricochet

@@ -45,7 +45,7 @@ int precise_side_of_edge(const Vec3& p, const Vec3& from, const Vec3& to, const 
     return sign(dot_of(cross_of(normal, d), scaled_to_one(difference<DoubleDouble>(p, from))));
 }
 
-/// Offset of p from the face, where the foot of its perpendicular lies in the triangle.
+/// Offset of p from the face, where p projects into the triangle.
 std::optional<Vec3> offset_from_face(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const std::optional<Vec3> normal = normal_of(a, b, c);
     if (!normal || !projects_into_triangle(p, a, b, c, *normal)) return std::nullopt;
@@ -181,7 +181,7 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
             break;
     }
     const Vec3 weights = face_weights(nearest.point, a, b, c);
-    // A triangle that is a line to rounding has no such weights worth having: then those on an edge are nearer.
+    // A triangle that is a line to rounding has no accurate weights: then those on an edge are nearer.
     const std::array<Vec3, 4> candidates{
         Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
         Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
@@ -191,7 +191,7 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
 }
 
 // The smallest distance is that of an end from the other segment, or that of two inner points where the common
-// perpendicular meets both. Where the segments are almost parallel that place is ill-determined, but what is returned
+// perpendicular meets both. Where the segments are almost parallel that point is ill-conditioned, but what is returned
 // is always the distance of two points of the segments, and there the ends are as near to rounding.
 double squared_distance_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     const double least = std::min({length_squared(closest_point_on_segment(p, a, b).offset),

@@ -1,9 +1,8 @@
 /// \file
-/// Nearest points and distances between points, segments and triangles. Triangles may be slender or degenerate (a
-/// segment, a point); every shape gives a nearest point.
+/// Closest points and distances of points, segments and triangles, which may be slender or degenerate.
 ///
-/// Errors: distances err by some 2^-50 of the distance between the points given (differences of coordinates are taken
-/// first, so a place far from the origin costs nothing but the rounding of the returned point).
+/// Distances err by some 2^-50 of the distance between the points given: differences of coordinates are taken first, so
+/// that far from the origin only the returned point is rounded more.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -21,7 +20,7 @@ enum class TriangleFeature : unsigned char { kFace, kEdgeAB, kEdgeBC, kEdgeCA, k
 
 /// The point of a segment nearest to a point p.
 struct ClosestPointOnSegment {
-    double fraction = 0.0;  ///< of the way from the first end to the second, in [0, 1]
+    double fraction = 0.0;  ///< of the segment, from its first end, in [0, 1]
     Vec3 offset;            ///< from the nearest point to p, m; not rounded to the coordinates' last place
 };
 
@@ -36,20 +35,18 @@ struct ClosestPointOnTriangle {
 /// Nearest point of the closed segment [a, b], which may be a point.
 [[nodiscard]] ClosestPointOnSegment closest_point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 
-/// True when the foot of the perpendicular from p lies in the closed triangle, whose unit normal (counter-clockwise
-/// rule, within 2^-48) is given. Decided in double-double where p is above the rim: at the tip of a slender triangle,
-/// plain doubles would take points far beyond the tip for inside.
+/// True when p projects into the closed triangle along its unit normal (counter-clockwise rule, within 2^-48). Decided
+/// in double-double near the edges: at the tip of a slender triangle, plain doubles would accept points far beyond it.
 [[nodiscard]] bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c,
                                           const Vec3& normal);
 
-/// Nearest point of the closed triangle. Where the nearest point lies on the face's rim to rounding, the smaller
-/// distance decides, then the face, then the edge, then the vertex.
+/// Nearest point of the closed triangle. Where features tie to rounding the smaller distance decides, then the rank.
 [[nodiscard]] ClosestPointOnTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                                const Vec3& c);
 
 /// Barycentric coordinates of a point of a triangle that closest_point_on_triangle() found, for the corners a, b and c:
-/// none negative, their sum 1. Exactly 0 where the point lies on an edge or a vertex. For slender triangles they are
-/// worked out in double-double, so that they lead back to the point, not only to its plane.
+/// none negative, their sum 1; exactly 0 opposite an edge or vertex that the point lies on. In double-double for
+/// slender triangles, so that they reproduce the point.
 [[nodiscard]] Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& a, const Vec3& b,
                                            const Vec3& c);
 
@@ -60,12 +57,13 @@ struct ClosestPointOnTriangle {
 [[nodiscard]] double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, const Vec3& a,
                                                                const Vec3& b, const Vec3& c);
 
-/// A direction, of any length, that leads from the triangle's nearest point to p, as plain doubles find it. It may be
-/// anything, zero and no number too, for triangles and places that they are not enough for.
+/// A direction, of any length, from the triangle's closest point to p, in plain doubles. It may be anything, also zero
+/// or NaN, where plain doubles do not suffice.
 [[nodiscard]] Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// p's distance from the triangle (a, b, c) is certainly no less than this, m. Negative or no number where the
-/// direction tells nothing. All places between two are as far as the smaller of their bounds along the same direction.
+/// A certain lower bound of p's distance from the triangle (a, b, c), m: the separation along the direction (separating
+/// axes, e.g. C. Ericson, "Real-Time Collision Detection", Morgan Kaufmann 2005, section 5.2.1). Negative or NaN where
+/// the direction does not separate. Points of a segment are at least as far as the smaller bound of its ends.
 [[nodiscard]] double distance_lower_bound(const Vec3& direction, const Vec3& p, const Vec3& a, const Vec3& b,
                                           const Vec3& c);
 

@@ -23,6 +23,13 @@ double Path::sagitta(double from, double to) const {
     return span * span / 8.0 * std::sqrt(std::max(length_squared(at_from), length_squared(at_to)));
 }
 
+ControlPoints Path::control_points() const {
+    if (degree < 2) return {{c[0], end, {}, {}}, 2};
+    const Vec3 second = c[0] + (duration / degree) * c[1];
+    if (degree == 2) return {{c[0], second, end, {}}, 3};
+    return {{c[0], second, c[0] + (duration / 3.0) * (2.0 * c[1] + duration * c[2]), end}, 4};
+}
+
 Vec3 line_end(const Vec3& x, const Vec3& v, double duration) { return flush_tiny(x + duration * v); }
 
 Vec3 parabola_end(const Vec3& x, const Vec3& v, const Vec3& a, double duration) {

@@ -8,6 +8,15 @@
 
 namespace ricochet {
 
+/// Bezier control points of a path: the path and its chords lie in their convex hull.
+struct ControlPoints {
+    std::array<Vec3, 4> point;
+    int count = 0;
+
+    [[nodiscard]] const Vec3* begin() const { return point.data(); }
+    [[nodiscard]] const Vec3* end() const { return point.data() + count; }
+};
+
 /// p(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3 for s in [0, duration], seconds and metres. The two end points are stored
 /// values: c[0] is the particle's position, `end` is the position that becomes the next state.
 struct Path {
@@ -22,6 +31,7 @@ struct Path {
     [[nodiscard]] Vec3 velocity(double s) const;
     /// Upper bound of the distance between the path on [from, to] and its chord there, m.
     [[nodiscard]] double sagitta(double from, double to) const;
+    [[nodiscard]] ControlPoints control_points() const;
 };
 
 /// Where line_path() ends.

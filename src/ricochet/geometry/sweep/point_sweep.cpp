@@ -13,27 +13,7 @@ namespace {
 
 constexpr double kUnitRoundoff = 0x1p-53;
 
-/// Corners of the path's Bezier hull: the path and all its chords lie inside.
-struct Hull {
-    std::array<Vec3, 4> points;
-    int count = 0;
-};
-
-Hull hull_of(const Path& path) {
-    const double h = path.duration;
-    switch (path.degree) {
-        case 1:
-            return {{path.c[0], path.end, {}, {}}, 2};
-        case 2:
-            return {{path.c[0], path.c[0] + (0.5 * h) * path.c[1], path.end, {}}, 3};
-        default:
-            return {{path.c[0], path.c[0] + (h / 3.0) * path.c[1],
-                     path.c[0] + (h / 3.0) * (2.0 * path.c[1] + h * path.c[2]), path.end},
-                    4};
-    }
-}
-
-/// A triangle as a surface: sides and meetings are exact, the normal is rounded.
+/// A triangle as a surface: sides and intersections are exact, the normal is rounded.
 struct TriangleSurface {
     const TrianglePlane& plane;
 
@@ -49,8 +29,8 @@ struct TriangleSurface {
     [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
     /// True when a direction certainly leads towards the given side, for the rounded normal as well.
     [[nodiscard]] bool leads_to(int side, const Vec3& direction) const;
-    /// Fraction of a segment in the triangle's plane, which meets the triangle, at which it enters: the last of the
-    /// crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
+    /// Fraction of a segment in the triangle's plane, which intersects the triangle, at which it enters: the last of
+    /// the crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
     /// Clipping", Computers & Graphics 3, 1978).
     [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };
@@ -126,31 +106,31 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     if (before == after && before != 0) return std::nullopt;
     if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
     if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
-    // A particle born on the surface is turned back from the side it heads for.
+    // A particle that starts on the surface is turned back from the side it heads for.
     if (before == 0) return Crossing{0.0, -after};
     if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
 }
 
-/// Signed distance from the plane along the path, g(s) = g0 + g1 s + g2 s^2 (+ g3 s^3), oriented so that the start is
+/// Height over the plane along the path, g(s) = g0 + g1 s + g2 s^2 (+ g3 s^3), oriented so that the start is
 /// on the positive side.
-struct Distance {
+struct Height {
     double g0;
     double g1;
     double g2;
 };
 
 template <class Surface>
-Distance distance_lower_bound(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
+Height height_along(const Path& path, const Surface& surface, const Vec3& n, int orientation) {
     const double sign = orientation;
     return {std::max(0.0, sign * dot(n, path.c[0] - surface.origin())), sign * dot(n, path.c[1]),
             sign * dot(n, path.c[2])};
 }
 
 /// Discriminant g1^2 - 4 g0 g2 without cancellation.
-double discriminant(const Distance& g) { return (two_product(g.g1, g.g1) - 4.0 * two_product(g.g0, g.g2)).hi; }
+double discriminant(const Height& g) { return (two_product(g.g1, g.g1) - 4.0 * two_product(g.g0, g.g2)).hi; }
 
-/// The times at which the distance passes through zero: downwards first, then (a path that comes back) upwards.
+/// The times at which the distance passes through zero: downwards first, then (a path that returns) upwards.
 struct Roots {
     std::array<double, 2> time{};
     int count = 0;
@@ -159,7 +139,7 @@ struct Roots {
 /// Roots in [0, duration], given the exact sides of the end points; the number of crossings agrees with them.
 /// Method: the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and
 /// Stability of Numerical Algorithms", section 1.8).
-Roots crossings_of_parabola(const Distance& g, bool ends_on_same_side, double duration) {
+Roots crossings_of_parabola(const Height& g, bool ends_on_same_side, double duration) {
     const double d = discriminant(g);
     if (!ends_on_same_side) {
         const double root = std::sqrt(std::max(0.0, d));
@@ -174,12 +154,12 @@ Roots crossings_of_parabola(const Distance& g, bool ends_on_same_side, double du
 }
 
 /// True when the path crosses the surface around time s, where it comes from the given exact side: two points of the
-/// path that bracket s lie on different sides and the segment between them meets the surface.
+/// path that bracket s lie on different sides and the segment between them intersects the surface.
 template <class Surface>
 bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal, double s, int side) {
-    const double reach = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
+    const double size = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
     const double speed = std::fabs(dot(normal, path.velocity(s)));
-    double margin = 8.0 * kUnitRoundoff * (s + reach / std::max(speed, 1e-300));
+    double margin = 8.0 * kUnitRoundoff * (s + size / std::max(speed, 1e-300));
     for (int attempt = 0; attempt < 24; ++attempt, margin *= 8.0) {
         const double from = std::max(0.0, s - margin);
         const double to = std::min(path.duration, s + margin);
@@ -192,7 +172,7 @@ bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal
 }
 
 /// A path that starts in the surface's plane. On the surface itself the particle is turned back from the side it heads
-/// for; beside it, one crossing is behind and the other is where the distance returns to zero.
+/// for; beside it, one root is at the start and the other is where the height returns to zero.
 template <class Surface>
 std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
     const Vec3 normal = surface.normal();
@@ -218,7 +198,7 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     const bool dips = !surface.leads_to(before, path.c[1]) && !surface.leads_to(-before, path.c[2]);
     if (before == after && !dips) return std::nullopt;
     const Vec3 normal = surface.normal();
-    const Distance g = distance_lower_bound(path, surface, normal, before);
+    const Height g = height_along(path, surface, normal, before);
     const Roots roots = crossings_of_parabola(g, before == after, path.duration);
     for (int k = 0; k < roots.count; ++k) {
         const double s = roots.time[static_cast<std::size_t>(k)];
@@ -265,10 +245,25 @@ std::optional<Crossing> crossing_of(const Path& path, const Surface& surface, do
     return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
 }
 
+/// True when every control point is higher over the plane than bound(offset from its origin), or every one lower.
+template <class Bound>
+bool is_on_one_side(const Path& path, const Vec3& origin, const Vec3& normal, const Bound& bound) {
+    int side = 0;
+    for (const Vec3& point : path.control_points()) {
+        const Vec3 d = point - origin;
+        const double height = dot(normal, d);
+        if (!(std::fabs(height) > bound(d))) return false;
+        const int here = height > 0.0 ? 1 : -1;
+        if (side != 0 && here != side) return false;
+        side = here;
+    }
+    return true;
+}
+
 }  // namespace
 
 // Filter: each difference errs by u relative, each product and sum by another u; 8 u times the sum of magnitudes covers
-// the 5 roundings on the way.
+// the 5 roundings.
 int side_of(const Plane& plane, const Vec3& p) {
     const Vec3 d = p - plane.point;
     const Vec3 terms{plane.normal.x * d.x, plane.normal.y * d.y, plane.normal.z * d.z};
@@ -280,40 +275,19 @@ int side_of(const Plane& plane, const Vec3& p) {
 }
 
 bool stays_on_one_side(const Path& path, const Plane& plane, double slack) {
-    const Hull hull = hull_of(path);
-    int side = 0;
-    for (int k = 0; k < hull.count; ++k) {
-        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - plane.point;
-        const double value = dot(plane.normal, d);
-        const double bound = 2.0 * slack + 16.0 * kUnitRoundoff * dot(abs(plane.normal), abs(d));
-        if (!(std::fabs(value) > bound)) return false;
-        const int here = value > 0.0 ? 1 : -1;
-        if (side != 0 && here != side) return false;
-        side = here;
-    }
-    return true;
+    return is_on_one_side(path, plane.point, plane.normal, [&](const Vec3& d) {
+        return 2.0 * slack + 16.0 * kUnitRoundoff * dot(abs(plane.normal), abs(d));
+    });
 }
 
 // With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
 // N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
-bool stays_on_one_side(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
-    return stays_on_one_side(path, TrianglePlane(a, b, c), slack);
-}
-
 bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack) {
     const auto& [normal, magnitude] = triangle.cross();
     const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
-    const Hull hull = hull_of(path);
-    int side = 0;
-    for (int k = 0; k < hull.count; ++k) {
-        const Vec3 d = hull.points[static_cast<std::size_t>(k)] - triangle.a();
-        const double value = dot(normal, d);
-        if (!(std::fabs(value) > clearance + 16.0 * kUnitRoundoff * dot(magnitude, abs(d)))) return false;
-        const int here = value > 0.0 ? 1 : -1;
-        if (side != 0 && here != side) return false;
-        side = here;
-    }
-    return true;
+    return is_on_one_side(path, triangle.a(), normal, [&, &magnitude = magnitude](const Vec3& d) {
+        return clearance + 16.0 * kUnitRoundoff * dot(magnitude, abs(d));
+    });
 }
 
 std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -336,7 +310,7 @@ double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const 
         const Vec3& from = corners[k];
         Vec3 inward = normalized(cross(normal, corners[(k + 1) % 3] - from));
         if (dot(inward, corners[(k + 2) % 3] - from) < 0.0) inward = -inward;
-        const Distance g{dot(inward, path.c[0] - from) + slack, dot(inward, path.c[1]), dot(inward, path.c[2])};
+        const Height g{dot(inward, path.c[0] - from) + slack, dot(inward, path.c[1]), dot(inward, path.c[2])};
         if (g.g0 < 0.0) return 0.0;
         const bool ends_inside = g.g0 + path.duration * (g.g1 + path.duration * g.g2) >= 0.0;
         const Roots roots = crossings_of_parabola(g, ends_inside, path.duration);

@@ -1,11 +1,9 @@
 /// \file
-/// One path against one surface: does it cross, when first, and from which side? Pure functions; no particle, no
-/// response.
+/// Sweep of a point against one surface: does its path cross, when first, and from which side? Pure functions.
 ///
-/// Straight paths are decided exactly: the segment between the two stored end points meets the closed triangle or it
-/// does not. Curved paths are decided by the signs of exact orientations at stored points of the path; only the time is
-/// a rounded root. What an arc's decision may still miss (an arc that slips between two triangles by rounding) is
-/// caught by the certificate on its chords (collision/certificate.h), so nothing depends on it.
+/// Straight paths are decided exactly, by the segment between their stored ends. Curved paths are decided by the signs
+/// of exact orientations at points of the path; only the time is a rounded root. An arc that slips between two
+/// triangles by rounding is caught by the certificate of its chords.
 #pragma once
 
 #include <limits>
@@ -22,7 +20,7 @@ struct Plane {
     Vec3 normal;  ///< of unit length up to rounding
 };
 
-/// Where a path first meets a surface.
+/// First crossing of a path through a surface.
 struct Crossing {
     double time = 0.0;  ///< s, in [0, duration]
     int side = 0;  ///< side of the surface's plane that the path comes from: +1, -1, or 0 when it runs in the plane
@@ -31,26 +29,22 @@ struct Crossing {
 /// Side of a point: +1 where the normal points to, -1 behind, 0 exactly in the plane. Exact.
 [[nodiscard]] int side_of(const Plane& plane, const Vec3& p);
 
-/// True when the path, everything within `slack` metres of it and its chords stay strictly on one side of the
-/// triangle's plane: the triangle needs no further look. Errs on the side of false.
-[[nodiscard]] bool stays_on_one_side(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, double slack);
-/// The same for a triangle that is asked more.
+/// Culls: true when the path, everything within `slack` metres of it and its chords stay strictly on one side of the
+/// triangle's plane. Errs on the side of false.
 [[nodiscard]] bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack);
-/// The same for a plane.
 [[nodiscard]] bool stays_on_one_side(const Path& path, const Plane& plane, double slack);
 
-/// First crossing of the closed triangle (a, b, c), which must not be degenerate. Nothing when there is none.
-/// For straight paths the time is the exact rational rounded (within 2 ulp); for parabolas it solves the quadratic with
-/// the triangle's unit normal.
+/// First crossing of the closed triangle (a, b, c), which must not be degenerate. For straight paths the time is within
+/// 2 ulp of the exact rational; for curved ones it is a root of the height over the triangle's plane.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c);
-/// The same for a triangle that is asked more; nothing also when the crossing is certainly later than `latest`, s.
+/// The same; nothing also when the crossing is certainly later than `latest`, s.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const TrianglePlane& triangle,
                                                      double latest = std::numeric_limits<double>::infinity());
 /// First crossing of a plane.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Plane& plane);
 
 /// Time at which a path that runs along the plane of (a, b, c) leaves the triangle by more than `slack` metres, in
-/// [0, duration]; 0 when it starts outside. `normal` is the triangle's unit normal, either way round.
+/// [0, duration]; 0 when it starts outside. `normal` is the triangle's unit normal, of either sign.
 [[nodiscard]] double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c,
                                         const Vec3& normal, double slack);
 
@@ -58,7 +52,6 @@ struct Crossing {
 /// height of the triangle, also where p almost lies in the plane (down to some 1e-30 of the sizes involved; the exact
 /// side is orient3d's to tell).
 [[nodiscard]] double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-/// The same for a plane.
 [[nodiscard]] double signed_distance(const Vec3& p, const Plane& plane);
 
 }  // namespace ricochet

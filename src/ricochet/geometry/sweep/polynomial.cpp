@@ -11,10 +11,10 @@ using std::size_t;
 
 /// Evaluations per root. Newton needs about five; every third step halves the bracket at least, and 60 halvings reach
 /// the last place of the duration.
-constexpr int kMostRootSteps = 200;
+constexpr int kMaxRootSteps = 200;
 
 /// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes: at
-/// most 7 additions and 9 products lie on the way of a term, 16 u; twice that is used.
+/// most 7 additions and 9 products act on a term, 16 u; twice that is used.
 constexpr double kDoubleError = 0x1p-48;
 
 const DoubleDouble& coefficient(const Polynomial& p, int k) { return p.coefficients[static_cast<size_t>(k)]; }
@@ -129,7 +129,7 @@ int sign_of(double x) { return static_cast<int>(x > 0.0) - static_cast<int>(x < 
 double bracketed_root(const Polynomial& p, double low, double high, int sign_at_low, double enough) {
     double s = 0.5 * (low + high);
     double width = high - low;
-    for (int step = 0; step < kMostRootSteps; ++step) {
+    for (int step = 0; step < kMaxRootSteps; ++step) {
         const double slope = p.slope(s);
         const BoundedValue rough = bounded_value(p, s);
         double value = rough.value;
@@ -315,24 +315,6 @@ Times down_crossings(const Polynomial& p, double from, double to) {
         before = after;
     }
     return times;
-}
-
-std::optional<double> first_descent(const Polynomial& p, double from, double to) {
-    if (variation_on(p, p.duration) == Variation::kPositive) return std::nullopt;
-    DoubleDouble before = p.value(from);
-    double positive_from = from;
-    if (before.hi <= 0.0) {
-        const Pieces pieces = pieces_between(from, monotone_cuts(p), to);
-        for (int i = 1; i < pieces.count && before.hi <= 0.0; ++i) {
-            const DoubleDouble after = p.value(pieces[i]);
-            if (after < before) return pieces[i - 1];
-            before = after;
-            positive_from = pieces[i];
-        }
-        if (before.hi <= 0.0) return std::nullopt;
-    }
-    const Times crossings = down_crossings(p, positive_from, to);
-    return crossings.count > 0 ? std::optional(crossings[0]) : std::nullopt;
 }
 
 bool is_certainly_positive(const Polynomial& p, double to) {

@@ -1,27 +1,16 @@
 /// \file
-/// Real roots of polynomials in time, at most of degree 6: the distance of a cubic path from a point, squared, has that
-/// degree.
+/// Polynomials in time: distances of a moving point from points, lines and planes, and their real roots.
 ///
-/// Coefficients are double-doubles, so that a difference of squares (distance^2 - radius^2) keeps its meaning where it
-/// almost vanishes. Roots are isolated by sign variations of the Bernstein coefficients (no variation: no root; one:
-/// one root); with more variations the interval is cut at the roots of the derivative, found the same way, so that each
-/// piece is monotone and the signs at its ends decide. Method: R. T. Farouki, "The Bernstein polynomial basis: A
-/// centennial retrospective", CAGD 29, 2012 (variations); C. Yuksel, "High-Performance Polynomial Root Finding for
-/// Graphics", HPG 2022 (cutting at the derivative's roots). Each root is polished inside its bracket by Newton's
-/// method, with halving wherever Newton does not halve the bracket. Degrees 1 and 2 have closed forms.
+/// A distance squared along a cubic path has degree 6. Coefficients are double-doubles, so that a difference of squares
+/// (distance^2 - radius^2) keeps its meaning where it almost vanishes. Roots are isolated by the sign variations of the
+/// Bernstein coefficients, else by cutting the interval at the roots of the derivative, and polished by Newton's method
+/// inside their bracket. Degrees 1 and 2 have closed forms. Sources and error bounds: docs/exactness.md.
 ///
-/// What can be missed: a pair of roots between which the polynomial stays below
-///     B = 2^-76 * sum |c_k| duration^k
-/// in magnitude. Reason: the extremum between the pair is found to 2^-45 of the duration, so the value there errs by
-/// the second order, at most 2^-91 * 30 * sum; if the derivative's own pair was missed, the value varies by less than
-/// the derivative's bound times the duration, and so on down to degree 2: a factor of 6 * 5 * 4 * 3 in all. Double
-/// roots of quadratics are decided to 2^-99.
-///
-/// The work is bounded: at most 5 + 4 + 3 + 2 brackets of kMostRootSteps evaluations, four calls deep, no heap.
+/// A pair of roots may be missed when the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The
+/// work is bounded, without heap.
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
@@ -57,29 +46,18 @@ struct Times {
     double operator[](int i) const { return time[static_cast<std::size_t>(i)]; }
 };
 
-/// Every time inside (0, duration) at which p changes sign: within two ulp of an exact root of the given coefficients,
-/// or, where p is as flat as at a multiple root, at a place where |p| is below 2^-97 magnitude(). Between them p keeps
-/// its sign up to the bound B above. Where p touches zero without passing through it there is no time; none for the
-/// zero polynomial.
+/// Every time inside (0, duration) at which p changes sign, within two ulp of a root of the given coefficients or, at a
+/// multiple root, where |p| is below 2^-97 magnitude(). None where p only touches zero or is zero throughout.
 [[nodiscard]] Times sign_changes(const Polynomial& p);
 
-/// Every time in (from, to] at which p comes down from positive values to zero: roots with p > 0 before, also where it
-/// only touches (a touch counts when the rounded coefficients say so) and also at `to` itself. A start at p <= 0 is no
-/// such time. 0 <= from <= to <= duration; the times do not depend on where the interval is cut.
+/// Every time in (from, to] at which p falls from positive values to zero, or touches it (as the rounded coefficients
+/// say). 0 <= from <= to <= duration; the times do not depend on where the interval is cut.
 [[nodiscard]] Times down_crossings(const Polynomial& p, double from, double to);
 
-/// The first time in [from, to] at which p <= 0 while p is decreasing or has just decreased to zero:
-/// - p(from) > 0: the first of down_crossings;
-/// - p(from) <= 0: `from` if p decreases from there on; else p is followed upwards, and the time is that of the first
-///   maximum that is still <= 0, or, once p has become positive, the first of the down_crossings after that.
-/// Nothing when there is none; a constant is never decreasing.
-[[nodiscard]] std::optional<double> first_descent(const Polynomial& p, double from, double to);
-
-/// True when p is certainly positive on all of [0, to], by its Bernstein coefficients on it and on parts of
-/// it, in plain doubles. False decides nothing.
+/// True when p is certainly positive on [0, to], by Bernstein coefficients in plain doubles. False decides nothing.
 [[nodiscard]] bool is_certainly_positive(const Polynomial& p, double to);
 
-/// A vector of doubles or double-doubles.
+/// A vector of doubles (to cull) or double-doubles (to decide: |w|^2 - r^2 keeps an error of some 2^-100 |w|^2).
 template <class Scalar>
 struct VectorOf {
     Scalar x{};
@@ -115,7 +93,6 @@ template <class Scalar>
     detail::set_product(z, u.z, v.z);
     return x + y + z;
 }
-/// Products of equal or mixed kind.
 template <class Scalar, class Other>
 [[nodiscard]] Scalar dot_of(const VectorOf<Scalar>& u, const Other& v) {
     return u.x * v.x + u.y * v.y + u.z * v.z;
@@ -140,7 +117,7 @@ template <class Factor>
 template <class Scalar>
 using Coefficients = std::array<Scalar, Polynomial::kLargestDegree + 1>;
 
-/// The part of |w|^2 that does not depend on the start: the square of c[1] s + c[2] s^2 + c[3] s^3.
+/// With w(s) = p(s) - a for a path p: the part of |w|^2 that does not depend on a.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> squared_displacement(const Path& path) {
     Coefficients<Scalar> q{};
@@ -169,7 +146,7 @@ template <class Scalar>
     return q;
 }
 
-/// Scalar product of w with a fixed vector: height over a plane, or place along a line.
+/// Scalar product of w with a fixed vector: height over a plane, or position along a line.
 template <class Scalar, class Direction>
 [[nodiscard]] std::array<Scalar, 4> component_along(const Path& path, const VectorOf<Scalar>& start,
                                                     const Direction& direction) {

@@ -36,14 +36,14 @@ SphereSweep::SphereSweep(const Path& path, double radius)
       precise_squared_displacement_(ricochet::squared_displacement<DoubleDouble>(path)) {
     const double h = path.duration;
     hull_count_ = path.degree + 1;
-    enclose();
+    update_bounds();
     scale_ = std::max(max_abs(lower_), max_abs(upper_)) + radius;
     slack_ = kCandidateSlack * scale_;
-    reach_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
+    max_distance_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
 }
 
-/// The hull of the path until latest_, and its box.
-void SphereSweep::enclose() {
+/// Control points of the path until latest_, and their box.
+void SphereSweep::update_bounds() {
     const Vec3& start = path_.c[0];
     const double h = latest_;
     hull_ = {start, path_.position(h), start + (h / path_.degree) * path_.c[1],
@@ -60,7 +60,7 @@ void SphereSweep::shorten_to(double latest) {
     const double until = latest + 2.0 * kCandidateSlack * path_.duration;
     if (!(until < latest_)) return;
     latest_ = until;
-    enclose();
+    update_bounds();
 }
 
 bool SphereSweep::misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const {
@@ -92,7 +92,6 @@ bool SphereSweep::can_cull(const Vec3& a, const Vec3& b, const Vec3& c) const {
     return misses_box(a, b, c) || misses_plane(detail::filtered_cross(b - a, c - a), a);
 }
 
-// Where another surface ends the path, it comes nearest to most triangles at that end.
 bool SphereSweep::can_cull_at_end(const Vec3& a, const Vec3& b, const Vec3& c) const {
     const Vec3 away = separating_direction(hull(1), a, b, c);
     for (int i = 0; i < hull_count_; ++i) {
@@ -105,7 +104,6 @@ bool SphereSweep::starts_separated_from(const Vec3& a, const Vec3& b, const Vec3
     return squared_gap(path_.c[0], a, b, c) > (radius_ + slack_) * (radius_ + slack_);
 }
 
-// Along the direction it is beyond the radius, and its way gets further.
 double SphereSweep::separating_speed(const Vec3& a, const Vec3& b, const Vec3& c) const {
     if (path_.degree > 1) return 0.0;
     const Vec3 away = separating_direction(path_.c[0], a, b, c);
@@ -115,11 +113,11 @@ double SphereSweep::separating_speed(const Vec3& a, const Vec3& b, const Vec3& c
 }
 
 // The offset errs by some roundings of the largest coordinate.
-bool SphereSweep::is_separating_from(const ClosestPointOnTriangle& nearest_to_start, const Vec3& a, const Vec3& b,
+bool SphereSweep::is_separating_from(const ClosestPointOnTriangle& closest_to_start, const Vec3& a, const Vec3& b,
                                      const Vec3& c) const {
     if (path_.degree > 1) return false;
     const double largest = std::max({scale_, max_abs(a), max_abs(b), max_abs(c)});
-    return dot(nearest_to_start.offset, path_.c[1]) > kCandidateSlack * largest * length(path_.c[1]);
+    return dot(closest_to_start.offset, path_.c[1]) > kCandidateSlack * largest * length(path_.c[1]);
 }
 
 std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec3& b, const Vec3& c) const {
@@ -146,8 +144,8 @@ std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) cons
         const auto offset_at = [&](const Vec3& p) { return dot(n, p - plane.point) * n; };
         Extrema extrema;
         extrema.add_of_height(face_clearance(path_, height, 0.0, side));
-        const double reach = radius_ + kSeamSlack * (scale_ + max_abs(plane.point));
-        const OverlapEnd end = follow_overlap(path_, reach, extrema.sorted(), offset_at);
+        const double overlap = radius_ + kSeamSlack * (scale_ + max_abs(plane.point));
+        const OverlapEnd end = follow_overlap(path_, overlap, extrema.sorted(), offset_at);
         if (end.kind == OverlapEnd::kNever) return std::nullopt;
         if (end.kind == OverlapEnd::kStopped) return contact_at(end.time);
         from = end.time;
@@ -157,6 +155,8 @@ std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) cons
     return contact_at(crossings[0]);
 }
 
+// The distance from a convex set is convex along a line, so an end from which the segment recedes decides for all of
+// it.
 bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double tolerance, const Vec3& a,
                              const Vec3& b, const Vec3& c) {
     const double least = std::max(0.0, radius - tolerance);
@@ -168,7 +168,7 @@ bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double
         high.z < lower.z) {
         return true;
     }
-    // The end that seems nearer is likely to decide.
+    // The end that seems nearer probably decides.
     const bool from_q = squared_gap(q, a, b, c) <= squared_gap(p, a, b, c);
     const Vec3 away = separating_direction(from_q ? q : p, a, b, c);
     if (distance_lower_bound(away, p, a, b, c) > least && distance_lower_bound(away, q, a, b, c) > least) return true;

@@ -8,8 +8,8 @@ namespace {
 using std::size_t;
 
 /// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares it is made of:
-/// some 20 roundings on the way of a term; 64 u is used.
-constexpr double kDistanceFieldError = 0x1p-47;
+/// some 20 roundings of a term; 64 u is used.
+constexpr double kClearanceError = 0x1p-47;
 
 TriangleFeature edge_feature(int i) {
     return static_cast<TriangleFeature>(static_cast<int>(TriangleFeature::kEdgeAB) + i);
@@ -85,7 +85,7 @@ std::optional<SphereContact> SphereTriangleSweep::first() {
     return contact_at(*best_);
 }
 
-/// The face comes first, then the vertices, since what they find shortens the search along the edges, the costliest.
+/// Face and vertices first: what they find shortens the search along the edges, the costliest.
 void SphereTriangleSweep::search(double from) {
     best_.reset();
     limit_ = sphere_.latest_;
@@ -94,7 +94,7 @@ void SphereTriangleSweep::search(double from) {
     for (int i = 0; i < 3; ++i) search_edge(i, from);
 }
 
-void SphereTriangleSweep::offer(double time, TriangleFeature feature) {
+void SphereTriangleSweep::add_contact(double time, TriangleFeature feature) {
     if (best_ && (time > best_->time || (time == best_->time && rank(feature) >= rank(best_->feature)))) return;
     best_ = Candidate{time, feature};
     limit_ = std::min(limit_, time);
@@ -136,7 +136,7 @@ Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& hei
     return all;
 }
 
-/// True when some edge has the whole path on its outer side, so that no foot is on the face.
+/// True when some edge has the whole path on its outer side, so that no point of it projects onto the face.
 bool SphereTriangleSweep::certainly_passes_beside_face() const {
     const double normal_size = length(plane_.cross().magnitude);
     for (int i = 0; i < 3; ++i) {
@@ -155,21 +155,21 @@ bool SphereTriangleSweep::certainly_passes_beside_face() const {
     return false;
 }
 
-/// Is the foot of p's perpendicular on the face, or beyond its rim by no more than the seam slack?
-bool SphereTriangleSweep::foot_is_on_face(const Vec3& p) {
+/// True when p projects onto the face, or beside it by no more than the seam slack.
+bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     const auto& [a, b, c] = corners_;
     if (projects_into_triangle(p, a, b, c, *normal_)) return true;
     const double slack = seam_slack(p);
     for (int i = 0; i < 3; ++i) {
         const Vec3& from = corners_[static_cast<size_t>(i)];
         const Vec3& to = corners_[static_cast<size_t>(next(i))];
-        if (is_upright(closest_point_on_segment(p, from, to).offset, slack)) return true;
+        if (is_along_normal(closest_point_on_segment(p, from, to).offset, slack)) return true;
     }
     return false;
 }
 
-/// True when an offset from the triangle leans away from the normal by no more than the slack.
-bool SphereTriangleSweep::is_upright(const Vec3& offset, double slack) const {
+/// True when an offset from the triangle deviates from the normal by no more than the slack.
+bool SphereTriangleSweep::is_along_normal(const Vec3& offset, double slack) const {
     return length_squared(offset - dot(*normal_, offset) * *normal_) <= slack * slack;
 }
 
@@ -177,19 +177,19 @@ void SphereTriangleSweep::search_face(double from) {
     if (certainly_passes_beside_face() || !normal()) return;
     DoubleDouble scaled_radius;
     const auto height = height_over_face(scaled_radius);
-    if (abs(height[0]) <= scaled_radius && foot_is_on_face(path_.c[0])) starts_in_overlap_ = true;
+    if (abs(height[0]) <= scaled_radius && projects_onto_face(path_.c[0])) starts_in_overlap_ = true;
     for (const double time : face_crossings(height, scaled_radius, from)) {
         if (time > limit_) return;
-        if (!foot_is_on_face(path_.position(time))) continue;
-        offer(time, TriangleFeature::kFace);
+        if (!projects_onto_face(path_.position(time))) continue;
+        add_contact(time, TriangleFeature::kFace);
         return;
     }
 }
 
 /// Discards a point or line that the path cannot reach before the limit. `clearance` is of degree twice the path's.
 bool SphereTriangleSweep::certainly_clears(const Coefficients<double>& clearance, double start_distance) const {
-    const double extent = start_distance + sphere_.reach_;
-    const double margin = kDistanceFieldError * (extent * extent + radius_ * radius_);
+    const double extent = start_distance + sphere_.max_distance_;
+    const double margin = kClearanceError * (extent * extent + radius_ * radius_);
     if (path_.degree < 2) return quadratic_exceeds(clearance, margin, limit_);
     Polynomial p;
     p.degree = 2 * path_.degree;
@@ -224,9 +224,9 @@ std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int 
 
 SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const EdgeLine& line) const {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[static_cast<size_t>(line.first)]);
-    const auto place = component_along(path_, start, line.direction);
+    const auto along = component_along(path_, start, line.direction);
     const auto around_end = point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_);
-    return {polynomial(line_clearance(around_end, place, path_.degree)), place};
+    return {polynomial(line_clearance(around_end, along, path_.degree)), along};
 }
 
 /// Discards an edge by plain doubles: until the limit the path stays beyond one of its ends, or away from its line.
@@ -245,7 +245,7 @@ bool SphereTriangleSweep::certainly_misses_edge(int i) const {
         highest += std::max(0.0, along[k] * power);
     }
     const double distance = length(start);
-    const double margin = kDistanceFieldError * (distance + sphere_.reach_ + edge_length);
+    const double margin = kClearanceError * (distance + sphere_.max_distance_ + edge_length);
     if (highest < -margin || lowest > edge_length + margin) return true;
     const auto around = point_clearance(path_, sphere_.squared_displacement_, as_vector(start), radius_);
     return certainly_clears(line_clearance(around, along, path_.degree), distance);
@@ -255,15 +255,15 @@ void SphereTriangleSweep::search_edge(int i, double from) {
     if (certainly_misses_edge(i)) return;
     const std::optional<EdgeLine> line = edge_line(i);
     if (!line) return;
-    const auto [clearance, place] = edge_clearance(*line);
-    const auto is_on_edge = [&, &place = place](double time) {
-        const double m = evaluated(place, path_.degree, time);
+    const auto [clearance, along] = edge_clearance(*line);
+    const auto is_on_edge = [&, &along = along](double time) {
+        const double m = evaluated(along, path_.degree, time);
         return m >= 0.0 && m <= line->length;
     };
     if (clearance.coefficients[0].hi <= 0.0 && is_on_edge(0.0)) starts_in_overlap_ = true;
     for (const double time : down_crossings(clearance, from, limit_)) {
         if (!is_on_edge(time)) continue;
-        offer(time, edge_feature(i));
+        add_contact(time, edge_feature(i));
         return;
     }
 }
@@ -278,7 +278,7 @@ void SphereTriangleSweep::search_vertex(int i, double from) {
         polynomial(point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_));
     if (clearance.coefficients[0].hi <= 0.0) starts_in_overlap_ = true;
     const Times crossings = down_crossings(clearance, from, limit_);
-    if (crossings.count > 0) offer(crossings[0], vertex_feature(i));
+    if (crossings.count > 0) add_contact(crossings[0], vertex_feature(i));
 }
 
 std::span<const double> SphereTriangleSweep::distance_extrema(Extrema& extrema) {
@@ -299,9 +299,9 @@ std::optional<SphereContact> SphereTriangleSweep::search_from_overlap() {
         return closest_point_on_triangle(p, corners_[0], corners_[1], corners_[2]);
     };
     Extrema extrema;
-    const double reach = radius_ + kSeamSlack * (sphere_.scale_ + largest_coordinate_);
+    const double overlap = radius_ + kSeamSlack * (sphere_.scale_ + largest_coordinate_);
     const OverlapEnd end =
-        follow_overlap(path_, reach, distance_extrema(extrema), [&](const Vec3& p) { return nearest_to(p).offset; });
+        follow_overlap(path_, overlap, distance_extrema(extrema), [&](const Vec3& p) { return nearest_to(p).offset; });
     if (end.kind == OverlapEnd::kNever) return std::nullopt;
     if (end.kind == OverlapEnd::kStopped) {
         return contact_at({end.time, nearest_to(path_.position(end.time)).feature});
@@ -331,13 +331,13 @@ Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     return rounded(w - dot_of(w, line->direction) * line->direction);
 }
 
-/// An edge or vertex whose nearest point lies on the face's rim to rounding, straight below the centre, gives way to
-/// the face: its normal, and its time where the plane is reached at that time to rounding.
+/// A contact with an edge or vertex along the face's normal to rounding is reported as one with the face: with its
+/// normal, and with its time where the plane is reached at that time to rounding.
 SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
     const Vec3 p = path_.position(candidate.time);
     if (candidate.feature != TriangleFeature::kFace) {
         const Vec3 offset = offset_at(candidate);
-        const bool leans = !normal() || !is_upright(offset, seam_slack(p));
+        const bool leans = !normal() || !is_along_normal(offset, seam_slack(p));
         if (leans) {
             const Vec3 point =
                 rank(candidate.feature) == 2 ? corners_[static_cast<size_t>(index_of(candidate.feature))] : p - offset;

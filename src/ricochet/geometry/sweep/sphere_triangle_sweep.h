@@ -1,6 +1,5 @@
 /// \file
-/// The features of one triangle against one moving sphere: what SphereSweep does with a candidate that its cheap tests
-/// have not discarded.
+/// Private to SphereSweep: the narrow phase of one moving sphere against the features of one triangle.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +25,7 @@ namespace ricochet {
     return face_clearance(path, height, DoubleDouble(radius), side);
 }
 
-/// How a start in overlap goes on.
+/// How a sphere that starts in overlap continues.
 struct OverlapEnd {
     enum Kind {
         kStopped,  ///< the distance shrinks from `time` on, while it is at most the radius
@@ -61,18 +60,17 @@ private:
     int count_ = 0;
 };
 
-/// Follows a path that starts in overlap. `cuts` are the times, in order, at which the distance from the surface may
-/// have an extremum; offset_at(p) is the vector from the surface's nearest point to p. The squared distance from a
-/// convex set has a continuous derivative, so between two cuts it is monotone and its middle tells the direction.
-/// Distances up to `reach`, the radius plus its rounding, count as overlap.
+/// Follows a path that starts in overlap, which is a distance up to `radius` (with its rounding). `cuts` are the times,
+/// in order, at which the distance from the surface may have an extremum, so that it is monotone between two cuts and
+/// the middle tells its direction; offset_at(p) is the vector from the surface's closest point to p.
 template <class OffsetAt>
-[[nodiscard]] OverlapEnd follow_overlap(const Path& path, double reach, std::span<const double> cuts,
+[[nodiscard]] OverlapEnd follow_overlap(const Path& path, double radius, std::span<const double> cuts,
                                         const OffsetAt& offset_at) {
     double start = 0.0;
     for (std::size_t i = 0; i <= cuts.size(); ++i) {
         const double end = i < cuts.size() ? cuts[i] : path.duration;
         if (!(end > start)) continue;
-        if (start > 0.0 && length(offset_at(path.position(start))) > reach) return {OverlapEnd::kFree, start};
+        if (start > 0.0 && length(offset_at(path.position(start))) > radius) return {OverlapEnd::kFree, start};
         const double middle = start + 0.5 * (end - start);
         const Vec3 offset = offset_at(path.position(middle));
         const Vec3 velocity = path.velocity(middle);
@@ -84,7 +82,7 @@ template <class OffsetAt>
     return {};
 }
 
-/// One search; see SphereSweep::first_contact.
+/// One test; see SphereSweep::narrow_phase_contact.
 class SphereTriangleSweep {
 public:
     SphereTriangleSweep(const SphereSweep& sphere, const TrianglePlane& plane);
@@ -105,14 +103,14 @@ private:
     };
     struct EdgeClearance {
         Polynomial polynomial;              ///< squared distance from the line minus squared radius
-        std::array<DoubleDouble, 4> place;  ///< along the line, m from its start
+        std::array<DoubleDouble, 4> along;  ///< position along the line, m from its start
     };
 
     void search(double from);
     void search_face(double from);
     void search_edge(int i, double from);
     void search_vertex(int i, double from);
-    void offer(double time, TriangleFeature feature);
+    void add_contact(double time, TriangleFeature feature);
     [[nodiscard]] std::optional<SphereContact> search_from_overlap();
 
     [[nodiscard]] const std::optional<Vec3>& normal();
@@ -120,8 +118,8 @@ private:
     [[nodiscard]] Times face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,
                                        double from) const;
     [[nodiscard]] bool certainly_passes_beside_face() const;
-    [[nodiscard]] bool foot_is_on_face(const Vec3& p);
-    [[nodiscard]] bool is_upright(const Vec3& offset, double slack) const;
+    [[nodiscard]] bool projects_onto_face(const Vec3& p);
+    [[nodiscard]] bool is_along_normal(const Vec3& offset, double slack) const;
     [[nodiscard]] bool certainly_misses_edge(int i) const;
     [[nodiscard]] bool certainly_clears(const Coefficients<double>& clearance, double start_distance) const;
     [[nodiscard]] Polynomial polynomial(const Coefficients<DoubleDouble>& coefficients) const;
@@ -143,7 +141,7 @@ private:
     std::optional<Vec3> normal_;
     bool normal_is_known_ = false;
     std::optional<Candidate> best_;
-    double limit_;  ///< times after this one do not matter any more
+    double limit_;  ///< later contacts do not matter
     bool starts_in_overlap_ = false;
 };
 

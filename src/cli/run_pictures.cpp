@@ -167,7 +167,8 @@ void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
         camera_ = *style_.camera;
         camera_.up = up;
     } else if (folder.info.camera) {
-        camera_ = {folder.info.camera->position, folder.info.camera->target, up, folder.info.camera->fov_degrees};
+        camera_ = {folder.info.camera->position, folder.info.camera->target, up,
+                   folder.info.camera->field_of_view_degrees};
     } else {
         camera_ = automatic_camera(subject_, up, aspect);
     }

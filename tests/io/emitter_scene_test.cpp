@@ -7,10 +7,10 @@
 #include <iterator>
 
 #include "io/sample_scene.h"
-#include "ricochet/io/detail/particle_table.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/scene/context.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "ricochet/io/detail/particle_table.h"
+#include "ricochet/io/scene/context.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,161 @@
 #include "ricochet/io/run_folder.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
 
 #include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet {
+
+namespace {
+
+TEST(RunFiles, FrameNamesCarryTheStepWithSixDigitsOrMore) {
+    EXPECT_EQ(frame_file_name(0), "particles_000000.vtp");
+    EXPECT_EQ(frame_file_name(1234567), "particles_1234567.vtp");
+    EXPECT_EQ(step_of_frame_file("particles_000042.vtp"), 42U);
+    EXPECT_EQ(step_of_frame_file("particles_1234567.vtp"), 1234567U);
+    for (const char* other : {"particles_42.vtp", "particles_.vtp", "particles_00004x.vtp", "particles_000042.vtk",
+                              "my_particles_000042.vtp", "particles_0000042.vtp", "particles_-00042.vtp", ""}) {
+        EXPECT_FALSE(step_of_frame_file(other)) << other;
+    }
+}
+
+TEST(RunFiles, ContactFilesAreNamedLikeFramesAndNotTakenForThem) {
+    EXPECT_EQ(contact_file_name(42), "contacts_000042.vtp");
+    EXPECT_EQ(step_of_contact_file("contacts_1234567.vtp"), 1234567U);
+    EXPECT_FALSE(step_of_contact_file("contacts_42.vtp"));
+    EXPECT_FALSE(step_of_contact_file(frame_file_name(42)));
+    EXPECT_FALSE(step_of_frame_file(contact_file_name(42)));
+}
+
+TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
+    EXPECT_EQ(collider_file_name(3, "bunny"), "collider_03_bunny.vtp");
+    EXPECT_EQ(collider_file_name(0, "../a b"), "collider_00____a_b.vtp");
+    EXPECT_EQ(collider_file_name(112, ""), "collider_112.vtp");
+    EXPECT_EQ(collider_file_name(0, std::string(500, 'x')).size(), 80U + 16U);
+    for (const char* name : {"bunny", "../a b", "", "a_b_c"}) {
+        EXPECT_EQ(index_of_collider_file(collider_file_name(7, name)), 7U) << name;
+    }
+    for (const char* other :
+         {"collider_x.vtp", "collider_0.vtp", "collider_00 a.vtp", "collider_00_a.ply", "collider_"}) {
+        EXPECT_FALSE(index_of_collider_file(other)) << other;
+    }
+}
+
+TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
+    for (const char* own :
+         {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp", "collider_00_a.vtp",
+          "contacts.pvd", "contacts_000001.vtp", "particles_000001.vtp.123-4.partial",
+          "contacts_000001.vtp.123-4.partial", "summary.json.9-0.partial", "compare.json", "report.html", "cost.png",
+          "tunnelled.png.7-0.partial"}) {
+        EXPECT_TRUE(is_run_file(own)) << own;
+    }
+    for (const char* other :
+         {"notes.txt", "a.partial", "summary.json.partial", "summary.json.x-0.partial", "summary.json~", "contacts.txt",
+          "contacts_1.vtp", "my_contacts_000001.vtp", ".ricochet-run", "picture.png", "summary.json.9.partial", ""}) {
+        EXPECT_FALSE(is_run_file(other)) << other;
+    }
+}
+
+}  // namespace
+
+namespace {
+
+using test::TemporaryFolder;
+
+TEST(OutputDirectory, IsCreatedWithItsParentsAndMarked) {
+    const TemporaryFolder folder;
+    const OutputDirectory directory(folder.path("a/b/c"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("a/b/c") / kRunMarkerFile));
+}
+
+TEST(OutputDirectory, TakesAnEmptyFolder) {
+    const TemporaryFolder folder;
+    EXPECT_NO_THROW(OutputDirectory{folder.path("")});
+}
+
+TEST(OutputDirectory, RefusesAFolderWithForeignFilesAndLeavesItAlone) {
+    const TemporaryFolder folder;
+    (void)folder.write("summary.json", "mine");
+    EXPECT_THROW(OutputDirectory{folder.path("")}, InputError);
+    EXPECT_EQ(folder.read("summary.json"), "mine");
+    EXPECT_FALSE(std::filesystem::exists(folder.path(kRunMarkerFile)));
+}
+
+TEST(OutputDirectory, RefusesAFile) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(OutputDirectory{folder.write("file", "x")}, InputError);
+    EXPECT_THROW(OutputDirectory{folder.path("file") / "below"}, RunError);
+    EXPECT_EQ(folder.read("file"), "x");
+}
+
+TEST(OutputDirectory, ReplacesAnEarlierRunsFilesAndNothingElse) {
+    const TemporaryFolder folder;
+    { const OutputDirectory first(folder.path("")); }
+    for (const char* name : {"summary.json", "particles_000003.vtp", "collider_00_a.vtp", "run.json", "notes.txt",
+                             "particles_000003.vtp.77-0.partial", "picture.png"}) {
+        (void)folder.write(name, "x");
+    }
+    std::filesystem::create_directory(folder.path("particles.pvd"));
+    const OutputDirectory second(folder.path(""));
+    for (const char* gone : {"summary.json", "particles_000003.vtp", "collider_00_a.vtp", "run.json",
+                             "particles_000003.vtp.77-0.partial"}) {
+        EXPECT_FALSE(std::filesystem::exists(folder.path(gone))) << gone;
+    }
+    for (const char* kept : {"notes.txt", "picture.png", "particles.pvd", kRunMarkerFile}) {
+        EXPECT_TRUE(std::filesystem::exists(folder.path(kept))) << kept;
+    }
+}
+
+TEST(OutputDirectory, RemovesALinkAndNotWhatItPointsTo) {
+    const TemporaryFolder folder;
+    const TemporaryFolder elsewhere;
+    { const OutputDirectory first(folder.path("")); }
+    std::filesystem::create_symlink(elsewhere.write("precious", "x"), folder.path("summary.json"));
+    const OutputDirectory second(folder.path(""));
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(folder.path("summary.json"))));
+    EXPECT_EQ(elsewhere.read("precious"), "x");
+}
+
+TEST(OutputDirectory, RefusesAMarkerThatIsNotOurs) {
+    const TemporaryFolder folder;
+    (void)folder.write(kRunMarkerFile, "something else entirely");
+    (void)folder.write("summary.json", "mine");
+    EXPECT_THROW(OutputDirectory{folder.path("")}, InputError);
+    EXPECT_EQ(folder.read("summary.json"), "mine");
+    EXPECT_EQ(folder.read(kRunMarkerFile), "something else entirely");
+}
+
+TEST(OutputDirectory, BelongsToOneRunAtATime) {
+    const TemporaryFolder folder;
+    {
+        const OutputDirectory first(folder.path(""));
+        (void)folder.write("summary.json", "the first run's");
+        EXPECT_THROW(OutputDirectory{folder.path("")}, RunError);
+        EXPECT_EQ(folder.read("summary.json"), "the first run's");
+    }
+    EXPECT_NO_THROW(OutputDirectory{folder.path("")});
+}
+
+TEST(OutputDirectory, SaysWhyItCannotBeWritten) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    const TemporaryFolder folder;
+    std::filesystem::permissions(folder.path(""),
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    try {
+        const OutputDirectory directory(folder.path("below"));
+        ADD_FAILURE() << "was created";
+    } catch (const RunError& error) {
+        EXPECT_NE(std::string(error.what()).find("Permission denied"), std::string::npos) << error.what();
+    }
+    std::filesystem::permissions(folder.path(""), std::filesystem::perms::owner_all);
+}
+
+}  // namespace
+
 namespace {
 
 using test::TemporaryFolder;
@@ -16,14 +166,14 @@ TEST(RunInfo, ReadsBackWhatWasWritten) {
     info.version = "0.1.0";
     info.scene = "scenes/a \"b\".json";
     info.up = {0, 1, 0};
-    info.camera = CameraInfo{{1, 2, 3}, {0, 0, 0.1}, 40.0};
+    info.camera = CameraDescription{{1, 2, 3}, {0, 0, 0.1}, std::nullopt, 40.0};
     info.colliders = {{"floor", "plane", "collider_00_floor.vtp", 3}};
     const RunInfo read = read_run_info(folder.write("run.json", run_info_text(info)));
     EXPECT_EQ(read.scene, info.scene);
     EXPECT_EQ(read.up, info.up);
     ASSERT_TRUE(read.camera);
     EXPECT_EQ(read.camera->target, info.camera->target);
-    EXPECT_EQ(read.camera->fov_degrees, 40.0);
+    EXPECT_EQ(read.camera->field_of_view_degrees, 40.0);
     ASSERT_EQ(read.colliders.size(), 1U);
     EXPECT_EQ(read.colliders[0].material, 3U);
 }
@@ -61,4 +211,5 @@ TEST(RunFolder, RefusesAFolderWithoutFramesAndNoFolder) {
 }
 
 }  // namespace
+
 }  // namespace ricochet

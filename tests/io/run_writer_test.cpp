@@ -280,7 +280,7 @@ TEST(RunInfo, UpIsAgainstGravityAlongTheNearestAxis) {
     EXPECT_EQ(run_info_of(scene).up, Vec3(0, 1, 0));
     scene.camera = CameraDescription{{1, 2, 3}, {0, 0, 0}, Vec3{0, 0, 4}, 40.0};
     EXPECT_EQ(run_info_of(scene).up, Vec3(0, 0, 1));
-    EXPECT_EQ(run_info_of(scene).camera->fov_degrees, 40.0);
+    EXPECT_EQ(run_info_of(scene).camera->field_of_view_degrees, 40.0);
 }
 
 }  // namespace

@@ -13,9 +13,9 @@
 #include "io/sample_scene.h"
 #include "io/spring_scene.h"
 #include "ricochet/core/random.h"
-#include "ricochet/io/detail/json_parser.h"
-#include "ricochet/io/detail/scene_check.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/document.h"
 #include "support/counts.h"
 
 namespace ricochet {

@@ -13,7 +13,7 @@ namespace {
 /// Particles per unit of parallel work.
 constexpr std::size_t kBlock = 1 << 14;
 
-// The arrays of a frame that is filled, each with the memory of the one that stood in its place before.
+// The arrays of a frame that is filled, each with the memory of the one that it replaces.
 class ArrayList {
 public:
     ArrayList(std::vector<VtkArray>& arrays, std::size_t length) : arrays_(arrays), length_(length) {}
@@ -111,14 +111,14 @@ void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
 
-std::vector<const SpringFace*> standing_faces(const SpringNetwork& springs, const std::vector<SpringFace>& faces) {
-    std::vector<const SpringFace*> standing;
+std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const std::vector<SpringFace>& faces) {
+    std::vector<const SpringFace*> intact;
     for (const SpringFace& face : faces) {
-        const bool stands = std::all_of(face.springs.begin(), face.springs.end(),
-                                        [&](std::uint32_t spring) { return springs.is_intact(spring); });
-        if (stands) standing.push_back(&face);
+        const bool is_intact = std::all_of(face.springs.begin(), face.springs.end(),
+                                           [&](std::uint32_t spring) { return springs.is_intact(spring); });
+        if (is_intact) intact.push_back(&face);
     }
-    return standing;
+    return intact;
 }
 
 // Its particles are there, since its springs are.
@@ -178,8 +178,8 @@ void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const A
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
                  const std::vector<SpringFace>& faces) {
     const std::vector<std::uint32_t> order = particles.order_by_id();
-    std::vector<std::uint32_t> place(order.size());  // in the frame
-    for (std::uint32_t k = 0; k < order.size(); ++k) place[order[k]] = k;
+    std::vector<std::uint32_t> row(order.size());  // in the frame
+    for (std::uint32_t k = 0; k < order.size(); ++k) row[order[k]] = k;
     std::vector<double> stretch(springs.springs().size(), 0.0);
     for (const SpringNetwork::Bond& bond : springs.bonds()) {
         const double rest_length = springs.springs()[bond.spring].rest_length;
@@ -193,17 +193,17 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
         stretches.push_back(0.0);
     }
     std::vector<bool> is_in_cloth(stretch.size(), false);
-    const std::vector<const SpringFace*> standing = standing_faces(springs, faces);
-    for (const SpringFace* face : standing) {
+    const std::vector<const SpringFace*> intact = intact_faces(springs, faces);
+    for (const SpringFace* face : intact) {
         for (const std::uint32_t spring : face->springs) is_in_cloth[spring] = true;
     }
     for (const SpringNetwork::Bond& bond : springs.bonds()) {
         if (is_in_cloth[bond.spring] || springs.springs()[bond.spring].resists_bending) continue;
-        frame.lines.push_back({place[bond.a], place[bond.b]});
+        frame.lines.push_back({row[bond.a], row[bond.b]});
         numbers.push_back(bond.spring);
         stretches.push_back(stretch[bond.spring]);
     }
-    for (const SpringFace* face : standing) {
+    for (const SpringFace* face : intact) {
         frame.triangles.push_back(triangle_of(*face, frame));
         numbers.push_back(-1);
         const auto& [a, b, c] = face->springs;

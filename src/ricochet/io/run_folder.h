@@ -62,8 +62,8 @@ inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFil
 [[nodiscard]] bool is_run_file(std::string_view name);
 
 /// Takes a folder for one run. The folder must be new, empty, or carry an earlier run's marker; of an earlier run only
-/// the files that a run writes are removed (is_run_file()), everything else stays. The folder is locked while this object
-/// lives; the lock goes with the process, however that ends.
+/// the files that a run writes are removed (is_run_file()), everything else stays. The folder is locked while this
+/// object lives; the lock goes with the process, however that ends.
 class OutputDirectory {
 public:
     /// Creates the folder (and its parents) where missing, marks and locks it, and removes an earlier run's files.

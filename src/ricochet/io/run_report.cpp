@@ -34,7 +34,8 @@ RunInfo run_info_of(const Json& json) {
     info.scene = json.at("scene").get<std::string>();
     info.up = vec3_of(json.at("up"));
     if (const Json& camera = json.at("camera"); !camera.is_null()) {
-        info.camera = {vec3_of(camera.at("position")), vec3_of(camera.at("target")), camera.at("fov").get<double>()};
+        info.camera = {vec3_of(camera.at("position")), vec3_of(camera.at("target")), info.up,
+                       camera.at("fov").get<double>()};
     }
     for (const Json& collider : json.at("colliders")) {
         info.colliders.push_back({collider.at("name").get<std::string>(), collider.at("type").get<std::string>(),
@@ -46,10 +47,7 @@ RunInfo run_info_of(const Json& json) {
 
 // The axis that points most against the uniform forces; z where there are none.
 Vec3 upward_axis(const SimulationSetup& setup) {
-    Vec3 fall;
-    for (const auto& force : setup.forces) {
-        if (force->is_uniform()) fall += force->acceleration({Vec3{}, Vec3{}, 1.0, 0.0, 0.0});
-    }
+    const Vec3 fall = uniform_acceleration(setup);
     Vec3 up{0, 0, 1};
     for (int axis = 0; axis < 3; ++axis) {
         if (std::fabs(fall[axis]) < max_abs(fall) || fall[axis] == 0.0) continue;
@@ -65,10 +63,8 @@ RunInfo run_info_of(const SceneDescription& scene) {
     RunInfo info;
     info.scene = scene.file;
     info.up = upward_axis(scene.setup);
-    if (scene.camera) {
-        info.camera = CameraInfo{scene.camera->position, scene.camera->target, scene.camera->field_of_view_degrees};
-        if (scene.camera->up) info.up = normalized(*scene.camera->up);
-    }
+    info.camera = scene.camera;
+    if (scene.camera && scene.camera->up) info.up = normalized(*scene.camera->up);
     return info;
 }
 
@@ -81,7 +77,7 @@ std::string run_info_text(const RunInfo& info) {
     if (info.camera) {
         json["camera"] = {{"position", json_of(info.camera->position)},
                           {"target", json_of(info.camera->target)},
-                          {"fov", info.camera->fov_degrees}};
+                          {"fov", info.camera->field_of_view_degrees}};
     }
     json["colliders"] = Json::array();
     for (const ColliderInfo& collider : info.colliders) {

@@ -16,13 +16,6 @@
 
 namespace ricochet {
 
-/// Where a picture is taken from.
-struct CameraInfo {
-    Vec3 position;              ///< m
-    Vec3 target;                ///< m
-    double fov_degrees = 35.0;  ///< vertical field of view
-};
-
 /// One collider of the run.
 struct ColliderInfo {
     std::string name;
@@ -33,10 +26,10 @@ struct ColliderInfo {
 
 /// Everything that run.json says.
 struct RunInfo {
-    std::string version;  ///< of ricochet
-    std::string scene;    ///< the scene file as it was named
-    Vec3 up{0, 0, 1};     ///< against gravity, along the nearest axis
-    std::optional<CameraInfo> camera;
+    std::string version;                      ///< of ricochet
+    std::string scene;                        ///< the scene file as it was named
+    Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis
+    std::optional<CameraDescription> camera;  ///< its `up` is the one above
     std::vector<ColliderInfo> colliders;
 };
 

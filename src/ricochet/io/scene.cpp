@@ -4,13 +4,11 @@
 
 #include <utility>
 
-#include "ricochet/io/detail/diagnostics.h"
-#include "ricochet/io/detail/fingerprint.h"
-#include "ricochet/io/detail/json_parser.h"
-#include "ricochet/io/detail/scene_builder.h"
-#include "ricochet/io/detail/scene_check.h"
-#include "ricochet/io/detail/scene_files.h"
-#include "ricochet/io/detail/scene_override.h"
+#include "ricochet/io/scene/context.h"
+#include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/document.h"
+#include "ricochet/io/scene/files.h"
+#include "ricochet/io/scene/keys.h"
 
 namespace ricochet {
 namespace {
@@ -21,6 +19,14 @@ std::string summary_of(const std::vector<std::string>& messages) {
 }
 
 }  // namespace
+
+Vec3 uniform_acceleration(const SimulationSetup& setup) {
+    Vec3 sum;
+    for (const auto& force : setup.forces) {
+        if (force->is_uniform()) sum += force->acceleration({Vec3{}, Vec3{}, 1.0, 0.0, 0.0});
+    }
+    return sum;
+}
 
 SceneError::SceneError(std::vector<std::string> messages)
     : InputError(summary_of(messages)), messages_(std::move(messages)) {}

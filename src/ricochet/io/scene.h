@@ -36,10 +36,13 @@ struct SceneDescription {
     OutputOptions output;
     std::optional<CameraDescription> camera;
     std::string file;                   ///< as it was named
-    std::vector<std::string> warnings;  ///< one line each, with file and place
+    std::vector<std::string> warnings;  ///< one line each, with file and source location
     /// Hash of all that decides the run (not of output and camera): a run may be resumed where it is the same.
     std::uint64_t fingerprint = 0;
 };
+
+/// Sum of the accelerations that are the same everywhere, m/s^2: which way things fall. Zero where there are none.
+[[nodiscard]] Vec3 uniform_acceleration(const SimulationSetup& setup);
 
 /// All that is wrong with a scene.
 class SceneError : public InputError {

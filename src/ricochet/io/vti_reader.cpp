@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/io/detail/scene_files.h"
-#include "ricochet/io/detail/suggestion.h"
+#include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/files.h"
 #include "ricochet/io/vtk_xml.h"
 
 namespace ricochet {

@@ -57,7 +57,7 @@ private:
     std::unique_ptr<std::FILE, Close> file_;
 };
 
-// One array's place in the file, as the header says it.
+// Where one array is in the file, as the header says it.
 struct ArrayHeader {
     std::string section;
     std::string type;
@@ -188,19 +188,19 @@ public:
 
     template <typename T>
     std::vector<T> read(const ArrayHeader& array, std::uint64_t count) {
-        const std::uint64_t place = data_start_ + array.offset;
+        const std::uint64_t position = data_start_ + array.offset;
         std::uint64_t bytes = 0;
         if (array.offset > file_.size()) refuse(path_, fmt::format("array {} starts past the end", array.name));
-        file_.read(place, &bytes, sizeof bytes);
+        file_.read(position, &bytes, sizeof bytes);
         if (bytes % sizeof(T) != 0 || bytes / sizeof(T) != count) {
             refuse(path_, fmt::format("array {} has {} bytes at byte {}, not {} entries of {}", array.name, bytes,
-                                      place, count, sizeof(T)));
+                                      position, count, sizeof(T)));
         }
-        if (bytes > file_.size() - place - sizeof bytes) {
-            refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, place));
+        if (bytes > file_.size() - position - sizeof bytes) {
+            refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, position));
         }
         std::vector<T> values(static_cast<std::size_t>(count));
-        file_.read(place + sizeof bytes, values.data(), bytes);
+        file_.read(position + sizeof bytes, values.data(), bytes);
         return values;
     }
 

@@ -26,8 +26,8 @@ struct XmlTag {
     std::map<std::string, std::string, std::less<>> attributes;
     bool closed = false;    ///< <name/>
     std::string_view text;  ///< between this tag and the next
-    std::size_t begin = 0;  ///< place of the tag in the text, bytes
-    std::size_t end = 0;    ///< place after it
+    std::size_t begin = 0;  ///< where the tag begins in the text, bytes
+    std::size_t end = 0;    ///< the byte after it
 };
 
 /// Cuts a text into tags. The text must outlive it and its tags.

@@ -1,0 +1,284 @@
+// What particles carry besides position and motion: attributes, looks and their curves over life.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+// Keys of looks, as emitters and particles name them, with their columns.
+struct Look {
+    std::string_view key;
+    std::string_view column;
+};
+constexpr Look kEmitterLooks[] = {
+    {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"particle_size", kSizeAttribute}};
+constexpr Look kParticleLooks[] = {
+    {"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
+constexpr Look kCurveLooks[] = {{"color", kColorAttribute}, {"opacity", kOpacityAttribute}, {"size", kSizeAttribute}};
+
+const ObjectSpec& life_curves_spec() {
+    static const ObjectSpec spec = object<Unbound>(
+        "curves over life",
+        "Factors for what a particle was born with, as its age goes on; evaluated where a state is written, never "
+        "stored. In `over_life` a key's `time` is the part of the lifetime that has passed, from 0 to 1; in `over_age` "
+        "it is the age in s.",
+        {{"color", ValueType::object, "Of the colour, for red, green and blue.", &vector_curve_spec()},
+         {"opacity", ValueType::object, "Of the opacity.", &number_curve_spec()},
+         {"size", ValueType::object, "Of the size drawn.", &number_curve_spec()},
+         {"attributes", ValueType::table, "Of attributes of one component, by name.", &number_curve_spec()},
+         {"vector_attributes", ValueType::table, "Of attributes of three components, by name.", &vector_curve_spec()}});
+    return spec;
+}
+
+const AttributeDescription* find_declared(const SimulationSetup& setup, std::string_view name) {
+    const auto found = std::find_if(setup.attributes.begin(), setup.attributes.end(),
+                                    [&](const AttributeDescription& attribute) { return attribute.name == name; });
+    return found == setup.attributes.end() ? nullptr : &*found;
+}
+
+// Null pointer after reporting.
+const AttributeDescription* declared(const SceneContext& context, const SimulationSetup& setup,
+                                     const SourceLocation& location, const std::string& path, const std::string& name) {
+    const AttributeDescription* found = find_declared(setup, name);
+    if (found != nullptr && !looks_attribute(name)) return found;
+    std::vector<std::string_view> names;
+    for (const AttributeDescription& attribute : setup.attributes) {
+        if (!looks_attribute(attribute.name)) names.push_back(attribute.name);
+    }
+    context.diagnostics().error(location, path, unknown_name("attribute", name, names));
+    return nullptr;
+}
+
+void declare_look(SimulationSetup& setup, std::string_view column) {
+    if (find_declared(setup, column) == nullptr) setup.attributes.push_back(*looks_attribute(column));
+}
+
+void declare_used(const ObjectView& view, const Look& look, SimulationSetup& setup) {
+    if (view.has(look.key)) declare_look(setup, look.column);
+}
+
+std::optional<Vec3> three_numbers(const JsonNode& node) {
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 3) return std::nullopt;
+    Vec3 value;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto number = (*items)[static_cast<std::size_t>(axis)].number();
+        if (!number) return std::nullopt;
+        value[axis] = *number;
+    }
+    return value;
+}
+
+// A value of so many components; nothing where the node is none.
+std::optional<Vec3> value_of(const JsonNode& node, int components) {
+    if (components == 3) return three_numbers(node);
+    if (const auto number = node.number()) return Vec3{*number, 0.0, 0.0};
+    return std::nullopt;
+}
+
+// The same, or [mean, spread].
+std::optional<AttributeSpread> spread_of(const JsonNode& node, int components) {
+    if (const auto value = value_of(node, components)) return AttributeSpread{{}, *value, {}};
+    const JsonNode::Array* items = node.array();
+    if (items == nullptr || items->size() != 2) return std::nullopt;
+    const auto mean = value_of((*items)[0], components);
+    const auto spread = value_of((*items)[1], components);
+    if (!mean || !spread) return std::nullopt;
+    return AttributeSpread{{}, *mean, *spread};
+}
+
+std::string shape_words(int components, bool spread) {
+    if (components == 1) return spread ? "a number or [mean, spread]" : "a number";
+    return spread ? "[x, y, z] or [[x, y, z], [spread, spread, spread]]" : "[x, y, z]";
+}
+
+void build_declared(const SceneContext& context, const NamedObject& named, SimulationSetup& setup) {
+    const ObjectView& view = named.view;
+    auto attribute = view.read<AttributeDescription>();
+    attribute.name = named.name;
+    if (is_own_array(named.name) || looks_attribute(named.name)) {
+        context.diagnostics().error(named.name_location, view.path(),
+                                    "the name is one of the particles' own, expected another one");
+        return;
+    }
+    if (attribute.components != 3 && attribute.components != 1) {
+        context.error(view, "components", fmt::format("found {}, expected 1 or 3", attribute.components));
+        attribute.components = 1;
+    }
+    if (view.has("default")) {
+        const auto value = value_of(view.node("default"), attribute.components);
+        if (!value) {
+            context.error(view, "default",
+                          fmt::format("found {}, expected {} for {} components", described(view.node("default")),
+                                      shape_words(attribute.components, false), attribute.components));
+        }
+        attribute.fallback = value.value_or(Vec3{});
+    }
+    setup.attributes.push_back(std::move(attribute));
+}
+
+LifeCurve scalar_curve(const SceneContext& context, const ObjectView& view, std::string name, bool of_lifetime) {
+    const KeyedCurve<double> curve = number_curve_of(view, context.diagnostics());
+    std::vector<CurveKey<Vec3>> keys;
+    for (const CurveKey<double>& key : curve.keys()) keys.push_back({key.time, {key.value, key.value, key.value}});
+    return {std::move(name), KeyedCurve<Vec3>(std::move(keys), curve.interpolation(), curve.ends()), of_lifetime};
+}
+
+void read_named_curves(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                       int components, bool of_lifetime, EmitterDescription& emitter) {
+    for (const NamedObject& named : view.named_objects(components == 3 ? "vector_attributes" : "attributes")) {
+        const ObjectView& curve = named.view;
+        const auto* attribute = declared(context, setup, named.name_location, curve.path(), named.name);
+        if (attribute == nullptr || curve.is_absent()) continue;
+        if (attribute->components != components) {
+            context.diagnostics().error(
+                named.name_location, curve.path(),
+                fmt::format("the attribute has {} components, it belongs into \"{}\"", attribute->components,
+                            components == 3 ? "attributes" : "vector_attributes"));
+        } else if (components == 3) {
+            emitter.curves.push_back({named.name, vector_curve_of(curve, context.diagnostics()), of_lifetime});
+        } else {
+            emitter.curves.push_back(scalar_curve(context, curve, named.name, of_lifetime));
+        }
+    }
+}
+
+void read_curves(const SceneContext& context, const SimulationSetup& setup, const ObjectView& owner, const char* key,
+                 EmitterDescription& emitter) {
+    if (!owner.has(key)) return;
+    const bool of_lifetime = std::string_view(key) == "over_life";
+    const ObjectView view = owner.object(key);
+    if (of_lifetime && !owner.has("lifetime")) {
+        context.error(owner, key, "only goes together with the key \"lifetime\"; over_age needs none");
+    }
+    if (view.has("color")) {
+        emitter.curves.push_back(
+            {std::string(kColorAttribute), vector_curve_of(view.object("color"), context.diagnostics()), of_lifetime});
+    }
+    for (const std::string_view look : {kOpacityAttribute, kSizeAttribute}) {
+        if (view.has(look)) {
+            emitter.curves.push_back(scalar_curve(context, view.object(look), std::string(look), of_lifetime));
+        }
+    }
+    read_named_curves(context, setup, view, 1, of_lifetime, emitter);
+    read_named_curves(context, setup, view, 3, of_lifetime, emitter);
+}
+
+// Gives every value of the key "attributes" to use(attribute, value), which returns false where the value is not of
+// the attribute's shape: that is reported.
+template <class Use>
+void for_each_attribute(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view, bool spread,
+                        const Use& use) {
+    const JsonNode::Object* members = view.node("attributes").object();
+    if (members == nullptr) return;
+    for (const JsonMember& member : *members) {
+        const std::string path = path_of_key(view.path_of("attributes"), member.key);
+        const auto* attribute = declared(context, setup, member.key_location, path, member.key);
+        if (attribute == nullptr || member.value.is_null() || use(*attribute, member.value)) continue;
+        context.diagnostics().error(
+            member.value.location, path,
+            fmt::format("found {}, expected {}", described(member.value), shape_words(attribute->components, spread)));
+    }
+}
+
+}  // namespace
+
+const ObjectSpec& attribute_spec() {
+    static const ObjectSpec spec = object<AttributeDescription>(
+        "attribute", "A value of your own that every particle carries, is written to frames and goes into no force.",
+        {{"components", &AttributeDescription::components, between(1.0, 3.0), "", "1, or 3 for a vector."},
+         {"default", ValueType::quantity, kCoordinate, "", "What particles have that nobody gives another value.",
+          Without{"0"}}});
+    return spec;
+}
+
+std::vector<KeySpec> emitter_look_keys() {
+    const Fields<Unbound> fields = {
+        {"color", ValueType::vector_pair, kFraction, "",
+         "Red, green and blue, 0 to 1 (linear light); what spreads beyond is clamped.",
+         Without{"[1, 1, 1] where other particles have colours; no column otherwise"}},
+        {"opacity", ValueType::pair, kFraction, "",
+         "How much it covers what is behind, 0 to 1; what spreads beyond is clamped.",
+         Without{"1 where others have one; no column otherwise"}},
+        {"particle_size", ValueType::pair, kNotNegative, "m", "Radius that is drawn; collisions use particle_radius.",
+         LowEnd{kNotNegative}, Without{"particle_radius"}},
+        {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
+         Without{"their defaults"}},
+        {"over_life", ValueType::object, "Factors over the lifetime; keys from 0 (birth) to 1 (end of life).",
+         &life_curves_spec(), Without{"none"}},
+        {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
+    return {fields.begin(), fields.end()};
+}
+
+std::vector<KeySpec> particle_look_keys() {
+    const Fields<Unbound> fields = {
+        {"color", ValueType::vector, kFraction, "", "Red, green and blue, 0 to 1 (linear light).",
+         Without{"[1, 1, 1] where others have colours"}},
+        {"opacity", ValueType::number, kFraction, "", "How much it covers what is behind.",
+         Without{"1 where others have one"}},
+        {"size", ValueType::number, kNotNegative, "m", "Radius that is drawn.", Without{"its radius"}},
+        {"attributes", ValueType::quantity_table, kCoordinate, "",
+         "Values of the scene's `attributes`, by name; no spread.", Without{"their defaults"}}};
+    return {fields.begin(), fields.end()};
+}
+
+void build_attributes(const SceneContext& context, SimulationSetup& setup) {
+    for (const NamedObject& named : context.root().named_objects("attributes")) build_declared(context, named, setup);
+    for (const ObjectView& view : context.objects("emitters")) {
+        for (const Look& look : kEmitterLooks) declare_used(view, look, setup);
+        for (const char* const key : {"over_life", "over_age"}) {
+            if (!view.has(key)) continue;
+            for (const Look& look : kCurveLooks) declare_used(view.object(key), look, setup);
+        }
+    }
+    for (const ObjectView& view : context.objects("particles")) {
+        for (const Look& look : kParticleLooks) declare_used(view, look, setup);
+    }
+}
+
+void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                EmitterDescription& emitter) {
+    for (const Look& look : kEmitterLooks) {
+        if (!view.has(look.key)) continue;
+        AttributeSpread spread =
+            spread_of(view.node(look.key), look.key == "color" ? 3 : 1).value_or(AttributeSpread{});
+        spread.name = look.column;
+        emitter.attributes.push_back(std::move(spread));
+    }
+    for_each_attribute(context, setup, view, true, [&](const AttributeDescription& attribute, const JsonNode& node) {
+        auto spread = spread_of(node, attribute.components);
+        if (!spread) return false;
+        spread->name = attribute.name;
+        emitter.attributes.push_back(std::move(*spread));
+        return true;
+    });
+    read_curves(context, setup, view, "over_life", emitter);
+    read_curves(context, setup, view, "over_age", emitter);
+}
+
+std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
+                                            const ObjectView& view) {
+    std::vector<AttributeValue> values(setup.attributes.size(), missing_attribute());
+    const auto set = [&](const AttributeDescription* column, const Vec3& value) {
+        values[static_cast<std::size_t>(column - setup.attributes.data())] = value;
+    };
+    for (const Look& look : kParticleLooks) {
+        if (!view.has(look.key)) continue;
+        const auto value = value_of(view.node(look.key), look.key == "color" ? 3 : 1);
+        if (value) set(find_declared(setup, look.column), *value);
+    }
+    for_each_attribute(context, setup, view, false, [&](const AttributeDescription& attribute, const JsonNode& node) {
+        const auto value = value_of(node, attribute.components);
+        if (value) set(&attribute, *value);
+        return value.has_value();
+    });
+    return values;
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,87 @@
+#include "ricochet/io/scene/context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+
+namespace ricochet::detail {
+
+SceneContext::SceneContext(const JsonNode& root, std::filesystem::path folder, Diagnostics& diagnostics)
+    : root_(root, scene_spec(), ""), folder_(std::move(folder)), diagnostics_(diagnostics) {}
+
+void SceneContext::error(const ObjectView& view, std::string_view key, const std::string& what) const {
+    diagnostics_.error(view.location_of(key), view.path_of(key), what);
+}
+
+void SceneContext::error(const ObjectView& view, const std::string& what) const {
+    diagnostics_.error(view.location(), view.path(), what);
+}
+
+void SceneContext::warn(const ObjectView& view, std::string_view key, const std::string& what) const {
+    diagnostics_.warning(view.location_of(key), view.path_of(key), what);
+}
+
+void SceneContext::warn(const ObjectView& view, const std::string& what) const {
+    diagnostics_.warning(view.location(), view.path(), what);
+}
+
+std::filesystem::path SceneContext::file_of(const ObjectView& view) const {
+    return (folder_ / view.text("file")).lexically_normal();
+}
+
+std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& view) {
+    if (!view.has("file")) return nullptr;
+    try {
+        return meshes_.load(file_of(view));
+    } catch (const InputError& problem) {
+        error(view, "file", problem.what());
+        return nullptr;
+    }
+}
+
+std::shared_ptr<const TriangleMesh> SceneContext::placed_mesh(const ObjectView& view, std::string_view key,
+                                                              const TriangleMesh& mesh,
+                                                              const Placement& placement) const {
+    auto world = std::make_shared<const TriangleMesh>(transformed(mesh, placement));
+    const bool is_in_range = std::all_of(world->vertices.begin(), world->vertices.end(), [](const Vec3& v) {
+        return is_finite(v) && max_abs(v) <= kLargestCoordinate;
+    });
+    if (is_in_range) return world;
+    error(view, key, fmt::format("a placed vertex is not finite or beyond {} m", kLargestCoordinate));
+    return nullptr;
+}
+
+const MeshGroups* SceneContext::load_groups(const ObjectView& view) {
+    if (!view.has("file")) return nullptr;
+    try {
+        return &meshes_.groups(file_of(view));
+    } catch (const InputError&) {
+        return nullptr;  // load_mesh() says why
+    }
+}
+
+std::string SceneContext::unique_name(const ObjectView& view, std::size_t index, std::string_view kind,
+                                      std::set<std::string>& taken) const {
+    std::string name = view.text("name");
+    if (name.empty()) name = fmt::format("{}{}", view.type().empty() ? kind : view.type(), index);
+    if (!taken.insert(name).second) {
+        error(
+            view, "name",
+            fmt::format("the name \"{}\" is taken by another {}, expected one of its own", printable(name, 60), kind));
+    }
+    return name;
+}
+
+std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& known) {
+    const std::string unknown = fmt::format("there is no {} \"{}\"", kind, printable(name, 60));
+    if (known.empty()) return unknown + ", the scene has none";
+    const std::string help = did_you_mean(nearest_names(name, known));
+    return help.empty() ? fmt::format("{}, known: {}", unknown, quoted_list(known)) : unknown + "; " + help;
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,190 @@
+/// \file
+/// The parts of a scene: the table of keys of each, what builds each, and what all of these need.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/transform.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/frame_tree.h"
+#include "ricochet/dynamics/keyed_curve.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/files.h"
+#include "ricochet/io/scene/object_view.h"
+
+namespace ricochet::detail {
+
+/// Where the document and its files are, and where to report.
+class SceneContext {
+public:
+    SceneContext(const JsonNode& root, std::filesystem::path folder, Diagnostics& diagnostics);
+
+    [[nodiscard]] const ObjectView& root() const { return root_; }
+    [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
+    /// True when something was refused already; defaults may stand instead of it.
+    [[nodiscard]] bool failed() const { return diagnostics_.failed(); }
+
+    /// The objects of one of the scene's lists, with the paths that messages give them.
+    [[nodiscard]] std::vector<ObjectView> objects(std::string_view list) const { return root_.objects(list); }
+
+    void error(const ObjectView& view, std::string_view key, const std::string& what) const;
+    void error(const ObjectView& view, const std::string& what) const;
+    void warn(const ObjectView& view, std::string_view key, const std::string& what) const;
+    void warn(const ObjectView& view, const std::string& what) const;
+
+    /// The path that the key "file" means.
+    [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
+    /// The mesh that the key "file" names; null pointer after reporting why there is none.
+    [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
+    /// A mesh in world coordinates; null pointer after reporting, for this key, that a vertex is out of range.
+    [[nodiscard]] std::shared_ptr<const TriangleMesh> placed_mesh(const ObjectView& view, std::string_view key,
+                                                                  const TriangleMesh& mesh,
+                                                                  const Placement& placement) const;
+    /// The groups of the mesh that the key "file" names; null pointer where load_mesh() gives one.
+    [[nodiscard]] const MeshGroups* load_groups(const ObjectView& view);
+
+    /// The name given, or one made from the type and the index in the list; reports a name that is taken.
+    [[nodiscard]] std::string unique_name(const ObjectView& view, std::size_t index, std::string_view kind,
+                                          std::set<std::string>& taken) const;
+
+private:
+    ObjectView root_;
+    std::filesystem::path folder_;
+    Diagnostics& diagnostics_;
+    MeshLibrary meshes_;
+};
+
+/// `there is no material "ruber"; did you mean "rubber"?`
+[[nodiscard]] std::string unknown_name(std::string_view kind, const std::string& name,
+                                       const std::vector<std::string_view>& known);
+
+// The tables of keys.
+
+/// The whole scene.
+[[nodiscard]] const ObjectSpec& scene_spec();
+[[nodiscard]] const ObjectSpec& flow_spec();
+[[nodiscard]] const ObjectSpec& force_spec();
+[[nodiscard]] const ObjectSpec& material_spec();
+[[nodiscard]] const ObjectSpec& collider_spec();
+[[nodiscard]] const ObjectSpec& frame_spec();
+[[nodiscard]] const ObjectSpec& emitter_spec();
+[[nodiscard]] const ObjectSpec& particle_spec();
+/// {"file": ...} instead of a particle list.
+[[nodiscard]] const ObjectSpec& particle_file_spec();
+[[nodiscard]] const ObjectSpec& springs_spec();
+/// A declared attribute: `{"components": ..., "default": ...}`.
+[[nodiscard]] const ObjectSpec& attribute_spec();
+/// {"lower": ..., "upper": ...}, which sets a Box3.
+[[nodiscard]] Fields<Box3> box_fields(std::string_view upper_meaning);
+
+/// The members of a placement or a frame that a turn about an axis sets.
+struct RotationTarget {
+    Vec3& axis;
+    double& degrees;
+};
+[[nodiscard]] const ObjectSpec& rotation_spec();
+
+/// position, rotation and scale, which set a Placement that is a member. needs: the key that must stand beside them.
+template <class Struct>
+[[nodiscard]] Fields<Struct> placement_fields(Placement Struct::*placement, Needs needs = {}) {
+    return {{"position", [placement](Struct& s) -> Vec3& { return (s.*placement).position; }, kCoordinate, "m",
+             "Where its origin is put; scale and rotation come first.", needs},
+            {"rotation",
+             [placement](Struct& s) {
+                 return RotationTarget{(s.*placement).rotation_axis, (s.*placement).rotation_degrees};
+             },
+             "Turns it.", Without{"not turned"}, needs, &rotation_spec()},
+            {"scale", [placement](Struct& s) -> Vec3& { return (s.*placement).scale; }, kCoordinate, "",
+             "Factor, or one for each of its own axes; a negative one mirrors.", ValueType::scale, needs}};
+}
+
+/// {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}; the unit is that of the key that
+/// holds the curve.
+[[nodiscard]] const ObjectSpec& number_curve_spec();
+/// The same with "value": [x, y, z].
+[[nodiscard]] const ObjectSpec& vector_curve_spec();
+/// The curve of an object of number_curve_spec(). What is wrong is reported with its path ("frames.arm.motions[0]"),
+/// and a constant zero returned.
+[[nodiscard]] KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics);
+[[nodiscard]] KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostics);
+
+/// color, opacity, particle_size, attributes, over_life and over_age of an emitter; read by read_looks().
+[[nodiscard]] std::vector<KeySpec> emitter_look_keys();
+/// color, opacity, size and attributes of an explicit particle; read by particle_values().
+[[nodiscard]] std::vector<KeySpec> particle_look_keys();
+
+// What builds the parts, in the order in which they are built.
+
+/// Builds the scene from a document that check_scene() has seen, and reports what only shows here: names that refer to
+/// nothing, files, values that contradict each other. folder: where relative paths begin.
+[[nodiscard]] SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& folder,
+                                           Diagnostics& diagnostics);
+
+/// Makes the forces and flows.
+class ForceBuilder {
+public:
+    explicit ForceBuilder(const SceneContext& context);
+
+    /// The forces that could be made; reports what is wrong with the others.
+    [[nodiscard]] std::vector<std::unique_ptr<Force>> forces() const;
+    /// What the key "flow" says: an object, or the name of one. Null pointer where there is none, or after reporting.
+    [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const;
+
+private:
+    [[nodiscard]] FlowPointer flow(const ObjectView& view) const;
+    [[nodiscard]] FlowPointer sum_of(const ObjectView& view) const;
+
+    const SceneContext& context_;
+    std::map<std::string, FlowPointer, std::less<>> flows_;
+};
+
+void build_colliders(SceneContext& context, SimulationSetup& setup);
+/// The declared attributes, and those for looks that emitters and explicit particles use. Reports names and defaults
+/// that cannot be.
+void build_attributes(const SceneContext& context, SimulationSetup& setup);
+/// The scene's frames; without errors so far only, their parents too.
+[[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const SceneContext& context);
+void build_emitters(SceneContext& context, SimulationSetup& setup);
+/// Sets an emitter's attributes and curves; reports those that are not declared or have other components.
+void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                EmitterDescription& emitter);
+void build_particles(SceneContext& context, SimulationSetup& setup);
+/// The values of an explicit particle, one a column; empty when the scene has no columns.
+[[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
+                                                          const ObjectView& view);
+/// After the particles: adds those of ropes, chains and cloth behind them.
+void build_springs(SceneContext& context, SimulationSetup& setup);
+/// Forces that grow with a particle's radius, in a scene of points only.
+void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
+
+// Tables of particles.
+
+/// What a table holds, and what is wrong with it.
+struct ParticleTable {
+    std::vector<Particle> particles;
+    std::vector<std::string> errors;               ///< "start.csv:12: found ..., expected ..."; the first few
+    std::vector<AttributeDescription> attributes;  ///< those that were declared, and those for looks that the table has
+    std::vector<std::string> unused_columns;       ///< of a run's own final state, which mean nothing at a start
+};
+
+/// Comma-separated values: a header line with the columns x, y, z and, where wanted, vx, vy, vz, mass, radius in any
+/// order, and attributes (name, or name_x, name_y, name_z): those declared, and those for looks; then a line a
+/// particle. The final state that a run writes can be read back. Never throws for bad contents.
+[[nodiscard]] ParticleTable parse_particle_table(std::string_view text, const std::string& name,
+                                                 std::vector<AttributeDescription> declared = {});
+/// Reads a .csv file. Throws InputError when it cannot be read or is another kind of file.
+[[nodiscard]] ParticleTable read_particle_table(const std::filesystem::path& path,
+                                                std::vector<AttributeDescription> declared = {});
+
+}  // namespace ricochet::detail

@@ -1,0 +1,383 @@
+// Emitters of a scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+constexpr double kMostParticles = 4294967295.0;  // their indices in the arrays are 32-bit numbers
+
+// What an emitter on a mesh says; the mesh itself comes from a file or a collider.
+struct MeshKeys {
+    Placement placement;
+    bool volume = false;
+};
+
+// What an emitter of type child says; its parent's number is found when all emitters are known.
+struct ChildKeys : ParentRule {
+    std::string parent;
+};
+
+constexpr Range kRate = between(0.0, 1e12);
+
+Fields<EmitterDescription> schedule_fields() {
+    using E = EmitterDescription;
+    return {{"burst", &E::burst, kCount, "", "Particles born at once at `start`."},
+            {"rate", &E::rate, kRate, "1/s", "Particles a second from `start` to `stop`; drawn anew for every second."},
+            {"rate_per_frame", &E::rate_per_frame, kRate, "",
+             "Instead of `rate`: particles a frame of `simulation.frame_rate`, evenly spread inside it; drawn anew for "
+             "every frame."},
+            {"rate_per_area", &E::rate_per_area, kRate, "1/pixel",
+             "Instead of `rate`: particles a frame for every pixel that the shape covers in the `reference_camera`'s "
+             "picture."},
+            {"start", &E::start, kNotNegative, "s", "When it begins."},
+            {"stop", &E::stop, kNotNegative, "s", "When the rate ends.", Without{"never"}},
+            {"limit", &E::limit, kCount, "", "Most particles ever born here; of type child: of one parent's life.",
+             Without{"no limit"}},
+            {"seed", &E::seed, kSeed, "", "Start of its own random numbers.",
+             Without{"the scene's seed and the place in the list"}}};
+}
+
+Fields<EmitterDescription> launch_fields() {
+    using E = EmitterDescription;
+    return {
+        {"direction", &E::direction, kCoordinate, "", "Where particles are launched to.", kNotZero,
+         Without{"the shape's own: the normal of a disk, of a sphere's surface or of a mesh, any direction otherwise"}},
+        {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
+         "Half angle of a cone about the direction, uniform in solid angle."},
+        {"speed", &E::speed, kCoordinate, "m/s", "Along the direction."},
+        {"velocity", &E::velocity, kCoordinate, "m/s", "Added to direction times speed."},
+        {"mass", &E::mass, kPositive, "kg", "Mass of a particle.", LowEnd{kPositive}},
+        {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
+         LowEnd{kNotNegative}, Without{"for ever"}},
+        {"particle_radius", &E::radius, kNotNegative, "m", "Radius of a particle.", LowEnd{kNotNegative}},
+        {"frame", ValueType::text,
+         "One of the names in `frames`: shape, direction and velocity are in its coordinates, and particles are let go "
+         "with its velocity at the time and place of their birth.",
+         Without{"the world"}}};
+}
+
+Field<Unbound> emitter_name() {
+    return {"name", ValueType::text, "For messages and reports; no two emitters share one.",
+            Without{"made from type and place in the list"}};
+}
+
+template <class Shape>
+Field<Shape> center() {
+    return {"center", &Shape::center, kCoordinate, "m", "Its centre."};
+}
+template <class Shape>
+Field<Shape> radius() {
+    return {"radius", &Shape::radius, kLength, "m", "Its radius.", kRequired};
+}
+
+Variant mesh_variant() {
+    return variant(
+        "mesh",
+        "Uniform by area on a mesh, just off its surface on the side that the triangles' normals point to, and "
+        "launched along them.",
+        joined<MeshKeys>({{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF."},
+                           {"collider", ValueType::text, "The name of a mesh collider: its surface, where it stands."}},
+                          placement_fields(&MeshKeys::placement, Needs{"file"}),
+                          {{"volume", &MeshKeys::volume,
+                            "true: uniform in the inside, launched in any direction; the mesh must be closed."}}}),
+        {"file", "collider"});
+}
+
+Variant cone_variant() {
+    using C = ConeShape;
+    return variant<C>(
+        "cone", "Uniform in a cone, launched along the line from its tip.",
+        {{"apex", &C::apex, kCoordinate, "m", "Its tip."},
+         {"axis", &C::axis, kCoordinate, "", "From the tip into the cone, of any length.", kRequired, kNotZero},
+         {"angle", &C::angle_degrees, between(0.0, 89.9), "degrees", "Between the axis and the side.", kRequired},
+         {"height", &C::height, kLength, "m", "Its height.", kRequired}});
+}
+
+Variant child_variant() {
+    using C = ChildKeys;
+    using On = BirthEvent;
+    return variant<C>(
+        "child",
+        "Where another emitter's particles are, launched from their place and velocity; `burst`, `start`, `stop`, "
+        "`rate_per_frame` and `rate_per_area` do not apply.",
+        {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
+         {"on", &C::on, "When parents give birth.",
+          Choices{choice(On::life, "life", "all their life long, `rate` a second, one draw for each parent"),
+                  choice(On::death, "death", "at the end of their lifetime, or absorbed by a surface"),
+                  choice(On::impact, "impact", "at impacts of at least `threshold_impulse`")}},
+         {"count", &C::count, between(0.0, 1e6), "", "Children of one death or impact, rounded to whole numbers."},
+         {"threshold_impulse", &C::threshold_impulse, kNotNegative, "N s",
+          "Least impulse of an impact that gives birth."},
+         {"share", &C::share,
+          "true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share, "
+          "radii follow at the same density, and `speed` says how fast they fly apart.",
+          Without{"true for impact, false otherwise"}},
+         {"recursive", &C::recursive,
+          "true: the children are parents in the same way too, up to `simulation.max_depth`."},
+         {"inherit_velocity", &C::inherit_velocity, kCoordinate, "",
+          "Part of the parent's velocity that a child begins with; 1 when sharing."},
+         {"inherit_color", &C::inherit_color, kFraction, "",
+          "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken."}});
+}
+
+std::vector<Variant> shapes() {
+    using Disk = DiskShape;
+    using Ball = SphereShape;
+    return {variant<PointShape>("point", "All at one point.", {center<PointShape>()}),
+            variant<Disk>(
+                "disk", "Uniform on a flat disk.",
+                {center<Disk>(),
+                 {"normal", &Disk::normal, kCoordinate, "", "Normal of the disk, of any length.", kRequired, kNotZero},
+                 radius<Disk>()}),
+            variant<BoxShape>(
+                "box", "Uniform in a box along the axes.",
+                {center<BoxShape>(), {"size", &BoxShape::size, kLengthOrZero, "m", "Full edge lengths.", kRequired}}),
+            variant<Ball>("sphere", "Uniform in a ball, or on its surface.",
+                          {center<Ball>(),
+                           radius<Ball>(),
+                           {"surface", &Ball::surface, "true: only on the surface, launched outward."}}),
+            mesh_variant(),
+            cone_variant(),
+            child_variant()};
+}
+
+const MeshShape* mesh_collider(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view) {
+    const std::string name = view.text("collider");
+    std::vector<std::string_view> names;
+    for (const ColliderDescription& collider : setup.colliders) {
+        const auto* mesh = std::get_if<MeshShape>(&collider.shape);
+        if (mesh != nullptr && collider.name == name) return mesh;
+        if (mesh != nullptr) names.push_back(collider.name);
+    }
+    context.error(view, "collider", unknown_name("mesh collider", name, names));
+    return nullptr;
+}
+
+// The mesh that an emitter stands on, in world coordinates. Null pointer after reporting.
+std::shared_ptr<const TriangleMesh> surface_of(SceneContext& context, const SimulationSetup& setup,
+                                               const ObjectView& view) {
+    if (view.has("collider") && view.has("file")) return nullptr;  // reported already
+    const bool is_collider = view.has("collider");
+    std::shared_ptr<const TriangleMesh> mesh;
+    Placement placement;
+    if (!is_collider) {
+        mesh = context.load_mesh(view);
+        placement = view.read<MeshKeys>().placement;
+    } else if (const MeshShape* collider = mesh_collider(context, setup, view)) {
+        mesh = collider->mesh;
+        placement = collider->placement;
+    }
+    if (!mesh) return nullptr;
+    const char* key = is_collider ? "collider" : "file";
+    const auto world = context.placed_mesh(view, key, *mesh, placement);
+    if (world && !(surface_area(*world) > 0.0)) context.error(view, key, "the mesh has no area to emit from");
+    return world;
+}
+
+EmitterShape shape_of(SceneContext& context, const SimulationSetup& setup, const ObjectView& view) {
+    if (view.type() == "point") return view.read<PointShape>();
+    if (view.type() == "disk") return view.read<DiskShape>();
+    if (view.type() == "box") return view.read<BoxShape>();
+    if (view.type() == "sphere") return view.read<SphereShape>();
+    if (view.type() == "cone") return view.read<ConeShape>();
+    if (view.type() != "mesh") return PointShape{};  // of a child, or refused
+    const auto surface = surface_of(context, setup, view);
+    if (view.read<MeshKeys>().volume) return MeshVolumeShape{surface};
+    return MeshSurfaceShape{surface};
+}
+
+// False where a mesh was refused.
+bool is_measurable(const EmitterShape& shape) {
+    const auto* const surface = std::get_if<MeshSurfaceShape>(&shape);
+    const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
+    return (surface == nullptr || surface->mesh) && (volume == nullptr || volume->mesh);
+}
+
+// Puts the emitter into the frame that its key "frame" names.
+void attach(const SceneContext& context, const ObjectView& view, const std::shared_ptr<const FrameTree>& frames,
+            EmitterDescription& emitter) {
+    if (!view.has("frame")) return;
+    if (view.type() == "mesh" && view.has("collider")) {
+        context.error(view, "frame",
+                      "a collider's surface stands still, expected an emitter of another kind or a file");
+        return;
+    }
+    if (view.type() == "child") {
+        context.error(view, "frame", "children are born where their parents are, expected an emitter of another kind");
+        return;
+    }
+    const std::string name = view.text("frame");
+    if (const auto frame = frames->find(name)) {
+        emitter.frames = frames;
+        emitter.frame = *frame;
+        return;
+    }
+    std::vector<std::string_view> names;
+    for (std::size_t k = 0; k < frames->size(); ++k) names.push_back(frames->description(k).name);
+    context.error(view, "frame", unknown_name("frame", name, names));
+}
+
+double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
+
+// Most particles a second; reports rates that cannot be.
+double most_rate(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                 const EmitterDescription& emitter) {
+    const double per_area = most_of(emitter.rate_per_area);
+    const int rates = (most_of(emitter.rate) > 0.0) + (most_of(emitter.rate_per_frame) > 0.0) + (per_area > 0.0);
+    if (rates > 1) {
+        const char* const key = most_of(emitter.rate_per_frame) > 0.0 ? "rate_per_frame" : "rate_per_area";
+        context.error(view, key,
+                      "the emitter has another rate already, expected one of rate, rate_per_frame and rate_per_area");
+    }
+    double per_frame = most_of(emitter.rate_per_frame);
+    if (per_area > 0.0 && !setup.reference_camera) {
+        context.error(view, "rate_per_area", "only goes together with the scene's \"reference_camera\"");
+    } else if (per_area > 0.0 && is_measurable(emitter.shape)) {
+        try {
+            per_frame += per_area * screen_area(emitter.shape, *setup.reference_camera);
+        } catch (const InputError& problem) {
+            context.error(view, "rate_per_area", problem.what());
+        }
+    }
+    return most_of(emitter.rate) + per_frame * setup.options.frame_rate;
+}
+
+// Reports contradictions; returns the most births there can be.
+double checked_births(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                      const EmitterDescription& emitter) {
+    const double duration = setup.options.duration;
+    if (emitter.stop < emitter.start) {
+        context.error(view, "stop",
+                      fmt::format("found {} s, expected a time after start ({} s)", emitter.stop, emitter.start));
+    }
+    const double most = most_rate(context, setup, view, emitter);
+    const double time = std::max(0.0, std::min(duration, emitter.stop) - emitter.start);
+    const double births = static_cast<double>(emitter.burst) + most * time;
+    if ((emitter.burst == 0 && most == 0.0) || emitter.limit == 0) {
+        context.warn(view, "emits nothing: it has neither a burst nor a rate");
+    } else if (emitter.start >= duration) {
+        context.warn(view, "start",
+                     fmt::format("emits nothing: it begins at {} s, the scene ends at {} s", emitter.start, duration));
+    }
+    return std::min(births, static_cast<double>(emitter.limit));
+}
+
+// Volumes that cannot be filled are reported by their file.
+void check_volume(const SceneContext& context, const ObjectView& view, const EmitterShape& shape) {
+    const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
+    if (volume == nullptr || volume->mesh == nullptr) return;
+    try {
+        const ShapeSampler sampler(shape);
+    } catch (const InputError& problem) {
+        context.error(view, view.has("collider") ? "collider" : "file", problem.what());
+    }
+}
+
+// The rule of an emitter of type child. The parent's number is found when all emitters are known.
+ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
+    ParentRule rule = view.read<ChildKeys>();
+    if (!view.has("share")) rule.share = rule.on == BirthEvent::impact;
+    for (const char* const key : {"burst", "start", "stop", "rate_per_frame", "rate_per_area"}) {
+        if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
+    }
+    if (rule.share && rule.on == BirthEvent::life) {
+        context.error(view, "share",
+                      "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
+    }
+    if (rule.share && view.has("particle_radius")) {
+        context.error(view, "particle_radius", "radii follow from the parent's when it is shared out, leave it out");
+    }
+    if (rule.on != BirthEvent::life && view.has("rate")) {
+        context.error(view, "rate", "only goes together with \"on\": \"life\"; expected \"count\"");
+    }
+    if (rule.on == BirthEvent::life && most_of(emitter.rate) == 0.0) {
+        context.warn(view, "emits nothing: it has no rate");
+    }
+    return rule;
+}
+
+void find_parents(const SceneContext& context, SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::vector<std::string_view> names;
+    for (const EmitterDescription& emitter : setup.emitters) names.push_back(emitter.name);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!setup.emitters[k].parent || !views[k].has("parent")) continue;
+        const std::string name = views[k].text("parent");
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) {
+            context.error(views[k], "parent", unknown_name("emitter", name, names));
+        } else {
+            setup.emitters[k].parent->emitter = static_cast<std::uint32_t>(found - names.begin());
+        }
+    }
+}
+
+// Two emitters cannot have the same parents to share out.
+void check_shares(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::set<std::pair<std::uint32_t, BirthEvent>> taken;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        const auto& rule = setup.emitters[k].parent;
+        if (!rule || !rule->share) continue;
+        bool free = taken.insert({rule->emitter, rule->on}).second;
+        if (rule->recursive) free = taken.insert({static_cast<std::uint32_t>(k), rule->on}).second && free;
+        if (!free) {
+            context.error(views[k], "parent", "another emitter shares out the same parents at the same event");
+        }
+    }
+}
+
+}  // namespace
+
+const ObjectSpec& emitter_spec() {
+    static const ObjectSpec spec = [] {
+        ObjectSpec result =
+            object("emitter", "Where particles are born. A pair [mean, spread] is drawn anew for every particle.",
+                   joined({schedule_fields(), launch_fields()}), shapes());
+        result.keys.insert(result.keys.begin(), emitter_name());
+        for (KeySpec& key : emitter_look_keys()) result.keys.push_back(std::move(key));
+        return result;
+    }();
+    return spec;
+}
+
+void build_emitters(SceneContext& context, SimulationSetup& setup) {
+    const std::shared_ptr<const FrameTree> frames = frames_of(context);
+    std::set<std::string> taken;
+    double births = 0.0;
+    for (const ObjectView& view : context.objects("emitters")) {
+        auto emitter = view.read<EmitterDescription>();
+        emitter.name = context.unique_name(view, setup.emitters.size(), "emitter", taken);
+        emitter.shape = shape_of(context, setup, view);
+        attach(context, view, frames, emitter);
+        check_volume(context, view, emitter.shape);
+        read_looks(context, setup, view, emitter);
+        if (view.type() == "child") {
+            emitter.parent = rule_of(context, view, emitter);
+        } else {
+            births += checked_births(context, setup, view, emitter);
+        }
+        if (births > kMostParticles) {
+            context.error(
+                view, fmt::format("with this emitter the scene gives birth to {:.3g} particles, expected at most {}",
+                                  births, kMostParticles));
+        }
+        setup.emitters.push_back(std::move(emitter));
+    }
+    find_parents(context, setup);
+    check_shares(context, setup);
+}
+
+}  // namespace ricochet::detail

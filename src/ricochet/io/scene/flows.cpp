@@ -1,0 +1,218 @@
+// Flows of a scene: the keys of each, beside what is made of them.
+
+#include <utility>
+
+#include "ricochet/io/scene/laws.h"
+#include "ricochet/io/vtk_reader.h"
+
+namespace ricochet::detail {
+namespace {
+
+using FlowLaw = Law<FlowPointer, SceneContext>;
+
+template <class Settings, class Maker>
+FlowLaw flow_law(std::string_view name, std::string_view description, const Fields<Settings>& fields, Maker make) {
+    return {variant(name, description, fields),
+            [make](const ObjectView& view, const SceneContext&) { return make(view.read<Settings>()); }};
+}
+
+// Structs stand here where the maker takes its values one by one.
+
+struct FlowKeys {
+    double factor = 1.0;
+};
+
+const ObjectSpec& gust_spec() {
+    static const ObjectSpec spec =
+        object<Gust>("gust", "The wind is multiplied by 1 + amplitude sin(2 pi (frequency t + phase)).",
+                     {{"amplitude", &Gust::amplitude, kNotNegative, "",
+                       "Part of the wind's speed; above 1 the wind turns round at times.", kRequired},
+                      {"frequency", &Gust::frequency, kNotNegative, "Hz", "How often it rises and falls.", kRequired},
+                      {"phase", &Gust::phase, kCoordinate, "turns", "Where in its cycle it starts."}});
+    return spec;
+}
+
+FlowLaw uniform_flow() {
+    struct Wind {
+        Vec3 velocity;
+        std::optional<Gust> gust;
+    };
+    return flow_law<Wind>(
+        "uniform", "A wind: the same velocity everywhere.",
+        {{"velocity", &Wind::velocity, kCoordinate, "m/s", "Velocity.", kRequired},
+         {"gust", &Wind::gust,
+          "Lets it rise and fall: `amplitude` (part of the speed), `frequency` (Hz) and `phase` (turns, 0 unless "
+          "given).",
+          &gust_spec(), Without{"steady"}}},
+        [](const Wind& w) { return w.gust ? make_gusty_wind(w.velocity, *w.gust) : make_wind(w.velocity); });
+}
+
+FlowLaw vortex_flow() {
+    using V = VortexSettings;
+    return flow_law<V>(
+        "vortex", "A straight vortex without end.",
+        {axis_point(&V::point),
+         axis(&V::axis),
+         {"circulation", &V::circulation, kCoordinate, "m^2/s",
+          "Speed times circumference, outside the core; negative turns the other way.", kRequired},
+         {"core_radius", &V::core_radius, kLength, "m",
+          "Radius of the core, in which the speed falls to 0 on the axis.", kRequired},
+         {"profile", &V::profile, "How the speed depends on the distance.",
+          Choices{choice(VortexProfile::rankine, "rankine", "the core turns like a rigid body"),
+                  choice(VortexProfile::lamb_oseen, "lamb_oseen", "smooth, as viscosity spreads a line vortex")}}},
+        &make_vortex);
+}
+
+FlowLaw radial_flow() {
+    struct Source {
+        Vec3 center;
+        double strength = 0.0;
+        double core_radius = 1.0;
+    };
+    return flow_law<Source>("radial", "A source, or a sink, with a soft core.",
+                            {center(&Source::center),
+                             {"strength", &Source::strength, kCoordinate, "m^3/s",
+                              "Volume that comes out in a second; negative for a sink.", kRequired},
+                             {"core_radius", &Source::core_radius, kLength, "m",
+                              "Radius of the core, in which the speed falls to 0.", kRequired}},
+                            [](const Source& s) { return make_source(s.center, s.strength, s.core_radius); });
+}
+
+FlowLaw rotation_flow() {
+    struct Rotation {
+        Vec3 point;
+        Vec3 angular_velocity;
+    };
+    return flow_law<Rotation>("rotation", "Turns like a rigid body.",
+                              {axis_point(&Rotation::point),
+                               {"angular_velocity", &Rotation::angular_velocity, kCoordinate, "rad/s",
+                                "Along the axis; right-hand rule.", kRequired}},
+                              [](const Rotation& r) { return make_rotation(r.point, r.angular_velocity); });
+}
+
+FlowLaw shear_flow() {
+    struct Shear {
+        Vec3 point;
+        Vec3 rate;
+        Vec3 gradient{1, 0, 0};
+    };
+    return flow_law<Shear>("shear", "A velocity that grows linearly along a direction.",
+                           {{"point", &Shear::point, kCoordinate, "m", "A point where the fluid is at rest."},
+                            {"rate", &Shear::rate, kCoordinate, "1/s", "Velocity gained per metre.", kRequired},
+                            {"gradient", &Shear::gradient, kCoordinate, "",
+                             "Direction along which it grows, of any length.", kRequired, kNotZero}},
+                           [](const Shear& s) { return make_shear(s.point, s.rate, s.gradient); });
+}
+
+FlowLaw turbulence_flow() {
+    using T = TurbulenceSettings;
+    return flow_law<T>("turbulence", "Eddies of several sizes without divergence (curl noise).",
+                       {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
+                        {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
+                        {"octaves", &T::octaves, between(1, kMostOctaves), "",
+                         "Sizes of eddies, each half as large as the one before."},
+                        {"gain",
+                         &T::gain,
+                         {.lower = 0.0, .upper = 1.0, .lower_open = true},
+                         "",
+                         "Speed of the eddies of a size over that of the size before."},
+                        {"rate", &T::rate, kNotNegative, "1/s",
+                         "How often in a second the largest eddies are replaced by others; 0 is frozen."},
+                        {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
+                       &make_turbulence);
+}
+
+FlowLaw sphere_flow() {
+    struct Ball {
+        Vec3 center;
+        double radius = 1.0;
+        Vec3 velocity;
+    };
+    return flow_law<Ball>("sphere", "Flow of an ideal fluid past a ball; nothing moves inside it.",
+                          {center(&Ball::center),
+                           {"radius", &Ball::radius, kLength, "m", "Its radius.", kRequired},
+                           {"velocity", &Ball::velocity, kCoordinate, "m/s", "Velocity far away from it.", kRequired}},
+                          [](const Ball& b) { return make_flow_past_sphere(b.center, b.radius, b.velocity); });
+}
+
+FlowLaw grid_flow() {
+    struct Grid {
+        std::string array;
+        OutsideGrid outside = OutsideGrid::clamp;
+    };
+    const Fields<Grid> fields = {
+        {"file", ValueType::file, "A VTK image (.vti) with point data; not compressed.", kRequired},
+        {"array", &Grid::array, "Name of the array, with three components.",
+         Without{"the first with three components"}},
+        {"outside", &Grid::outside, "What holds beyond the grid.",
+         Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest place of the grid"),
+                 choice(OutsideGrid::zero, "zero", "nothing")}}};
+    return {variant("grid", "Samples on a regular grid, interpolated linearly along each axis.", fields),
+            [](const ObjectView& view, const SceneContext& context) -> FlowPointer {
+                if (!view.has("file")) return nullptr;
+                const Grid grid = view.read<Grid>();
+                try {
+                    return make_grid_flow(read_vti(context.file_of(view), grid.array), grid.outside);
+                } catch (const InputError& problem) {
+                    context.error(view, "file", problem.what());
+                    return nullptr;
+                }
+            }};
+}
+
+const std::vector<FlowLaw>& flow_laws() {
+    static const std::vector<FlowLaw> laws = {uniform_flow(), vortex_flow(),     radial_flow(), rotation_flow(),
+                                              shear_flow(),   turbulence_flow(), sphere_flow(), grid_flow()};
+    return laws;
+}
+
+}  // namespace
+
+const ObjectSpec& flow_spec() {
+    static ObjectSpec spec = object<FlowKeys>(
+        "flow", "How a fluid moves.", {{"factor", &FlowKeys::factor, kCoordinate, "", "Multiplies the velocity."}},
+        variants_of(flow_laws()));
+    // A sum is made of flows, so this part of the table refers to the whole.
+    static const bool closed = [] {
+        spec.variants.push_back(variant<Unbound>("sum", "Several flows at once.",
+                                                 {{"parts", ValueType::list, "Flows; their velocities add up.",
+                                                   kRequired, static_cast<const ObjectSpec*>(&spec)}}));
+        return true;
+    }();
+    (void)closed;
+    return spec;
+}
+
+ForceBuilder::ForceBuilder(const SceneContext& context) : context_(context) {
+    for (const NamedObject& named : context.root().named_objects("flows")) flows_[named.name] = flow(named.view);
+}
+
+FlowPointer ForceBuilder::flow_at(const ObjectView& view) const {
+    if (!view.has("flow")) return nullptr;
+    const std::string* name = view.node("flow").text();
+    if (name == nullptr) return flow(view.object("flow"));
+    const auto found = flows_.find(*name);
+    if (found != flows_.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const auto& entry : flows_) known.push_back(entry.first);
+    context_.error(view, "flow", unknown_name("flow", *name, known));
+    return nullptr;
+}
+
+FlowPointer ForceBuilder::flow(const ObjectView& view) const {
+    const FlowLaw* law = law_of(flow_laws(), view);
+    FlowPointer flow = made(context_, view, [&]() -> FlowPointer {
+        if (view.type() == "sum") return sum_of(view);
+        return law == nullptr ? nullptr : law->make(view, context_);
+    });
+    const double factor = view.read<FlowKeys>().factor;
+    return flow && factor != 1.0 ? make_scaled_flow(std::move(flow), factor) : flow;
+}
+
+FlowPointer ForceBuilder::sum_of(const ObjectView& view) const {
+    std::vector<FlowPointer> parts;
+    for (const ObjectView& part : view.objects("parts")) parts.push_back(flow(part));
+    return std::find(parts.begin(), parts.end(), nullptr) == parts.end() ? make_flow_sum(std::move(parts)) : nullptr;
+}
+
+}  // namespace ricochet::detail

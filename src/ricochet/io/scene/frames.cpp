@@ -1,0 +1,186 @@
+// Keyed curves of a scene, and the frames of reference that move along them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/dynamics/keyed_curve.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+// What a curve says.
+template <class Value>
+struct CurveKeys {
+    std::vector<CurveKey<Value>> keys;
+    Interpolation interpolation = Interpolation::linear;
+    CurveEnds ends = CurveEnds::hold;
+};
+
+template <class Value>
+const ObjectSpec& curve_key_spec(std::string_view title, std::string_view description) {
+    using K = CurveKey<Value>;
+    static const ObjectSpec spec =
+        object<K>(title, description,
+                  {{"time", &K::time, kCoordinate, "s", "When; later than the key before.", kRequired},
+                   {"value", &K::value, kCoordinate, "", "The curve's value then.", kRequired}});
+    return spec;
+}
+
+template <class Value>
+Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
+    using C = CurveKeys<Value>;
+    using I = Interpolation;
+    return {
+        {"keys", &C::keys, "The keys in the order of time, at least one, each `{\"time\": ..., \"value\": ...}`.",
+         kRequired, kNotEmpty, &key_spec},
+        {"interpolation", &C::interpolation, "What holds between two keys.",
+         Choices{choice(I::linear, "a straight line"),
+                 choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the way, so that it is at rest at every key"),
+                 choice(I::spline, "a smooth cubic (Catmull-Rom, for uneven keys too)")}},
+        {"ends", &C::ends, "What holds before the first and after the last key.",
+         Choices{
+             choice(CurveEnds::hold, "hold", "that key's value"),
+             choice(CurveEnds::repeat, "repeat",
+                    "the keys again and again, each round beginning with the value that the last one ended with")}}};
+}
+
+// What the table cannot say: later and later.
+bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics) {
+    bool good = !keys.empty();
+    double before = 0.0;
+    for (const ObjectView& key : keys) {
+        const double time = key.node("time").number().value_or(0.0);
+        good = good && key.has("time") && key.has("value");
+        if (&key != &keys.front() && good && !(before < time)) {
+            diagnostics.error(
+                key.location_of("time"), key.path_of("time"),
+                fmt::format("found {} s, expected a time after the {} s of the key before", time, before));
+            good = false;
+        }
+        before = time;
+    }
+    return good;
+}
+
+template <class Value>
+KeyedCurve<Value> curve_of(const ObjectView& view, Diagnostics& diagnostics) {
+    if (!are_good_keys(view.objects("keys"), diagnostics)) return KeyedCurve<Value>{};
+    auto curve = view.read<CurveKeys<Value>>();
+    try {
+        return KeyedCurve<Value>(std::move(curve.keys), curve.interpolation, curve.ends);
+    } catch (const InputError& problem) {
+        diagnostics.error(view.location(), view.path(), problem.what());
+        return KeyedCurve<Value>{};
+    }
+}
+
+const ObjectSpec& motion_spec() {
+    using Turn = KeyedRotation;
+    static const ObjectSpec spec = object<Unbound>(
+        "frame motion", "How a frame moves, in the axes that the motions before it have led to.", {},
+        {variant<Turn>(
+             "rotation", "A turn about an axis through the frame's origin, by the right-hand rule.",
+             {{"axis", &Turn::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
+              {"angle", ValueType::object, "The angle: a curve.", &number_curve_spec(), Unit{"degrees"}, kRequired}}),
+         variant<Unbound>("translation", "A way along a curve.",
+                          {{"way", ValueType::object, "Where the origin goes: a curve of [x, y, z].",
+                            &vector_curve_spec(), Unit{"m"}, kRequired}})});
+    return spec;
+}
+
+FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
+    auto frame = named.view.read<FrameDescription>();
+    frame.name = named.name;
+    for (const ObjectView& motion : named.view.objects("motions")) {
+        if (motion.type() == "rotation") {
+            auto rotation = motion.read<KeyedRotation>();
+            rotation.degrees = number_curve_of(motion.object("angle"), diagnostics);
+            frame.motions.emplace_back(std::move(rotation));
+        } else if (motion.type() == "translation") {
+            frame.motions.emplace_back(KeyedTranslation{vector_curve_of(motion.object("way"), diagnostics)});
+        }
+    }
+    return frame;
+}
+
+// Reports parents that are not there or lead back.
+bool are_good_parents(const SceneContext& context, const std::vector<FrameDescription>& frames,
+                      const std::vector<ObjectView>& views) {
+    std::vector<std::string_view> names;
+    for (const FrameDescription& frame : frames) names.push_back(frame.name);
+    bool good = true;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const std::string& parent = frames[i].parent;
+        if (parent.empty() || std::find(names.begin(), names.end(), parent) != names.end()) continue;
+        context.error(views[i], "parent", unknown_name("frame", parent, names));
+        good = false;
+    }
+    if (const auto circle = frame_in_circle(frames)) {
+        context.error(views[*circle], "parent",
+                      "the frame's parents lead back to it, expected one that stands in the world in the end");
+        good = false;
+    }
+    return good;
+}
+
+}  // namespace
+
+const ObjectSpec& number_curve_spec() {
+    static const ObjectSpec spec =
+        object("curve", "A number keyed in time, in the unit of the key that holds the curve.",
+               curve_fields<double>(curve_key_spec<double>("curve key", "A number at a time.")));
+    return spec;
+}
+
+const ObjectSpec& vector_curve_spec() {
+    static const ObjectSpec spec =
+        object("vector curve", "A vector keyed in time: a curve whose values are [x, y, z].",
+               curve_fields<Vec3>(curve_key_spec<Vec3>("vector curve key", "A vector at a time.")));
+    return spec;
+}
+
+KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics) {
+    return curve_of<double>(view, diagnostics);
+}
+
+KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostics) {
+    return curve_of<Vec3>(view, diagnostics);
+}
+
+const ObjectSpec& frame_spec() {
+    using F = FrameDescription;
+    static const ObjectSpec spec = object<F>(
+        "frame",
+        "A moving frame of reference, for emitters. It stands in its parent like this: translation, rotation, then the "
+        "motions in their order.",
+        {{"parent", &F::parent, "One of the names in `frames`: what it stands in.", Without{"the world"}},
+         {"translation", &F::translation, kCoordinate, "m", "Where its origin is in the parent's axes."},
+         {"rotation",
+          [](F& f) {
+              return RotationTarget{f.rotation_axis, f.rotation_degrees};
+          },
+          "Turns it.", Without{"not turned"}, &rotation_spec()},
+         {"motions", ValueType::list, "How it moves: rotations and translations keyed in time.", &motion_spec()}});
+    return spec;
+}
+
+std::shared_ptr<const FrameTree> frames_of(const SceneContext& context) {
+    std::vector<FrameDescription> frames;
+    std::vector<ObjectView> views;
+    for (const NamedObject& named : context.root().named_objects("frames")) {
+        views.push_back(named.view);
+        frames.push_back(frame_of(named, context.diagnostics()));
+    }
+    if (!are_good_parents(context, frames, views) || context.failed()) {
+        for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still good
+    }
+    if (context.failed()) std::erase_if(frames, [](const auto& frame) { return frame.name.empty(); });
+    return std::make_shared<const FrameTree>(std::move(frames));
+}
+
+}  // namespace ricochet::detail

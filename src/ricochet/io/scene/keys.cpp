@@ -1,0 +1,200 @@
+#include "ricochet/io/scene/keys.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ricochet/io/scene/diagnostics.h"
+
+namespace ricochet::detail {
+namespace {
+
+std::string number_words(const KeySpec& key, std::string_view noun) {
+    std::string words(noun);
+    if (key.range.lower == key.range.upper) return fmt::format("{}", key.range.lower);
+    if (const std::string range = range_words(key.range); !range.empty()) words += " " + range;
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
+std::string vector_words(const KeySpec& key) {
+    std::string words = "[x, y, z]";
+    if (key.not_zero) words += ", not all zero";
+    if (const std::string range = range_words(key.range); !range.empty()) words += ", each " + range;
+    if (!key.unit.empty()) words += fmt::format(" ({})", key.unit);
+    return words;
+}
+
+std::string pair_words(const KeySpec& key) {
+    std::string words = number_words(key, "a number") + " or [mean, spread] with spread >= 0";
+    if (const std::string low = range_words(key.low_end); !low.empty()) words += " and mean - spread " + low;
+    return words;
+}
+
+std::string choice_words(const KeySpec& key) {
+    std::vector<std::string_view> names;
+    for (const Choice& choice : key.choices) names.push_back(choice.name);
+    return names.size() == 1 ? quoted_list(names) : "one of " + quoted_list(names);
+}
+
+}  // namespace
+
+std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant) {
+    std::vector<const KeySpec*> keys;
+    for (const KeySpec& key : object.keys) keys.push_back(&key);
+    if (variant != nullptr) {
+        for (const KeySpec& key : variant->keys) keys.push_back(&key);
+    }
+    return keys;
+}
+
+const Variant* find_variant(const ObjectSpec& object, std::string_view name) {
+    for (const Variant& variant : object.variants) {
+        if (variant.name == name) return &variant;
+    }
+    return nullptr;
+}
+
+const Variant* variant_of(const JsonNode& node, const ObjectSpec& spec) {
+    const JsonNode* type = node.find("type");
+    if (type == nullptr || type->text() == nullptr) return nullptr;
+    return find_variant(spec, *type->text());
+}
+
+const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::string_view name) {
+    for (const KeySpec& key : object.keys) {
+        if (key.name == name) return &key;
+    }
+    if (variant == nullptr) return nullptr;
+    for (const KeySpec& key : variant->keys) {
+        if (key.name == name) return &key;
+    }
+    return nullptr;
+}
+
+std::string range_words(const Range& range) {
+    // A bound of 1e75 is no bound to a reader; who passes it is told by the checker.
+    const bool below = range.lower > -kLargestCoordinate;
+    const bool above = range.upper < kLargestCoordinate;
+    std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
+    // 2^64 stands for the largest whole number below it.
+    const std::string upper = range.upper == 0x1p64 ? "18446744073709551615" : fmt::format("{}", range.upper);
+    if (below && above) return range.lower == range.upper ? upper : fmt::format("{} and <= {}", lower, upper);
+    if (below) return lower;
+    return above ? "<= " + upper : "";
+}
+
+std::string expectation(const KeySpec& key) {
+    switch (key.type) {
+        case ValueType::number:
+            return number_words(key, "a number");
+        case ValueType::integer:
+            return number_words(key, "a whole number");
+        case ValueType::boolean:
+            return "true or false";
+        case ValueType::text:
+            return "a text that is not empty";
+        case ValueType::file:
+            return "the path of a file";
+        case ValueType::choice:
+            return choice_words(key);
+        case ValueType::integers:
+            return "a list of whole numbers, at least one";
+        case ValueType::vector:
+            return vector_words(key);
+        case ValueType::scale:
+            return "a number other than 0, or three in [x, y, z]";
+        case ValueType::pair:
+            return pair_words(key);
+        case ValueType::object:
+            return fmt::format("an object {{...}} ({})", key.content->title);
+        case ValueType::named_object:
+            return fmt::format("an object {{...}} ({}), or one of the names in \"{}\"", key.content->title, key.table);
+        case ValueType::list:
+            return key.not_empty ? "a list [...] of objects, at least one" : "a list [...] of objects";
+        case ValueType::list_or_file:
+            return "a list [...] of objects, or {\"file\": ...}";
+        case ValueType::table:
+            return fmt::format("an object {{\"name\": {{...}}}} ({} by name)", key.content->title);
+        case ValueType::text_table:
+            return "an object {\"name\": \"text\"}";
+        case ValueType::quantity:
+            return "a number or [x, y, z]";
+        case ValueType::vector_pair:
+            return "[x, y, z] or [[x, y, z], [spread, spread, spread]], each " + range_words(key.range);
+        case ValueType::quantity_table:
+            return "an object {\"name\": value}, a value being a number, [mean, spread], [x, y, z] or [[x, y, z], "
+                   "[spread, spread, spread]]";
+    }
+    return "";
+}
+
+std::string not_built(const std::string& what) {
+    return what + " is part of the scene format but not built in this version";
+}
+
+// Reading.
+
+void read_value(const JsonNode& node, const KeySpec& /*key*/, double& value) { value = node.number().value_or(value); }
+
+void read_value(const JsonNode& node, const KeySpec& /*key*/, bool& value) {
+    if (const bool* truth = std::get_if<bool>(&node.value)) value = *truth;
+}
+
+void read_value(const JsonNode& node, const KeySpec& /*key*/, std::string& value) {
+    if (const std::string* text = node.text()) value = *text;
+}
+
+void read_value(const JsonNode& node, const KeySpec& /*key*/, Vec3& value) {
+    if (const auto all = node.number()) value = {*all, *all, *all};
+    const JsonNode::Array* items = node.array();
+    for (std::size_t axis = 0; items != nullptr && axis < 3; ++axis) {
+        value[static_cast<int>(axis)] = (*items)[axis].number().value_or(0.0);
+    }
+}
+
+void read_value(const JsonNode& node, const KeySpec& /*key*/, MeanSpread& value) {
+    if (const auto mean = node.number()) value = {*mean, 0.0};
+    if (const JsonNode::Array* items = node.array()) {
+        value = {(*items)[0].number().value_or(0.0), (*items)[1].number().value_or(0.0)};
+    }
+}
+
+void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object) {
+    for (const KeySpec& key : keys) {
+        const JsonNode* value = node.find(key.name);
+        if (key.read && value != nullptr && !value->is_null()) key.read(object, *value);
+    }
+}
+
+// Defaults as JSON.
+
+std::string default_text(const KeySpec& /*key*/, double value) {
+    if (!std::isfinite(value)) return "";
+    std::string text = fmt::format("{}", value);
+    // 1e-09 is written 1e-9.
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
+std::string default_text(const KeySpec& /*key*/, std::uint64_t value) { return fmt::format("{}", value); }
+
+std::string default_text(const KeySpec& /*key*/, bool value) { return value ? "true" : "false"; }
+
+std::string default_text(const KeySpec& /*key*/, const std::string& value) {
+    return value.empty() ? "" : fmt::format("\"{}\"", value);
+}
+
+std::string default_text(const KeySpec& key, const Vec3& value) {
+    if (key.type == ValueType::scale) return default_text(key, value.x);
+    return fmt::format("[{}, {}, {}]", value.x, value.y, value.z);
+}
+
+void set_option(KeySpec& key, Rule rule) {
+    key.required = key.required || rule == Rule::required;
+    key.not_zero = key.not_zero || rule == Rule::not_zero;
+    key.not_empty = key.not_empty || rule == Rule::not_empty;
+    key.built = key.built && rule != Rule::not_built;
+}
+
+}  // namespace ricochet::detail

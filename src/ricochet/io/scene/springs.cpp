@@ -1,0 +1,351 @@
+// Springs of a scene: one by one, and as ropes, chains and cloth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/springs.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+constexpr double kMostVertices = 1e8;  // of a sheet
+
+enum class PinnedEnds { none, from, to, both };
+
+// What a rope or a chain says.
+struct RopeKeys : RopeSettings {
+    std::size_t links = 1;
+    double link_length = 1.0;
+    PinnedEnds pinned = PinnedEnds::none;
+};
+
+// What cloth says, whatever its mesh comes from.
+struct ClothKeys : ClothSettings {
+    std::optional<double> total_mass;
+    std::optional<double> area_mass;
+    std::vector<std::uint64_t> pinned_vertices;
+    Placement placement;
+    Vec3 corner;
+    Vec3 side_u;
+    Vec3 side_v;
+    std::size_t cells_u = 1;
+    std::size_t cells_v = 1;
+};
+
+constexpr Range kElements = between(1.0, 1e8);
+
+// Lines that several tables share.
+
+template <class Struct>
+Field<Struct> damping() {
+    return {"damping", &Struct::damping, kLengthOrZero, "N s/m",
+            "Force against the rate at which a spring changes its length, over that rate."};
+}
+template <class Struct>
+Field<Struct> breaking_stretch() {
+    return {"breaking_stretch",
+            &Struct::breaking_stretch,
+            kPositive,
+            "",
+            "Stretch, as a part of the rest length, beyond which a spring breaks for good.",
+            Without{"it never breaks"}};
+}
+template <class Struct>
+Field<Struct> radius() {
+    return {"radius", &Struct::radius, kNotNegative, "m", "Radius of its particles."};
+}
+
+const ObjectSpec& spring_spec() {
+    using S = Spring;
+    static const ObjectSpec spec =
+        object<S>("spring", "A spring between two particles.",
+                  {{"first", &S::first, kCount, "", "Number of the particle at one end.", kRequired},
+                   {"second", &S::second, kCount, "", "Number of the particle at the other end.", kRequired},
+                   {"rest_length", &S::rest_length, kLengthOrZero, "m", "Length at which it neither pulls nor pushes.",
+                    Without{"the distance of its ends at the start"}},
+                   {"stiffness", &S::stiffness, kLengthOrZero, "N/m", "Force over stretch.", kRequired},
+                   damping<S>(),
+                   breaking_stretch<S>()});
+    return spec;
+}
+
+const ObjectSpec& pin_box_spec() {
+    static const ObjectSpec spec =
+        object("pin box", "A box along the axes; vertices in it, or on its surface, are pinned.",
+               box_fields("Its corner with the largest coordinates."));
+    return spec;
+}
+
+Variant list_variant() {
+    return variant<Unbound>(
+        "list",
+        "Springs one by one, between particles by their numbers from 0: first those of `particles`, then those of the "
+        "ropes, chains, cloths and sheets, each in its order.",
+        {{"springs", ValueType::list, "The springs.", &spring_spec(), kRequired}});
+}
+
+Fields<RopeKeys> rope_ends() {
+    return {{"from", &RopeKeys::from, kCoordinate, "m", "Place of its first particle.", kRequired},
+            {"to", &RopeKeys::to, kCoordinate, "m", "Place of its last particle.", kRequired}};
+}
+
+// What ropes and chains have in common.
+Fields<RopeKeys> rope_fields() {
+    using R = RopeKeys;
+    return {{"mass", &R::mass, kPositive, "kg", "Its whole mass.", kRequired},
+            radius<R>(),
+            {"stiffness", &R::stiffness, kLengthOrZero, "N/m", "Of every segment."},
+            {"axial_stiffness", &R::axial_stiffness, kLengthOrZero, "N",
+             "Of the material, E A: a segment's stiffness is this over its length at rest."},
+            damping<R>(),
+            breaking_stretch<R>(),
+            {"sag", &R::sag, kCoordinate, "",
+             "Direction in which it hangs at first where it is longer than the distance of its ends.", kNotZero,
+             Without{"with the uniform forces, or -z"}},
+            {"pinned", &R::pinned, "Which ends never move.",
+             Choices{choice(PinnedEnds::none, "none", "both are free"),
+                     choice(PinnedEnds::from, "from", "the first particle"),
+                     choice(PinnedEnds::to, "to", "the last particle"),
+                     choice(PinnedEnds::both, "both", "the first and the last particle")}}};
+}
+
+Variant rope_variant() {
+    using R = RopeKeys;
+    return variant("rope", "Particles at equal distances along a line, with springs between neighbours.",
+                   joined<R>({rope_ends(),
+                              {{"nodes", &R::nodes, between(2.0, 1e8), "", "Its particles.", kRequired},
+                               {"length", &R::length, kLength, "m",
+                                "Length at rest. A longer rope than the distance of its ends starts as a catenary, a "
+                                "shorter one straight and under tension.",
+                                Without{"the distance of its ends"}}},
+                              rope_fields()}),
+                   {"stiffness", "axial_stiffness"});
+}
+
+Variant chain_variant() {
+    using R = RopeKeys;
+    return variant(
+        "chain", "A rope by its links; one longer than the distance of its ends starts as a catenary.",
+        joined<R>({rope_ends(),
+                   {{"links", &R::links, kElements, "", "Springs in a row; it has one particle more.", kRequired},
+                    {"link_length", &R::link_length, kLength, "m", "Length of a link at rest.", kRequired}},
+                   rope_fields()}),
+        {"stiffness", "axial_stiffness"});
+}
+
+// What cloth has in common, whatever its mesh comes from.
+Fields<ClothKeys> cloth_fields() {
+    using C = ClothKeys;
+    return {{"mass", &C::total_mass, kPositive, "kg", "Its whole mass."},
+            {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass over area."},
+            radius<C>(),
+            {"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Of the springs along the edges.", kRequired},
+            {"bending_stiffness", &C::bending_stiffness, kLengthOrZero, "N/m",
+             "Of springs that join the corners across every edge between two triangles, and so resist bending."},
+            damping<C>(),
+            breaking_stretch<C>(),
+            {"pinned", &C::pinned_vertices, "Numbers, from 0, of vertices that never move.", Without{"none"}},
+            {"pin_boxes", ValueType::list, "Boxes in which vertices never move.", &pin_box_spec()}};
+}
+
+Variant cloth_variant() {
+    return variant(
+        "cloth",
+        "A particle at every vertex of a mesh, a spring along every edge; at rest as the mesh is. A particle has a "
+        "third of the mass of every triangle around it.",
+        joined<ClothKeys>({{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF.", kRequired}},
+                           placement_fields(&ClothKeys::placement),
+                           cloth_fields()}),
+        {"mass", "mass_per_area"});
+}
+
+Variant sheet_variant() {
+    using C = ClothKeys;
+    return variant(
+        "sheet",
+        "A cloth without a file: a flat sheet of cells of two triangles each. Vertex (i, j) has the number j (cells_u "
+        "+ 1) + i.",
+        joined<C>({{{"corner", &C::corner, kCoordinate, "m", "One of its corners.", kRequired},
+                    {"side_u", &C::side_u, kCoordinate, "m", "From there along one side to its end.", kRequired},
+                    {"side_v", &C::side_v, kCoordinate, "m", "From there along the other side.", kRequired},
+                    {"cells_u", &C::cells_u, kElements, "", "Cells along the one side.", kRequired},
+                    {"cells_v", &C::cells_v, kElements, "", "Cells along the other side.", kRequired}},
+                   cloth_fields()}),
+        {"mass", "mass_per_area"});
+}
+
+// Direction in which ropes hang at first.
+Vec3 fall_of(const SimulationSetup& setup) {
+    const Vec3 fall = uniform_acceleration(setup);
+    return fall == Vec3{} ? Vec3{0, 0, -1} : fall;
+}
+
+class SpringBuilder {
+public:
+    SpringBuilder(SceneContext& context, const SimulationSetup& setup)
+        : context_(context), all_{setup.particles, {}, {}}, fall_(fall_of(setup)) {
+        for (std::size_t i = 0; i < all_.particles.size(); ++i) all_.particles[i].id = i;
+    }
+
+    // Single springs come last: they may join any two particles.
+    SpringBody build() {
+        const std::vector<ObjectView> views = context_.objects("springs");
+        for (const ObjectView& view : views) {
+            if (view.type() == "list" || view.type().empty()) continue;
+            try {
+                const SpringBody body = body_of(view);
+                is_complete_ = is_complete_ && !body.particles.empty();
+                all_.append(body);
+            } catch (const InputError& problem) {
+                context_.error(view, problem.what());
+                is_complete_ = false;
+            }
+        }
+        for (const ObjectView& view : views) {
+            if (view.type() != "list") continue;
+            for (const ObjectView& spring : view.objects("springs")) add_spring(spring);
+        }
+        return std::move(all_);
+    }
+
+private:
+    SpringBody body_of(const ObjectView& view) {
+        if (view.type() == "rope" || view.type() == "chain") return rope_of(view);
+        return view.type() == "sheet" ? sheet_of(view) : cloth_of(view);
+    }
+
+    // What is refused already must not be refused again by the maker.
+    static bool is_complete(const ObjectView& view, std::initializer_list<std::string_view> keys,
+                            std::string_view either, std::string_view other) {
+        return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) { return view.has(key); }) &&
+               view.has(either) != view.has(other);
+    }
+
+    SpringBody rope_of(const ObjectView& view) {
+        const bool is_chain = view.type() == "chain";
+        const std::string_view count = is_chain ? "links" : "nodes";
+        if (!is_complete(view, {"from", "to", "mass", count}, "stiffness", "axial_stiffness")) return {};
+        if (is_chain && !view.has("link_length")) return {};
+        RopeKeys rope = view.read<RopeKeys>();
+        if (is_chain) {
+            rope.nodes = rope.links + 1;
+            rope.length = rope.link_length * static_cast<double>(rope.links);
+        }
+        if (!view.has("sag")) rope.sag = fall_;
+        rope.pin_from = rope.pinned == PinnedEnds::from || rope.pinned == PinnedEnds::both;
+        rope.pin_to = rope.pinned == PinnedEnds::to || rope.pinned == PinnedEnds::both;
+        return make_rope(rope);
+    }
+
+    SpringBody sheet_of(const ObjectView& view) {
+        if (!is_complete(view, {"corner", "side_u", "side_v", "cells_u", "cells_v", "stiffness"}, "mass",
+                         "mass_per_area")) {
+            return {};
+        }
+        const auto sheet = view.read<ClothKeys>();
+        const double vertices = (static_cast<double>(sheet.cells_u) + 1.0) * (static_cast<double>(sheet.cells_v) + 1.0);
+        if (vertices > kMostVertices) {
+            throw InputError(fmt::format("{:.3g} vertices, expected at most {:.3g}", vertices, kMostVertices));
+        }
+        return cloth_of(view, sheet_mesh(sheet.corner, sheet.side_u, sheet.side_v, sheet.cells_u, sheet.cells_v));
+    }
+
+    SpringBody cloth_of(const ObjectView& view) {
+        const auto mesh = context_.load_mesh(view);
+        if (!mesh || !is_complete(view, {"stiffness"}, "mass", "mass_per_area")) return {};
+        const auto world = context_.placed_mesh(view, "file", *mesh, view.read<ClothKeys>().placement);
+        return world ? cloth_of(view, *world) : SpringBody{};
+    }
+
+    SpringBody cloth_of(const ObjectView& view, const TriangleMesh& mesh) {
+        const double area = surface_area(mesh);
+        if (!(area > 0.0)) throw InputError("the mesh has no area to make cloth of");
+        auto cloth = view.read<ClothKeys>();
+        cloth.mass_per_area = cloth.total_mass ? *cloth.total_mass / area : cloth.area_mass.value_or(0.0);
+        for (const std::uint64_t vertex : cloth.pinned_vertices) {
+            if (vertex < mesh.vertices.size()) {
+                cloth.pinned.push_back(static_cast<std::uint32_t>(vertex));
+            } else {
+                context_.error(view, "pinned",
+                               fmt::format("found vertex {}, expected a number below {}, the number of vertices",
+                                           vertex, mesh.vertices.size()));
+            }
+        }
+        for (const ObjectView& box : view.objects("pin_boxes")) pin_in_box(box, mesh, cloth);
+        return make_cloth(mesh, cloth);
+    }
+
+    void pin_in_box(const ObjectView& view, const TriangleMesh& mesh, ClothSettings& cloth) const {
+        if (!view.has("lower") || !view.has("upper")) return;
+        const auto box = view.read<Box3>();
+        const std::size_t before = cloth.pinned.size();
+        for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+            if (box.contains(mesh.vertices[i])) cloth.pinned.push_back(i);
+        }
+        if (cloth.pinned.size() > before) return;
+        context_.error(view, "no vertex of the cloth lies in this box, expected at least one");
+    }
+
+    void add_spring(const ObjectView& view) {
+        auto spring = view.read<Spring>();
+        const bool has_ends = is_particle(view, "first", spring.first) && is_particle(view, "second", spring.second);
+        if (!has_ends || !view.has("stiffness")) return;
+        if (spring.first == spring.second) {
+            context_.error(view, "second",
+                           fmt::format("both ends are particle {}, expected two particles", spring.first));
+            return;
+        }
+        if (!view.has("rest_length")) {
+            spring.rest_length = length(all_.particles[spring.second].position - all_.particles[spring.first].position);
+        }
+        if (spring.rest_length == 0.0 && view.has("breaking_stretch")) {
+            context_.error(view, "breaking_stretch",
+                           "a spring without a rest length has no relative stretch, leave this key out");
+        }
+        all_.springs.push_back(spring);
+    }
+
+    // Reports a number that no particle has.
+    [[nodiscard]] bool is_particle(const ObjectView& view, std::string_view key, std::uint64_t number) const {
+        if (!view.has(key)) return false;
+        if (number < all_.particles.size()) return true;
+        if (!is_complete_) return false;  // it may be one of a body that was refused
+        context_.error(view, key,
+                       fmt::format("there is no particle {}, the scene has {} from the start (numbered from 0)", number,
+                                   all_.particles.size()));
+        return false;
+    }
+
+    SceneContext& context_;
+    SpringBody all_;
+    Vec3 fall_;
+    bool is_complete_ = true;  // no body has been refused
+};
+
+}  // namespace
+
+const ObjectSpec& springs_spec() {
+    static const ObjectSpec spec = object<Unbound>(
+        "springs",
+        "Springs between particles, and things made of them: ropes, chains and cloth bring their own particles. "
+        "docs/springs.md says how they pull and which integrator they need.",
+        {}, {list_variant(), rope_variant(), chain_variant(), cloth_variant(), sheet_variant()});
+    return spec;
+}
+
+void build_springs(SceneContext& context, SimulationSetup& setup) {
+    SpringBody body = SpringBuilder(context, setup).build();
+    setup.particles = std::move(body.particles);
+    setup.springs = std::move(body.springs);
+    setup.spring_faces = std::move(body.faces);
+}
+
+}  // namespace ricochet::detail

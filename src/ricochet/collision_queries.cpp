@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "ricochet/collision/contact_search.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/collision_queries_impl.h"
@@ -122,9 +122,9 @@ std::optional<RayHit> CollisionQueries::first_hit(const Vec3& origin, const Vec3
     const double longest =
         std::min({most_distance, length_of_interest(world, start, along), length_to_limits(start, along)});
     thread_local ContactScratch scratch;
-    ContactSearch search(world, scratch);
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
     const Path path = line_path(start, longest * along, 1.0);
-    const std::optional<Contact> contact = search.search(path, 0.0);
+    const std::optional<Contact> contact = find_first_contact(geometry, {path, 0.0}, scratch).contact;
     if (!contact) return std::nullopt;
     const double distance = contact->time * longest;
     return RayHit{distance, start + distance * along, contact->first().normal, world.name_of(contact->first().surface)};

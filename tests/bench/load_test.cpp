@@ -6,8 +6,8 @@
 #include <string>
 
 #include "bench/load.h"
-#include "geometry/temporary_folder.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::bench {
 namespace {

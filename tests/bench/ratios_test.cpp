@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::bench {
 namespace {

@@ -1,7 +1,7 @@
 // Nothing leaks: particles that start inside a closed mesh end inside it, by an exact parity test that shares nothing
 // with the library; and the segments they travel meet no triangle, by exact rational arithmetic, open meshes included.
 //
-// RICOCHET_LONG: the same claims with ten thousand particles and a thousand steps.
+// A long run: the same claims with ten thousand particles and a thousand steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,14 +16,8 @@
 namespace ricochet::testing {
 namespace {
 
-#ifdef RICOCHET_LONG
-constexpr bool kLong = true;
-#else
-constexpr bool kLong = false;
-#endif
-
 /// Impacts a step, about.
-constexpr double kImpacts = kLong ? 0.75 : 1.5;
+const double kImpacts = test::is_long_run() ? 0.75 : 1.5;
 
 /// How much is done in one place of the world.
 struct Amount {
@@ -33,7 +27,7 @@ struct Amount {
 Amount amount(const std::string& mesh, std::size_t placement) {
     const bool is_real = mesh.find('.') != std::string::npos;
     // The full number for real meshes where they are and moved by a thousand diagonals.
-    if (kLong) return {test::scaled(is_real && placement < 2 ? 10000 : 1000), 1000};
+    if (test::is_long_run()) return {test::scaled(is_real && placement < 2 ? 10000 : 1000), 1000};
     // The largest mesh takes its time to load; there is no need to repeat everything on it by default.
     return {test::scaled(mesh == "armadillo.obj" && placement > 1 ? 20 : 60), 50};
 }

@@ -126,17 +126,11 @@ INSTANTIATE_TEST_SUITE_P(Ratios, ClausingTube,
 // longer by (pi / n)^2 / 3, and a longer tube's transmission falls in proportion to at most that.
 TEST_P(ClausingTube, PassesTheFractionOfTheIntegralEquation) {
     constexpr int kSides = 256;
-#ifdef RICOCHET_LONG
-    const int molecules = 1000000;
-#else
-    const int molecules = test::scaled(8000);
-#endif
+    const int molecules = test::is_long_run() ? 1000000 : test::scaled(8000);
     const Sample sample = transmission(GetParam().ratio, kSides, molecules);
     const double faceting = GetParam().transmission * (kPi / kSides) * (kPi / kSides);
     EXPECT_NEAR(sample.mean(), GetParam().transmission, 3.0 * sample.error() + faceting);
 }
-
-#ifndef RICOCHET_LONG
 
 // Every hit in a sphere with cosine-law walls is uniform over the sphere and independent of the last: the squared chord
 // is uniform in [0, 4 R^2].
@@ -249,8 +243,6 @@ TEST(GasUnderGravity, TakesTheBarometricProfileOverADiffuseFloor) {
     EXPECT_NEAR(height.mean(), 1.0 / kGravity, 4.0 * height.error());
     EXPECT_NEAR(above_scale_height.mean(), std::exp(-1.0), 4.0 * above_scale_height.error());
 }
-
-#endif
 
 }  // namespace
 }  // namespace ricochet

@@ -21,13 +21,8 @@
 namespace ricochet {
 namespace {
 
-#ifdef RICOCHET_LONG
-constexpr int kSpheres = 600;
-constexpr int kSteps = 500;
-#else
-constexpr int kSpheres = 60;
-constexpr int kSteps = 60;
-#endif
+const int kSpheres = test::is_long_run() ? 600 : 60;
+const int kSteps = test::is_long_run() ? 500 : 60;
 
 double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     double nearest = INFINITY;

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "cli/run_program.h"
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {
 
-TEST(BenchCommand, MeasuresTheQuickSuiteAndWritesItsNumbers) {
+TEST(BenchCommandLong, MeasuresTheQuickSuiteAndWritesItsNumbers) {
     const test::TemporaryFolder folder;
     const std::string file = folder.path("bench.json").string();
     const test::ProgramResult result =
@@ -27,7 +27,7 @@ TEST(BenchCommand, MeasuresTheQuickSuiteAndWritesItsNumbers) {
     }
 }
 
-TEST(BenchCommand, WritesResultsAndRatiosAndSeesRatiosFall) {
+TEST(BenchCommandLong, WritesResultsAndRatiosAndSeesRatiosFall) {
     const test::TemporaryFolder folder;
     const std::string results = folder.path("deep/results").string();
     const std::string ratios = folder.path("ratios.json").string();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bench/cases.h"
 #include "cli/gnuplot.h"
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::cli {
 namespace {

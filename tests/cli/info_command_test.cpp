@@ -6,7 +6,7 @@
 
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

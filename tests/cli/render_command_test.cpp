@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "geometry/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "geometry/temporary_folder.h"
 #include "ricochet/io/vtk_reader.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::test {
 namespace {

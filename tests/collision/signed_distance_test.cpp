@@ -10,19 +10,15 @@
 #include <vector>
 
 #include "collision/worlds.h"
-#include "geometry/allocation_guard.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/parity.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
-
-#ifndef RICOCHET_CASE_FACTOR
-#define RICOCHET_CASE_FACTOR 1
-#endif
 
 namespace ricochet {
 namespace {
@@ -40,7 +36,7 @@ using testing::sphere_mesh;
 using testing::world_of;
 
 /// Repetitions of a random test.
-constexpr int cases(int full) { return RICOCHET_CASE_FACTOR * test::scaled(full); }
+int cases(int full) { return test::case_factor(100) * test::scaled(full); }
 
 bool same(const SurfacePoint& x, const SurfacePoint& y) {
     return x.point == y.point && x.direction == y.direction && x.distance == y.distance && x.side == y.side &&

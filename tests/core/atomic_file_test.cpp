@@ -6,8 +6,8 @@
 #include <iterator>
 #include <string_view>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

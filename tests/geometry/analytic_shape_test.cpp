@@ -21,13 +21,9 @@ using testing::RealVector;
 using testing::ShapeOracle;
 
 // The long test program repeats the claims on this many times as many cases.
-#ifndef RICOCHET_CASE_FACTOR
-#define RICOCHET_CASE_FACTOR 1
-#endif
-
 constexpr std::uint64_t kSeed = 20240917;
 
-constexpr int cases(int full) { return RICOCHET_CASE_FACTOR * test::scaled(full); }
+int cases(int full) { return test::case_factor(50) * test::scaled(full); }
 
 /// Numbers of one case.
 class Draws {

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "geometry/allocation_guard.h"
 #include "geometry/mesh_files.h"
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
+#include "support/allocation_guard.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

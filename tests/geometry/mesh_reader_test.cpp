@@ -10,14 +10,14 @@
 #include <thread>
 #include <vector>
 
-#include "geometry/allocation_guard.h"
 #include "geometry/mesh_files.h"
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/mesh_writer.h"
+#include "support/allocation_guard.h"
 #include "support/counts.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cstring>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

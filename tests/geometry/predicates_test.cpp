@@ -15,12 +15,9 @@ using testing::description;
 using testing::segment_triangle_case;
 using testing::SegmentTriangle;
 
-#ifndef RICOCHET_CASE_FACTOR
-#define RICOCHET_CASE_FACTOR 1
-#endif
 constexpr std::uint64_t kSeed = 20240607;
-constexpr std::uint64_t kCases = std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{test::scaled(100000)};
-constexpr std::uint64_t kSlowCases = std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{test::scaled(20000)};
+const auto kCases = static_cast<std::uint64_t>(test::case_factor(100) * test::scaled(100000));
+const auto kSlowCases = static_cast<std::uint64_t>(test::case_factor(100) * test::scaled(20000));
 
 /// Calls check(case) for `count` cases and names the case that fails.
 template <typename Check>

@@ -20,14 +20,10 @@ using testing::Digits;
 using testing::DigitsVec3;
 using testing::Triangle;
 
-#ifndef RICOCHET_CASE_FACTOR
-#define RICOCHET_CASE_FACTOR 1
-#endif
 constexpr std::uint64_t kSeed = 20240612;
-constexpr std::uint64_t kCases = 250ULL * RICOCHET_CASE_FACTOR;
+const auto kCases = static_cast<std::uint64_t>(test::case_factor(20) * 250);
 /// Of those that a hundred digits decide.
-constexpr std::uint64_t kOracleCases =
-    std::uint64_t{RICOCHET_CASE_FACTOR} * std::uint64_t{std::max(50, test::scaled(250))};
+const auto kOracleCases = static_cast<std::uint64_t>(test::case_factor(20) * std::max(50, test::scaled(250)));
 
 struct SphereCase {
     Triangle triangle;

@@ -13,13 +13,13 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/run_writer.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

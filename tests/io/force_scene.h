@@ -2,7 +2,7 @@
 /// A scene with every force and flow of the format, for tests that spoil it.
 #pragma once
 
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::test {
 

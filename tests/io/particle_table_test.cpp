@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::detail {
 namespace {

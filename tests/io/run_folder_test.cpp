@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
 

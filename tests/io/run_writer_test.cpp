@@ -10,12 +10,12 @@
 #include <string>
 #include <utility>
 
-#include "geometry/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

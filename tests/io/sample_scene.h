@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::test {
 

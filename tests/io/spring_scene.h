@@ -2,7 +2,7 @@
 /// A scene with every kind of springs of the format, for tests that spoil it.
 #pragma once
 
-#include "geometry/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet::test {
 

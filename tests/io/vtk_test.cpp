@@ -6,11 +6,11 @@
 #include <limits>
 #include <string>
 
-#include "geometry/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/vtk_reader.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

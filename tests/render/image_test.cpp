@@ -9,8 +9,8 @@
 
 #include <memory>
 
-#include "geometry/temporary_folder.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {

@@ -1,8 +1,10 @@
 /// \file
-/// How many repetitions a random test makes: the full number in an optimised build, fewer where each one costs more.
+/// How many repetitions a random test makes: the full number in an optimised build, fewer where each one costs more,
+/// more in a long run.
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace ricochet::test {
 
@@ -30,5 +32,13 @@ inline constexpr bool kOptimised = false;
     const int divisor = kSanitized ? 50 : (kOptimised ? 1 : 10);
     return std::max(1, full / divisor);
 }
+
+/// Whether the tests run with full counts: the environment variable RICOCHET_LONG_TESTS is set.
+[[nodiscard]] inline bool is_long_run() noexcept {
+    return std::getenv("RICOCHET_LONG_TESTS") != nullptr;  // NOLINT(concurrency-mt-unsafe): nothing sets it
+}
+
+/// How many times as many cases a long run makes: `in_a_long_run` there, else 1.
+[[nodiscard]] inline int case_factor(int in_a_long_run) noexcept { return is_long_run() ? in_a_long_run : 1; }
 
 }  // namespace ricochet::test

@@ -1,4 +1,4 @@
-#include "geometry/allocation_guard.h"
+#include "support/allocation_guard.h"
 
 #include <malloc.h>
 

@@ -2,7 +2,7 @@
 // scenes, as hashes.csv holds them. They are the same for any number of threads, with every optimisation on or off, for
 // every compiler, instruction set and version of Embree. A change of a value needs a reason in its commit.
 //
-// To print the table as the code now is: RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Golden*' (the lines that
+// To print the table as the code now is: RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Scene*' (the lines that
 // begin with "golden,"). Nothing writes it by itself.
 #include <gtest/gtest.h>
 
@@ -19,6 +19,7 @@
 
 #include "golden/random_scene.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
@@ -204,6 +205,34 @@ TEST_P(GoldenRandomScenes, EndInTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenRandomScenes, ::testing::Range(0, kRandomScenes / 8));
+
+/// Some of the random scenes, with Embree held to one instruction set.
+class GoldenInstructionSet : public ::testing::TestWithParam<const char*> {
+protected:
+    void TearDown() override { set_embree_config(""); }
+};
+
+bool processor_has(const std::string& instructions) {
+    if (instructions == "avx2") return __builtin_cpu_supports("avx2") != 0;
+    if (instructions == "avx512") return __builtin_cpu_supports("avx512dq") != 0;
+    return true;
+}
+
+TEST_P(GoldenInstructionSet, EndsInTheSameBits) {
+    if (!processor_has(GetParam())) GTEST_SKIP() << "this processor lacks " << GetParam();
+    set_embree_config(std::string("isa=") + GetParam());
+    for (int number = 0; number < kRandomScenes; number += test::kSanitized ? 31 : 5) {
+        SimulationSetup setup = parse_scene(random_scene(number), kRoot / "scenes" / "random.json").setup;
+        expect_golden("random_" + std::to_string(number), run(std::move(setup), 2));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GoldenInstructionSet, ::testing::Values("sse2", "sse4.2", "avx2", "avx512"),
+                         [](const auto& info) {
+                             std::string name = info.param;
+                             std::erase(name, '.');
+                             return name;
+                         });
 
 TEST(GoldenTable, NamesEveryShippedScene) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "scenes")) {

@@ -10,7 +10,8 @@
 namespace ricochet::golden {
 namespace {
 
-/// Random numbers whose bits the C++ standard fixes; distributions of the standard library would differ.
+/// Random numbers whose bits the C++ standard fixes; distributions of the standard library would differ. An expression
+/// draws once at most: compilers evaluate operands and arguments in different orders.
 class Numbers {
 public:
     explicit Numbers(int seed) : engine_(static_cast<std::uint64_t>(seed) + 1) {}
@@ -122,7 +123,9 @@ std::string material(const std::string& name, Numbers& numbers) {
 
 /// Materials that draw random numbers go with the exact response only.
 std::string materials(int number, Numbers& numbers) {
-    std::string out = R"("materials": {)" + material("wall", numbers) + ", " + material("body", numbers);
+    const std::string body = material("body", numbers);
+    const std::string wall = material("wall", numbers);
+    std::string out = R"("materials": {)" + wall + ", " + body;
     out += R"(, "noisy": {"restitution": 0.8, "friction": 0.1)";
     if (number % 8 < 2) out += R"(, "diffuse": 0.5, "absorption": 0.1)";
     return out + "}},\n";
@@ -130,7 +133,10 @@ std::string materials(int number, Numbers& numbers) {
 
 std::string placement(Numbers& numbers) {
     std::string out = R"("position": )" + vector(numbers, 0.6) + R"(, "rotation": {"axis": )";
-    out += vector(numbers.between(0.1, 1.0), numbers.between(-1.0, 1.0), numbers.between(-1.0, 1.0));
+    const double z = numbers.between(-1.0, 1.0);
+    const double y = numbers.between(-1.0, 1.0);
+    const double x = numbers.between(0.1, 1.0);
+    out += vector(x, y, z);
     return out + R"(, "degrees": )" + text(numbers.between(0.0, 180.0)) + "}";
 }
 
@@ -148,9 +154,10 @@ std::string colliders(int number, Numbers& numbers) {
                R"(.obj", "scale": 0.4, "material": "noisy", )" + placement(numbers) + "}";
     }
     if (number % 3 == 1) {
-        out += R"(, {"name": "ball", "type": "sphere", "radius": 0.5, "scale": )" +
-               (numbers.chance(0.5) ? std::string("1") : vector(1.3, 0.8, 0.6)) + R"(, "material": "body", )" +
-               placement(numbers) + "}";
+        const std::string where = placement(numbers);
+        const std::string scale = numbers.chance(0.5) ? "1" : vector(1.3, 0.8, 0.6);
+        out += R"(, {"name": "ball", "type": "sphere", "radius": 0.5, "scale": )" + scale;
+        out += R"(, "material": "body", )" + where + "}";
     }
     if (number % 3 == 2) {
         out += R"(, {"name": "drum", "type": "cylinder", "radius": 0.4, "height": 0.9, "material": "body", )" +

@@ -110,7 +110,8 @@ public:
         double finer = 1.0;
         for (std::uint32_t k = 0; k < settings.octaves; ++k) {
             RandomSequence random(settings.seed, kOffsetStream, k);
-            const Vec3 offset(random.uniform() * kTable, random.uniform() * kTable, random.uniform() * kTable);
+            Vec3 offset;  // drawn one by one, z first: compilers evaluate a call's arguments in different orders
+            for (const int axis : {2, 1, 0}) offset[axis] = random.uniform() * kTable;
             octaves_.push_back({finer / settings.length, factor, settings.rate * finer * factor, offset,
                                 static_cast<std::uint32_t>(random.uniform() * kTable)});
             squares += factor * factor;

@@ -1,4 +1,5 @@
-# Installation: the library with its headers, the tool, the CMake package, the pkg-config file; and CPack's .deb.
+# Installation: the library with its public headers, the tool, the CMake package, the pkg-config file, documents, the
+# scene schema and scenes with their meshes; and CPack's .deb.
 include(CMakePackageConfigHelpers)
 
 set(ricochet_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ricochet)
@@ -31,7 +32,13 @@ file(RELATIVE_PATH ricochet_prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/ricochet.pc.in ricochet.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/ricochet.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(FILES LICENSE THIRD_PARTY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN scene.schema.json EXCLUDE)
+set(ricochet_data_dir ${CMAKE_INSTALL_DATADIR}/ricochet)
+install(FILES docs/scene.schema.json DESTINATION ${ricochet_data_dir})
+install(DIRECTORY scenes DESTINATION ${ricochet_data_dir})
+# Scenes name meshes beside their folder.
+install(DIRECTORY meshes DESTINATION ${ricochet_data_dir} FILES_MATCHING PATTERN *.obj PATTERN README.md PATTERN generators EXCLUDE)
 
 set(CPACK_PACKAGE_VENDOR "The Ricochet authors")
 set(CPACK_PACKAGE_CONTACT "The Ricochet authors")

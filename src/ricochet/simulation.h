@@ -13,7 +13,7 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/surface.h"
 #include "ricochet/collision_queries.h"
-#include "ricochet/core/binary_archive.h"
+#include "ricochet/core/byte_stream.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"

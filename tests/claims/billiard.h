@@ -8,7 +8,7 @@
 
 #include "claims/hard_meshes.h"
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 #include "support/parity.h"
 
 namespace ricochet::testing {

@@ -1,5 +1,6 @@
 // Orders of convergence in free flight, against closed forms; what symplectic methods keep; what an adaptive one
 // promises.
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/integrator.h"
 
 #include <gtest/gtest.h>

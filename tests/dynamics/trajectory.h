@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 
 namespace ricochet::test {
 

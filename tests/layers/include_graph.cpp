@@ -90,13 +90,12 @@ std::optional<std::string> layer_of(const std::string& path) {
 
 bool is_header(const std::string& path) { return path.ends_with(".h"); }
 
-bool is_private(const SourceTree& tree, const std::string& path) {
-    return tree.private_headers.contains(path) || path.find("/detail/") != std::string::npos;
-}
-
 /// A header that an installation contains.
-bool is_public_header(const SourceTree& tree, const std::string& path) {
-    return is_header(path) && path.starts_with(kLibrary) && !is_private(tree, path);
+bool is_public_header(const SourceTree& tree, const std::string& path) { return tree.public_headers.contains(path); }
+
+/// One of the library's other headers.
+bool is_private(const SourceTree& tree, const std::string& path) {
+    return is_header(path) && path.starts_with(kLibrary) && !is_public_header(tree, path);
 }
 
 /// The file of the tree that an include line names; nothing when it is somebody else's.
@@ -121,9 +120,9 @@ std::vector<Include> read_includes(const fs::path& file) {
     return includes;
 }
 
-std::set<std::string> read_private_headers(const fs::path& root) {
+std::set<std::string> read_public_headers(const fs::path& root) {
     std::set<std::string> headers;
-    std::ifstream stream(root / kLibrary / "private_headers.txt");
+    std::ifstream stream(root / kLibrary / "public_headers.txt");
     std::string text;
     while (std::getline(stream, text)) {
         if (!text.empty() && !text.starts_with('#')) headers.insert(kLibrary + text);
@@ -176,7 +175,7 @@ std::optional<std::string> wrong(const SourceTree& tree, const std::set<std::str
 
 SourceTree read_source_tree(const fs::path& root) {
     SourceTree tree;
-    tree.private_headers = read_private_headers(root);
+    tree.public_headers = read_public_headers(root);
     for (const char* folder : {"src", "tests", "meshes", "bench"}) {
         if (!fs::is_directory(root / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -201,8 +200,8 @@ std::vector<std::string> broken_rules(const SourceTree& tree) {
             }
         }
     }
-    for (const std::string& header : tree.private_headers) {
-        if (!paths.contains(header)) broken.push_back("private_headers.txt names " + header + ", which does not exist");
+    for (const std::string& header : tree.public_headers) {
+        if (!paths.contains(header)) broken.push_back("public_headers.txt names " + header + ", which does not exist");
     }
     return broken;
 }

@@ -22,13 +22,13 @@ struct SourceFile {
     std::vector<Include> includes;
 };
 
-/// The files to check, and which headers of the library are private (not installed).
+/// The files to check, and which headers of the library are public (installed).
 struct SourceTree {
-    std::vector<SourceFile> files;          ///< in the order of their paths
-    std::set<std::string> private_headers;  ///< paths below the root, besides those in `detail` folders
+    std::vector<SourceFile> files;         ///< in the order of their paths
+    std::set<std::string> public_headers;  ///< paths below the root
 };
 
-/// The .h and .cpp files in src, tests, meshes and bench below root, and src/ricochet/private_headers.txt.
+/// The .h and .cpp files in src, tests, meshes and bench below root, and src/ricochet/public_headers.txt.
 [[nodiscard]] SourceTree read_source_tree(const std::filesystem::path& root);
 
 /// Every broken rule as "file:line: what is wrong", in the order of the files. Empty when the tree keeps them all:

@@ -17,7 +17,13 @@ SourceTree planted(const std::string& path, const std::string& name) {
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
-    tree.private_headers = {"src/ricochet/geometry/acceleration/embree.h"};
+    // Planted headers are public, but for what is behind doors or in a folder of details.
+    for (const SourceFile& file : tree.files) {
+        const bool is_library = file.path.starts_with("src/ricochet/") && file.path.ends_with(".h");
+        if (is_library && file.path.find("/detail/") == std::string::npos && !file.path.ends_with("/embree.h")) {
+            tree.public_headers.insert(file.path);
+        }
+    }
     if (name != "ricochet/geometry/acceleration/embree.h")
         tree.files.push_back({"src/ricochet/geometry/acceleration/embree.h", {}});
     return tree;
@@ -36,7 +42,8 @@ TEST(IncludeGraph, OfThisRepositoryKeepsTheLayers) {
 
 TEST(IncludeGraph, OfThisRepositoryHasEveryPublicHeaderInTheUmbrella) {
     EXPECT_EQ(missing_from_umbrella(read_source_tree(RICOCHET_SOURCE_DIR)), std::vector<std::string>{})
-        << "add them to src/ricochet/ricochet.h or, when they are private, to src/ricochet/private_headers.txt";
+        << "add them to src/ricochet/ricochet.h or, when they are private, take them out of "
+           "src/ricochet/public_headers.txt";
 }
 
 TEST(IncludeGraph, FindsAPlantedViolation) {
@@ -62,7 +69,7 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},                  // and its numbers
         {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},                      // upward
         {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
-        {"src/ricochet/verify/verifier.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
+        {"src/ricochet/response/exact.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
         {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
         {"src/ricochet/compare/comparison.cpp", "bench/cases.h"},            // the library knows no benchmark
         {"src/bench/cases.cpp", "ricochet/io/scene.h"},                      // whose cases are no scene files
@@ -130,7 +137,7 @@ TEST(IncludeGraph, IsReadFromFilesWithLineNumbersAndWithoutComments) {
     std::filesystem::create_directories(root / "src/ricochet/core");
     std::ofstream(root / "src/ricochet/core/a.h")
         << "#pragma once\n// #include <tbb/tbb.h>\n  # include \"x/y.h\" // z\n";
-    std::ofstream(root / "src/ricochet/private_headers.txt") << "# comment\ncore/a.h\n";
+    std::ofstream(root / "src/ricochet/public_headers.txt") << "# comment\ncore/a.h\n";
     const SourceTree tree = read_source_tree(root);
     std::filesystem::remove_all(root);
     ASSERT_EQ(tree.files.size(), 1U);
@@ -138,7 +145,7 @@ TEST(IncludeGraph, IsReadFromFilesWithLineNumbersAndWithoutComments) {
     ASSERT_EQ(tree.files[0].includes.size(), 1U);
     EXPECT_EQ(tree.files[0].includes[0].line, 3);
     EXPECT_EQ(tree.files[0].includes[0].name, "x/y.h");
-    EXPECT_EQ(tree.private_headers, std::set<std::string>{"src/ricochet/core/a.h"});
+    EXPECT_EQ(tree.public_headers, std::set<std::string>{"src/ricochet/core/a.h"});
 }
 
 }  // namespace

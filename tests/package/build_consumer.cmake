@@ -26,18 +26,24 @@ else()
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${library_build} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-file(GLOB_RECURSE header_files RELATIVE "${prefix}/include" "${prefix}/include/*.h")
-file(STRINGS ${source_dir}/src/ricochet/private_headers.txt private_headers REGEX "^[^#]")
-list(TRANSFORM private_headers PREPEND "ricochet/")
-foreach(header IN LISTS header_files)
-  if(header IN_LIST private_headers OR header MATCHES "/detail/")
-    message(FATAL_ERROR "the private header ${header} was installed")
+# The public headers and no others; documents, the schema and scenes.
+file(GLOB_RECURSE header_files RELATIVE "${prefix}/include/ricochet" "${prefix}/include/*.h")
+file(STRINGS ${source_dir}/src/ricochet/public_headers.txt public_headers REGEX "^[^#]")
+list(SORT header_files)
+list(SORT public_headers)
+if(NOT header_files STREQUAL public_headers)
+  message(FATAL_ERROR "installed are the headers ${header_files}, expected ${public_headers}")
+endif()
+foreach(file IN ITEMS doc/ricochet/docs/scene-format.md ricochet/scene.schema.json ricochet/scenes/bouncing_ball.json
+        ricochet/meshes/bowl.obj)
+  if(NOT EXISTS "${prefix}/share/${file}")
+    message(FATAL_ERROR "share/${file} was not installed")
   endif()
 endforeach()
 
 # The consumer runs a scene.
 function(check_output program)
-  execute_process(COMMAND ${program} ${source_dir}/scenes/bouncing_ball.json
+  execute_process(COMMAND ${program} "${prefix}/share/ricochet/scenes/bouncing_ball.json"
     OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
   if(NOT output MATCHES "^[1-9][0-9]* particles after 6 s, state [0-9a-f]+\n$")
     message(FATAL_ERROR "${program} printed '${output}'")

@@ -5,22 +5,17 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/byte_stream.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
-
-/// Takes the bytes, at least one, in order; throws when it cannot.
-using ByteSink = std::function<void(std::span<const std::byte>)>;
-/// Gives exactly as many bytes as the span holds, at least one, in order; throws when there are not so many.
-using ByteSource = std::function<void(std::span<std::byte>)>;
 
 /// Types that are saved as they are in memory: without pointers and padding.
 template <class T>

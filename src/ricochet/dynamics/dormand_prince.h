@@ -8,8 +8,8 @@
 #include <array>
 #include <cstddef>
 
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
-#include "ricochet/dynamics/integrator.h"
 
 namespace ricochet {
 

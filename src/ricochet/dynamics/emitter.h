@@ -22,7 +22,6 @@
 #include "ricochet/dynamics/frame_tree.h"
 #include "ricochet/dynamics/keyed_curve.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -118,6 +117,8 @@ struct LaunchPlace {
     Vec3 position;
     Vec3 direction;  ///< the shape's own, of unit length
 };
+
+class MeshInterior;
 
 /// Draws places of a shape.
 class ShapeSampler {

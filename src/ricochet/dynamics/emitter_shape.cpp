@@ -7,6 +7,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/predicates/predicates.h"
 

@@ -3,8 +3,8 @@
 /// meaning there.
 #pragma once
 
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
-#include "ricochet/dynamics/integrator.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {

@@ -2,7 +2,7 @@
 /// Steps of particles that meet nothing: where begin_flight() would lead to, without its path.
 #pragma once
 
-#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

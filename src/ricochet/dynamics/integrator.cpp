@@ -1,3 +1,4 @@
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/integrator.h"
 
 #include <algorithm>

@@ -1,13 +1,10 @@
 /// \file
-/// Integrators by name, and the path that each says a particle takes inside a step.
+/// Integrators by name, with their settings.
 #pragma once
 
 #include <optional>
 #include <string_view>
 #include <vector>
-
-#include "ricochet/dynamics/forces.h"
-#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
@@ -50,70 +47,5 @@ struct Integrator {
 }
 /// All names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string_view> integrator_names();
-
-/// Position and velocity, m and m/s.
-struct PhaseState {
-    Vec3 position;
-    Vec3 velocity;
-};
-
-/// What a particle does until the end of the step, or until something is in its way.
-struct Flight {
-    Path path;          ///< where it goes
-    Vec3 acceleration;  ///< what the forces do at the start, m/s^2
-    double kick_duration =
-        0.0;             ///< s of force that the velocity along the path already contains (0: none, it builds up)
-    ForceInput start{};  ///< the state that the flight starts from; one-step methods step from it again
-    Vec3 end_velocity;   ///< velocity at the end of the path, m/s
-    double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
-    bool steps_again = false;    ///< velocities on the way are those of a shorter step, not the path's derivative
-};
-
-/// The flight that starts at the beginning of a step (or at birth), over `duration` seconds; an adaptive method may end
-/// it earlier, at the end of its first sub-step.
-///
-/// forward_euler goes straight on with the velocity that it has. velocity_verlet (L. Verlet 1967; velocity form: W. C.
-/// Swope et al., J. Chem. Phys. 76, 1982) flies the parabola of the first force; forces that depend on the velocity see
-/// the one predicted with it.
-///
-/// dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980) halves its step until the embedded
-/// error estimates of position and velocity and the estimated distance between trajectory and path, h^4 / 384 times the
-/// fourth derivative, are within the tolerance.
-///
-/// symplectic_euler is a splitting: one kick with the whole step's force, then force-free drift; an impact turns the
-/// drift and the forces do not act again in that step. Kick and drift are each exact flows (with elastic walls the
-/// drift is a billiard), so the method stays symplectic with bounces and an elastic ball's height stays bounded.
-/// Kicking again after each impact would lose energy at every bounce in the order of g * dt * speed. Source: E. Hairer,
-/// C. Lubich, G. Wanner, "Geometric Numerical Integration", 2nd ed., section VI.3 (splitting).
-///
-/// implicit_euler kicks with the force at the end of the step, found by Newton's method, and drifts; an impact turns
-/// the drift as with symplectic_euler. It damps what is faster than the step and is for stiff forces. Source: E.
-/// Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.3.
-///
-/// ballistic holds the acceleration of the step's start over the step, and evaluates it anew after each impact.
-///
-/// midpoint and rk4 make their ordinary step; the path is the cubic Hermite polynomial through both end states, whose
-/// error of fourth order in the duration is that of the impact's time (E. Hairer, S. P. Norsett, G. Wanner, "Solving
-/// Ordinary Differential Equations I", section II.6, dense output). Where the acceleration is uniform the path is the
-/// exact parabola.
-[[nodiscard]] Flight begin_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
-                                  double duration);
-/// The flight that goes on after an impact, with the reflected velocity in `state`.
-[[nodiscard]] Flight resume_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
-                                   const Flight& before, double duration);
-/// Velocity at flight time s: what is reflected at an impact and stored at the end. It is that of a step of length s
-/// from the flight's start: the Hermite path's own derivative would lose an order.
-[[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
-
-/// For an acceleration that depends on neither position, velocity nor time: the parabola on which the ends of all
-/// further steps of `time_step` seconds lie, up to rounding, if nothing stands in the way. It begins with the flight,
-/// which and whose successors lie within |acceleration| time_step^2 / 8 of it. duration >= that of the flight, s.
-[[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step,
-                                   double duration);
-
-/// Position and velocity at flight time s: midpoint, rk4 and dormand_prince step from the flight's start again, the
-/// others are on the flight's path.
-[[nodiscard]] PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight,
-                                  double s);
 
 }  // namespace ricochet

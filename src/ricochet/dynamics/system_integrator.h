@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/particle_system.h"
 
 namespace ricochet {

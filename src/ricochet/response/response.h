@@ -13,7 +13,7 @@
 #include "ricochet/core/segment.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/settings.h"

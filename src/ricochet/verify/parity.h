@@ -16,11 +16,9 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/verify/violation.h"
 
 namespace ricochet {
-
-/// Where a place is.
-enum class Side : std::uint8_t { inside, outside, on_surface };
 
 /// Edges (pairs of different positions) that belong to an odd number of triangle sides; 0 for a mesh that encloses.
 [[nodiscard]] std::size_t count_open_edges(const TriangleMesh& mesh);

@@ -1,4 +1,5 @@
 #include "ricochet/verify/verifier.h"
+#include "ricochet/verify/parity.h"
 
 #include <algorithm>
 #include <bit>

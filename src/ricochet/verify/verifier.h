@@ -18,7 +18,6 @@
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/verify/parity.h"
 #include "ricochet/verify/violation.h"
 
 namespace ricochet {

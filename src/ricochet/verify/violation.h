@@ -9,6 +9,9 @@
 
 namespace ricochet {
 
+/// Where a place is.
+enum class Side : std::uint8_t { inside, outside, on_surface };
+
 /// What is wrong.
 enum class ViolationKind : std::uint8_t {
     crossing,    ///< a segment that was travelled meets a surface

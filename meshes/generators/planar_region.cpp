@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
 constexpr double kMostSteps = 1e6;  // keeps a tiny edge length from overflowing the step count
 
-/// Hands out point numbers of a grid, making a point when it is first asked for.
+/// Hands out point numbers of a grid, making a point when it is first used.
 class GridPoints {
 public:
     GridPoints(std::span<const double> xs, std::span<const double> ys, PlanarRegion& region)

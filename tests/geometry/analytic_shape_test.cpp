@@ -78,9 +78,9 @@ Case random_case(Draws& draws) {
         placement.rotation_axis = draws.direction();
         placement.rotation_degrees = draws.uniform(-180, 180);
     }
-    const int place = draws.one_of(3);
-    if (place == 1) placement.position = 3.0 * scale * draws.direction();
-    if (place == 2) placement.position = 1e6 * draws.direction();
+    const int position = draws.one_of(3);
+    if (position == 1) placement.position = 3.0 * scale * draws.direction();
+    if (position == 2) placement.position = 1e6 * draws.direction();
     return {placement, draws.one_of(2) == 0};
 }
 
@@ -180,7 +180,7 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
         EXPECT_LE(std::fabs(length(p - nearest.point) - size), rounding);
         EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(nearest.point)).distance)), rounding);
         EXPECT_NEAR(length(nearest.normal), 1.0, 0x1p-51);
-        // The normal errs as if the place were off by its rounding; outside it turns by 1 / (radius of curvature +
+        // The normal errs as if the position were off by its rounding; outside it turns by 1 / (radius of curvature +
         // distance). Inside the radius is less, by the depth.
         const double curvature_radius = c.smallest * c.smallest / c.largest;
         const double turn = 0x1p-52 * length(p - c.placement.position) / (curvature_radius + size);
@@ -267,12 +267,12 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
             q = p - below.distance * (1.0 - draws.power_of_ten(-15, -1)) * below.normal +
                 c.smallest * draws.power_of_ten(-8, 1) * aside;
         }
-        const bool is_free = c.shape.segment_is_clear(p, q);
-        const bool meets = c.oracle.meets(real(p), real(q));
-        EXPECT_FALSE(is_free && meets);
+        const bool is_clear = c.shape.segment_is_clear(p, q);
+        const bool intersects = c.oracle.intersects(real(p), real(q));
+        EXPECT_FALSE(is_clear && intersects);
         // Refused without need only where the segment passes within rounding, which random segments do not.
-        EXPECT_TRUE(is_free || meets || c.shape.side(p) == 0 || c.shape.side(q) == 0);
-        ++(is_free ? freed : refused);
+        EXPECT_TRUE(is_clear || intersects || c.shape.side(p) == 0 || c.shape.side(q) == 0);
+        ++(is_clear ? freed : refused);
     }
     EXPECT_GT(freed, refused / 4);
     EXPECT_GT(refused, freed / 4);
@@ -326,14 +326,14 @@ void expect_true_first_contact(const Case& c, const Path& path, double radius,
     for (int k = 0; k < 16; ++k) EXPECT_GE(gap_at(end * (1.0 - std::pow(10.0, -k))), -rounding) << k;
     if (!found) return;
     EXPECT_LE(std::fabs(gap_at(end)), rounding);
-    const Vec3 place = path.position(end);
-    const double far = 8.0 * ulp(largest_coordinate(place, c)) + rounding;
-    EXPECT_NEAR(length(place - found->point), radius, far);
+    const Vec3 position = path.position(end);
+    const double far = 8.0 * ulp(largest_coordinate(position, c)) + rounding;
+    EXPECT_NEAR(length(position - found->point), radius, far);
     EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(found->point)).distance)), far);
     EXPECT_LE(dot(found->normal, path.velocity(end)), 0x1p-20 * largest_speed(path));
     EXPECT_NEAR(length(found->normal), 1.0, 0x1p-51);
     // From the surface to the centre: that is the outward normal at the point, turned to the side it comes from.
-    EXPECT_LE(length(place - found->point - radius * found->normal), far + 0x1p-48 * size);
+    EXPECT_LE(length(position - found->point - radius * found->normal), far + 0x1p-48 * size);
 }
 
 void check_first_contacts(std::uint32_t stream, int count, bool with_radius) {
@@ -388,8 +388,8 @@ TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
         const RealVector w = testing::sum(real(p), Real(-1), real(placement.position));
         const Real a = testing::dot(real(v), real(v));
         const Real b = testing::dot(real(v), w);
-        const Real reach = is_inside ? Real(radius) - swept : Real(radius) + swept;
-        const Real c = testing::dot(w, w) - reach * reach;
+        const Real distance = is_inside ? Real(radius) - swept : Real(radius) + swept;
+        const Real c = testing::dot(w, w) - distance * distance;
         if (is_inside ? c >= 0 : c <= 0) continue;  // rounded into overlap
         const Real discriminant = b * b - a * c;
         if (!is_inside && (discriminant <= 0 || b >= 0)) {
@@ -407,7 +407,7 @@ TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
 
 TEST(AnalyticShape, StopsABallOnTheRimOfACylinder) {
     const AnalyticShape can = cylinder_of({2, 2, 3});
-    // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the rim 0.4 above the cap.
+    // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the edge 0.4 above the cap.
     const auto contact = can.first_contact(line_path({2.3, 0, 10}, {0, 0, -1}, 10.0), 0.5);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->time, 6.6, 4e-15);
@@ -417,7 +417,7 @@ TEST(AnalyticShape, StopsABallOnTheRimOfACylinder) {
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->time, 6.5);
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->normal, Vec3(0, 0, 1));
     EXPECT_FALSE(can.first_contact(line_path({2.5 + 1e-12, 0, 10}, {0, 0, -1}, 20.0), 0.5));
-    // On its way along the side a parabola comes down to the lower rim.
+    // Along the side a parabola comes down to the lower edge.
     EXPECT_NEAR(can.first_contact(parabola_path({3, 0, -6}, {0, 0, 0}, {-0.28, 0, 1.04}, 4.0), 0.5)->time,
                 std::sqrt(5.0), 4e-15);
 }
@@ -507,11 +507,11 @@ TEST(AnalyticShape, StopsOnlyApproachingMotionOfAnOverlappingBall) {
 
 TEST(AnalyticShape, TurnsAPointBornOnTheSurfaceBackFromWhereItHeads) {
     for (const AnalyticShape& shape : {ball_of({2, 2, 2}), ball_of({2, 3, 4}), cylinder_of({2, 3, 4})}) {
-        for (const double way : {1.0, -1.0}) {
-            const auto contact = shape.first_contact(line_path({2, 0, 0}, {way, 0.1, 0.2}, 1), 0.0);
+        for (const double direction : {1.0, -1.0}) {
+            const auto contact = shape.first_contact(line_path({2, 0, 0}, {direction, 0.1, 0.2}, 1), 0.0);
             ASSERT_TRUE(contact);
             EXPECT_EQ(contact->time, 0.0);
-            EXPECT_EQ(contact->normal, Vec3(-way, 0, 0));
+            EXPECT_EQ(contact->normal, Vec3(-direction, 0, 0));
             EXPECT_EQ(contact->point, Vec3(2, 0, 0));
         }
     }
@@ -531,7 +531,7 @@ TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
         const Vec3 p = random_point(draws, c);
         const Path path = random_path(draws, p, p + c.largest * draws.power_of_ten(-2, 1) * draws.direction(),
                                       c.largest * draws.power_of_ten(-3, 0));
-        const double reach = c.smallest * draws.power_of_ten(-6, 1);
+        const double margin = c.smallest * draws.power_of_ten(-6, 1);
         double least = std::numeric_limits<double>::infinity();
         const int side = c.shape.side(p);
         for (int k = 0; k <= 100; ++k) {
@@ -540,12 +540,12 @@ TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
                 least = std::min(least, side * c.shape.closest_point(q).distance);
             }
         }
-        const bool is_clear = c.shape.can_cull(path, reach);
+        const bool is_clear = c.shape.can_cull(path, margin);
         if (is_clear) {
-            EXPECT_GT(least, reach);
+            EXPECT_GT(least, margin);
         }
-        clearable += static_cast<int>(least > 1.5 * reach + 0.1 * c.largest);
-        cleared += static_cast<int>(is_clear && least > 1.5 * reach + 0.1 * c.largest);
+        clearable += static_cast<int>(least > 1.5 * margin + 0.1 * c.largest);
+        cleared += static_cast<int>(is_clear && least > 1.5 * margin + 0.1 * c.largest);
     }
     EXPECT_GT(cleared, clearable * 9 / 10);
 }
@@ -568,11 +568,11 @@ struct Bouncer {
             v = path.velocity(path.duration);
             return false;
         }
-        const Vec3 place = path.position(contact->time);
-        const double distance = std::fabs(shape.closest_point(place).distance);
-        const bool is_past = radius == 0.0 && dot(place - contact->point, contact->normal) < 0.0;
+        const Vec3 position = path.position(contact->time);
+        const double distance = std::fabs(shape.closest_point(position).distance);
+        const bool is_past = radius == 0.0 && dot(position - contact->point, contact->normal) < 0.0;
         const double lift = radius - (is_past ? -distance : distance);
-        p = place + (std::max(lift, 0.0) + contact_offset(place)) * contact->normal;
+        p = position + (std::max(lift, 0.0) + contact_offset(position)) * contact->normal;
         v = path.velocity(contact->time);
         v -= (2.0 * dot(v, contact->normal)) * contact->normal;
         return true;

@@ -107,8 +107,8 @@ Polynomial random_polynomial(std::uint64_t index, bool may_cluster = true) {
     Coefficients p{exact(draw.uniform(-1.0, 1.0))};
     while (static_cast<int>(p.size()) <= degree) {
         const bool is_pair = degree - static_cast<int>(p.size()) >= 1 && draw.whole(0, 2) == 0;
-        const double place = spread > 0.0 ? center + spread * draw.uniform(-1.0, 1.0) : draw.uniform(-0.5, 1.5);
-        const Rational root = exact(place) * exact(duration);
+        const double position = spread > 0.0 ? center + spread * draw.uniform(-1.0, 1.0) : draw.uniform(-0.5, 1.5);
+        const Rational root = exact(position) * exact(duration);
         if (is_pair) {
             const Rational imaginary = exact(draw.uniform(0.0, 0.5) * duration);
             p = times_factor(p, {root * root + imaginary * imaginary, -2 * root, 1});

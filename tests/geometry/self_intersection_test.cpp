@@ -60,7 +60,7 @@ TEST(SelfIntersection, PassesOverDegenerateTriangles) {
 }
 
 // By rational arithmetic, without trees: what two triangles have in common is more than the vertices they share when an
-// edge of one meets the other after the shared vertices have been cut off far enough.
+// edge of one intersects the other after the shared vertices have been cut off far enough.
 bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t) {
     std::vector<std::uint32_t> common;
     for (const std::uint32_t v : s) {
@@ -68,7 +68,7 @@ bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t
     }
     const auto at = [&](std::uint32_t v) { return mesh.vertices[v]; };
     const auto edge_meets = [&](const Vec3& p, const Vec3& q, const Triangle& u) {
-        return testing::exact_segment_meets_triangle(p, q, at(u[0]), at(u[1]), at(u[2]));
+        return testing::exact_segment_intersects_triangle(p, q, at(u[0]), at(u[1]), at(u[2]));
     };
     const auto is_common = [&](std::uint32_t v) { return std::find(common.begin(), common.end(), v) != common.end(); };
     if (common.size() == 3) return true;

@@ -85,7 +85,7 @@ Triangle random_triangle(RandomSequence& random) {
     }
 }
 
-/// A place on the triangle, on its rim or at a corner, and a direction in which a sphere may touch there.
+/// A point on the triangle, on its boundary or at a corner, and a direction in which a sphere may touch there.
 struct Touch {
     Vec3 point;
     Vec3 direction;
@@ -178,11 +178,11 @@ void compare(const SphereCase& s, const SphereContact& found, const Digits& time
     const double slack = found.feature == TriangleFeature::kFace ? kSeamSlack * largest_coordinate(s) / s.radius : 0.0;
     const double turn = length(s.path.velocity(t)) * ulp(t) * (1.0 + time_ulps) / s.radius;
     const double normal_error = error_of(found.normal, testing::difference(p, nearest));
-    const double place =
+    const double deviation =
         static_cast<double>(testing::length(testing::difference(testing::digits(found.point), nearest)));
     EXPECT_LE(time_ulps, 2.0);
     EXPECT_LE(normal_error, 0x1p-51 + turn + slack);
-    EXPECT_LE(place, 0x1p-50 * largest_coordinate(s) + (turn + slack) * s.radius);
+    EXPECT_LE(deviation, 0x1p-50 * largest_coordinate(s) + (turn + slack) * s.radius);
     ++tally.contacts;
     ++tally.by_rank[static_cast<std::size_t>(rank(found.feature))];
     tally.worst_time_ulps = std::max(tally.worst_time_ulps, time_ulps);
@@ -267,7 +267,7 @@ TEST(SphereSweep, CountsContactAtTheLastMomentAndNotAfterIt) {
 }
 
 TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastPlace) {
-    // Heights above and below the exact touch by one place; the parabola's lowest point is exact.
+    // Heights above and below the exact touch by one ulp; the parabola's lowest point is exact.
     for (const double sign : {-1.0, 1.0}) {
         const double lowest = 0.5 + sign * 0x1p-52;
         const Vec3 up{0, 0, 2};
@@ -285,9 +285,9 @@ TEST(SphereSweep, DoesNotStretchTheTipOfASlenderTriangle) {
     const Vec3 a{0.1, 0.2, 0.3}, b = a + Vec3{0.7, 0.3, 0.1}, c = b + Vec3{1e-12, -1e-12, 0.5e-12};
     for (const double beyond : {1e-9, 1e-6, 1e-3, 0.1}) {
         const Vec3 n = unit_normal(a, b, c);
-        const Vec3 place = a - beyond * (b - a);
+        const Vec3 start = a - beyond * (b - a);
         const double radius = 0.5 * beyond;  // too small to reach the tip
-        EXPECT_FALSE(contact(line_path(place + n, -n, 2.0), radius, a, b, c)) << beyond;
+        EXPECT_FALSE(contact(line_path(start + n, -n, 2.0), radius, a, b, c)) << beyond;
     }
 }
 
@@ -423,14 +423,14 @@ TEST(SphereSweepInOverlap, TreatsAPlaneLikeATriangleInIt) {
 // Flat plates cut into triangles.
 
 /// Corners of the triangles of a square of 2^level x 2^level cells on [0, 1]^2, in its own frame.
-template <class Place>
-std::vector<Triangle> plate(int cells, const Place& place) {
+template <class Position>
+std::vector<Triangle> plate(int cells, const Position& position) {
     std::vector<Triangle> triangles;
     const double step = 1.0 / cells;
     for (int i = 0; i < cells; ++i) {
         for (int j = 0; j < cells; ++j) {
-            const Vec3 p = place(i * step, j * step), q = place((i + 1) * step, j * step);
-            const Vec3 r = place((i + 1) * step, (j + 1) * step), s = place(i * step, (j + 1) * step);
+            const Vec3 p = position(i * step, j * step), q = position((i + 1) * step, j * step);
+            const Vec3 r = position((i + 1) * step, (j + 1) * step), s = position(i * step, (j + 1) * step);
             triangles.push_back({p, q, r});
             triangles.push_back({p, r, s});
         }

@@ -17,7 +17,7 @@ constexpr double kDivider = 0.12;  // thickness of dividers, fraction of the spa
 constexpr double kWall = 0.3;      // thickness of walls, floor and plate, fraction of the spacing
 constexpr double kHopper = 2.0;    // height of the hopper, spacings
 constexpr double kThroat = 0.2;    // half width of its opening, spacings
-constexpr int kFewestPegSides = 12;
+constexpr int kMinPegSides = 12;
 
 /// Adds prisms along y, from the front to the back plate.
 class Board {
@@ -37,7 +37,7 @@ public:
     }
 
     void peg(double x, double z) {
-        const int sides = steps_in(kTwoPi * shape_.peg_radius, edge_, kFewestPegSides);
+        const int sides = steps_in(kTwoPi * shape_.peg_radius, edge_, kMinPegSides);
         const int rings = steps_in(shape_.peg_radius, edge_);
         const std::vector<std::vector<Point2>> loops{circle_loop(shape_.peg_radius / rings, sides),
                                                      circle_loop(shape_.peg_radius, sides)};

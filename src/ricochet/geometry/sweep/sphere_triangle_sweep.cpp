@@ -207,7 +207,7 @@ Polynomial SphereTriangleSweep::polynomial(const Coefficients<DoubleDouble>& coe
     return p;
 }
 
-/// Nothing for an edge without length: its vertices stand for it.
+/// Nothing for an edge without length: its vertices represent it.
 std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int i) const {
     const bool in_order = is_before(corners_[static_cast<size_t>(i)], corners_[static_cast<size_t>(next(i))]);
     const int first = in_order ? i : next(i);

@@ -71,6 +71,13 @@ TEST(Collinearity, HoldsExactlyWhenTheAreaVectorIsZero) {
     });
 }
 
+TEST(Collinearity, IsDecidedToTheLastBit) {
+    EXPECT_TRUE(are_collinear({0, 0, 0}, {1, 2, 3}, {3, 6, 9}));
+    EXPECT_TRUE(are_collinear({1, 2, 3}, {1, 2, 3}, {5, 5, 5}));
+    EXPECT_FALSE(are_collinear({0, 0, 0}, {1, 2, 3}, {3, 6, 9 + 0x1p-49}));
+    EXPECT_FALSE(are_collinear({0, 0, 0}, {1, 0, 0}, {0.5, 0x1p-280, 0}));
+}
+
 TEST(SegmentIntersectsTriangle, AgreesWithLinearEquationsAndInequalities) {
     std::array<int, 2> count{};
     for_cases(kCases, [&count](const SegmentTriangle& s) {

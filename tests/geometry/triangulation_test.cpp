@@ -134,7 +134,7 @@ TEST(Triangulation, CutsAQuadWithACollinearCornerIntoTwoTrianglesWithArea) {
         const Triangulation cut = triangulate(mesh);
         expect_exact_cover(mesh, cut, 0.0);
         for (const Triangle& t : cut.triangles) {
-            EXPECT_FALSE(is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+            EXPECT_FALSE(are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
         }
     }
 }
@@ -150,7 +150,7 @@ TEST(Triangulation, MakesNoDegenerateTriangleFromCollinearCorners) {
     const Triangulation cut = triangulate(mesh);
     expect_exact_cover(mesh, cut, 0.0);
     for (const Triangle& t : cut.triangles) {
-        EXPECT_FALSE(is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+        EXPECT_FALSE(are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
     }
 }
 

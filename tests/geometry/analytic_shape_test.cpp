@@ -130,7 +130,7 @@ double largest_speed(const Path& path) {
 // ---- side and nearest point
 // ------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, TellsTheSideAsFiftyDigitsDo) {
+TEST(AnalyticShape, DecidesTheSideAsFiftyDigitsDo) {
     int undecided = 0;
     for (int i = 0; i < cases(4000); ++i) {
         SCOPED_TRACE(i);
@@ -251,7 +251,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
 // ---- segments
 // ------------------------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
+TEST(AnalyticShape, ClearsASegmentExactlyWhenFiftyDigitsDo) {
     int refused = 0;
     int freed = 0;
     for (int i = 0; i < cases(6000); ++i) {
@@ -278,7 +278,7 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
     EXPECT_GT(refused, freed / 4);
 }
 
-TEST(AnalyticShape, BoundsTheDistanceOfALegFromBelowTightly) {
+TEST(AnalyticShape, BoundsTheDistanceOfASegmentFromBelowTightly) {
     for (int i = 0; i < cases(300); ++i) {
         SCOPED_TRACE(i);
         Draws draws(6, i);
@@ -369,7 +369,7 @@ AnalyticShape cylinder_of(const Vec3& scale) {
     return AnalyticShape::cylinder(world_from_local(placement));
 }
 
-TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
+TEST(AnalyticShape, TimesTheContactWithASphereAsTheQuadraticFormulaDoes) {
     for (int i = 0; i < cases(10000); ++i) {
         SCOPED_TRACE(i);
         Draws draws(9, i);
@@ -405,7 +405,7 @@ TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
     }
 }
 
-TEST(AnalyticShape, StopsABallOnTheRimOfACylinder) {
+TEST(AnalyticShape, StopsABallOnTheEdgeOfACylinder) {
     const AnalyticShape can = cylinder_of({2, 2, 3});
     // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the edge 0.4 above the cap.
     const auto contact = can.first_contact(line_path({2.3, 0, 10}, {0, 0, -1}, 10.0), 0.5);
@@ -448,7 +448,7 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
     EXPECT_NEAR(wedged->time, held, 1e-14);
 }
 
-TEST(AnalyticShape, TellsGrazesFromMissesToRounding) {
+TEST(AnalyticShape, DistinguishesGrazesFromMissesToRounding) {
     // Lines that dip into, or pass, the sphere by d: the dip lasts sqrt(8 d).
     for (const double d : {1e-3, 1e-9, 1e-14, 4e-16}) {
         EXPECT_TRUE(unit_ball().first_contact(line_path({-2, 1 - d, 0}, {1, 0, 0}, 4), 0.0)) << d;
@@ -521,7 +521,7 @@ TEST(AnalyticShape, TurnsAPointBornOnTheSurfaceBackFromWhereItHeads) {
 // ---- culling
 // -----------------------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
+TEST(AnalyticShape, CullsOnlyPathsThatStayAway) {
     int cleared = 0;
     int clearable = 0;
     for (int i = 0; i < cases(5000); ++i) {

@@ -78,7 +78,7 @@ TEST(BarycentricCoordinates, AreExactAtCornersAndOnEdges) {
     EXPECT_EQ(at({1, 2, 2}), Vec3(0.25, 0.25, 0.5));
 }
 
-TEST(ClosestPointOnTriangle, TellsTheFeature) {
+TEST(ClosestPointOnTriangle, NamesTheFeature) {
     const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
     const auto feature_at = [&](const Vec3& p) { return closest_point_on_triangle(p, a, b, c).feature; };
     EXPECT_EQ(feature_at({1, 1, 5}), TriangleFeature::kFace);

@@ -61,7 +61,7 @@ TEST(DistanceField, NeverSaysMoreThanTheDistanceFromTheNearestTriangle) {
     EXPECT_GT(told, test::scaled(30) * 50);
 }
 
-TEST(DistanceField, TellsMostOfTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
+TEST(DistanceField, IsCloseToTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
     for (const int levels : {0, 3, 6}) {
         SCOPED_TRACE("levels " + std::to_string(levels));
         const TriangleMesh mesh = testing::sphere_mesh({3, 4, 5}, 1.0, levels);

@@ -246,7 +246,7 @@ TriangleMesh wedge(double opening) {
 }
 
 // All around the edge and as near to it as doubles go, the closest point tells the side, or nothing (next to knives).
-TEST(Pseudonormals, TellTheSideNextToEdgesHoweverSharp) {
+TEST(Pseudonormals, DecideTheSideNextToEdgesHoweverSharp) {
     int decided = 0, queries = 0;
     for (const double opening : {3.1, 1.0, 1e-3, 1e-6}) {
         const TriangleMesh mesh = wedge(opening);

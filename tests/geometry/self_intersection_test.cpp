@@ -35,17 +35,17 @@ TEST(SelfIntersection, CountsTrianglesThatCrossOrTouch) {
     EXPECT_EQ(count({kA, kB, kC, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {3, 4, 5}}), 1U) << "lies inside";
 }
 
-TEST(SelfIntersection, CountsAVertexAtTheSamePlaceUnderAnotherNumber) {
+TEST(SelfIntersection, CountsACoincidentVertexWithAnotherIndex) {
     EXPECT_EQ(count({kA, kB, kC, kA, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {3, 4, 5}}), 1U);
     EXPECT_EQ(count({kA, kB, kC, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}), 0U);
 }
 
-TEST(SelfIntersection, LooksBeyondACommonVertex) {
+TEST(SelfIntersection, FindsWhatIsBeyondACommonVertex) {
     EXPECT_EQ(count({kA, kB, kC, {2, 2, -1}, {1, 1, 1}}, {{0, 1, 2}, {0, 3, 4}}), 1U);
     EXPECT_EQ(count({kA, kB, kC, {2, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {3, 0, 4}}), 1U) << "in one plane";
 }
 
-TEST(SelfIntersection, LooksBeyondACommonEdge) {
+TEST(SelfIntersection, FindsWhatIsBeyondACommonEdge) {
     EXPECT_EQ(count({kA, kB, kC, {4, -4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 0U);
     EXPECT_EQ(count({kA, kB, kC, {4, 4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, edges cross";
     EXPECT_EQ(count({kA, kB, kC, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, one inside the other";

@@ -72,7 +72,7 @@ TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles)
 }
 
 // All of a segment lies beyond the triangle by the smaller of its ends' bounds along one direction.
-TEST(Separation, HoldsBetweenTwoPlacesOfTheSameDirection) {
+TEST(Separation, HoldsBetweenTwoPointsWithTheSameDirection) {
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(1000)); ++index) {
         const auto [p, triangle, is_plain] = random_case(index);
         const auto& [a, b, c] = triangle;
@@ -88,7 +88,7 @@ TEST(Separation, HoldsBetweenTwoPlacesOfTheSameDirection) {
     }
 }
 
-TEST(Separation, ClaimsNothingWhereTheDirectionTellsNothing) {
+TEST(Separation, ClaimsNothingWhereTheDirectionDoesNotSeparate) {
     const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, p{0.2, 0.2, 3.0};
     const double infinite = std::numeric_limits<double>::infinity();
     const double none = std::numeric_limits<double>::quiet_NaN();

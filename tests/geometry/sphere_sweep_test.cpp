@@ -266,7 +266,7 @@ TEST(SphereSweep, CountsContactAtTheLastMomentAndNotAfterIt) {
     EXPECT_FALSE(contact(line_path({1, 1, 3}, {0, 0, -1}, std::nextafter(2.5, 0.0)), 0.5));
 }
 
-TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastPlace) {
+TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastBit) {
     // Heights above and below the exact touch by one ulp; the parabola's lowest point is exact.
     for (const double sign : {-1.0, 1.0}) {
         const double lowest = 0.5 + sign * 0x1p-52;
@@ -280,7 +280,7 @@ TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastPlace) {
     }
 }
 
-TEST(SphereSweep, DoesNotStretchTheTipOfASlenderTriangle) {
+TEST(SphereSweep, DoesNotExtendTheTipOfASlenderTriangle) {
     // A sphere that falls past the tip at a distance which plain doubles take for inside.
     const Vec3 a{0.1, 0.2, 0.3}, b = a + Vec3{0.7, 0.3, 0.1}, c = b + Vec3{1e-12, -1e-12, 0.5e-12};
     for (const double beyond : {1e-9, 1e-6, 1e-3, 0.1}) {
@@ -541,9 +541,9 @@ TEST(SphereSweep, GivesASharedEdgeTheSameBitsInBothTriangles) {
     EXPECT_GT(shared, 300);
 }
 
-// What discards candidates.
+// Culling.
 
-TEST(SphereSweepClears, NeverDiscardsATriangleThatIsTouched) {
+TEST(SphereSweepCulling, NeverCullsATriangleThatIsTouched) {
     int touched = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
@@ -555,7 +555,7 @@ TEST(SphereSweepClears, NeverDiscardsATriangleThatIsTouched) {
     EXPECT_GT(touched, static_cast<int>(kCases));
 }
 
-TEST(SphereSweepClears, DiscardsWhatIsBeyondTheBoxOrThePlane) {
+TEST(SphereSweepCulling, CullsWhatIsBeyondTheBoxOrThePlane) {
     const SphereSweep sweep(line_path({1, 1, 3}, {0, 0, -1}, 2.0), 0.5);
     EXPECT_TRUE(sweep.can_cull(kA, kB, kC));
     EXPECT_TRUE(sweep.can_cull(kA + Vec3{2, 0, 0}, kB + Vec3{2, 0, 0}, kC + Vec3{2, 0, 0}));
@@ -564,7 +564,7 @@ TEST(SphereSweepClears, DiscardsWhatIsBeyondTheBoxOrThePlane) {
 
 // Certificates.
 
-TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
+TEST(SphereSegmentCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     int clear = 0, blocked = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         SphereCase s = random_case(index);
@@ -599,7 +599,7 @@ TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     EXPECT_GT(blocked, static_cast<int>(kCases / 10));
 }
 
-TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
+TEST(SphereSegmentCertificate, HoldsUpToTheContactAndNotBeyond) {
     int segments = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
@@ -622,7 +622,7 @@ SphereCase often_straight_case(std::uint64_t index) {
     return s;
 }
 
-TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOverlapped) {
+TEST(SphereSweep, WhatItSeparatesFromAndWhatItStartsSeparatedFromIsNeverHitAndNeverOverlapped) {
     int receding = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
@@ -644,7 +644,7 @@ TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOv
     EXPECT_GT(apart, test::scaled(20'000) / 10);
 }
 
-TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped) {
+TEST(SphereSweep, WhatItLeavesBehindOrCullsAtItsEndIsNeverHitAndNeverOverlapped) {
     int left = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
@@ -668,8 +668,8 @@ TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped
     EXPECT_GT(apart, test::scaled(20'000) / 40);
 }
 
-// What another surface has been found to stop need not be followed further, and what comes before that is not changed.
-TEST(SphereSweep, FindsTheSameBitsWhenNarrowedAndNothingEarlier) {
+// A sweep that another contact has shortened finds the same earlier contacts.
+TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
     int kept = 0;
     int dropped = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {

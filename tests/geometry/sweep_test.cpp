@@ -103,7 +103,7 @@ const Vec3 kA{0, 0, 0};
 const Vec3 kB{4, 0, 0};
 const Vec3 kC{0, 4, 0};
 
-TEST(LineSweep, MeetsVerticesAndEdges) {
+TEST(LineSweep, HitsVerticesAndEdges) {
     for (const Vec3& target : {kA, kB, kC, Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{2, 2, 0}, Vec3{1, 1, 0}}) {
         const auto crossing =
             first_crossing(line_between(target + Vec3{1, 2, 3}, target - Vec3{1, 2, 3}, 2.0), kA, kB, kC);
@@ -113,7 +113,7 @@ TEST(LineSweep, MeetsVerticesAndEdges) {
     }
 }
 
-TEST(LineSweep, MeetsATriangleThatThePathEndsOn) {
+TEST(LineSweep, HitsATriangleThatThePathEndsOn) {
     for (const Vec3& target : {kA, Vec3{2, 2, 0}, Vec3{1, 1, 0}}) {
         const auto crossing = first_crossing(line_between(target + Vec3{1, 2, -3}, target, 2.0), kA, kB, kC);
         ASSERT_TRUE(crossing);
@@ -130,7 +130,7 @@ TEST(LineSweep, AStartOnTheTriangleComesFromTheSideItDoesNotHeadFor) {
     EXPECT_FALSE(first_crossing(line_between({5, 5, 0}, {5, 5, 2}, 1.0), kA, kB, kC));  // in the plane, beside it
 }
 
-TEST(LineSweep, AStretchInThePlaneEntersAtTheRim) {
+TEST(LineSweep, ASegmentInThePlaneEntersAtTheBoundary) {
     const auto crossing = first_crossing(line_between({-1, 1, 0}, {3, 1, 0}, 2.0), kA, kB, kC);
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->side, 0);
@@ -141,7 +141,7 @@ TEST(LineSweep, AStretchInThePlaneEntersAtTheRim) {
     EXPECT_DOUBLE_EQ(corner->time, 1.0);
 }
 
-TEST(LineSweep, APathWithoutLengthMeetsOnlyWhatItStandsOn) {
+TEST(LineSweep, APathWithoutLengthHitsOnlyWhatItIsOn) {
     EXPECT_TRUE(first_crossing(line_path({1, 1, 0}, {}, 1.0), kA, kB, kC));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1e-300}, {}, 1.0), kA, kB, {0, 4, -1e-200}));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1}, {}, 0.0), kA, kB, kC));
@@ -259,7 +259,7 @@ TEST(ParabolaSweep, AThrowFromJustAboveThePlaneComesBackToIt) {
     EXPECT_FALSE(first_crossing(parabola_path({1, 1, 0x1p-48}, {0, 0, 1}, {0, 0, -2}, 0.999), kA, kB, kC));
 }
 
-TEST(ParabolaSweep, AStartInThePlaneMeetsOnlyWhatItReturnsTo) {
+TEST(ParabolaSweep, AStartInThePlaneHitsOnlyWhatItReturnsTo) {
     const auto returns = first_crossing(parabola_path({-1, 1, 0}, {2, 0, 1}, {0, 0, -2}, 2.0), kA, kB, kC);
     ASSERT_TRUE(returns);
     EXPECT_NEAR(returns->time, 1.0, 1e-15);
@@ -299,7 +299,7 @@ TEST(PlaneSweep, CrossesWhereTheClosedFormSays) {
     EXPECT_FALSE(first_crossing(parabola_path({0, 0, 5}, {0, 0, -9}, {0, 0, 10}, 10.0), floor));  // turns round above
 }
 
-TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
+TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
     RandomSequence random(17, 0, 0);
     int cleared = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {
@@ -320,7 +320,7 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
     EXPECT_GT(cleared, 0);
 }
 
-TEST(TimeOverTriangle, EndsWhereThePathPassesTheRim) {
+TEST(TriangleExitTime, IsWhereThePathLeavesTheTriangle) {
     const Vec3 up{0, 0, 1};
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);

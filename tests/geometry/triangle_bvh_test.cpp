@@ -135,7 +135,7 @@ double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
     return length(x - (p + s * d));
 }
 
-TEST(TriangleBvh, VisitsWhatComesWithinTheReachAndTheSlack) {
+TEST(TriangleBvh, VisitsWhatIsWithinTheMarginAndTheSlack) {
     const TriangleMesh mesh = soup(500, 3);
     for (const double margin_of_boxes : {0.0, 1e-3, 0.1}) {
         SCOPED_TRACE(margin_of_boxes);
@@ -301,7 +301,7 @@ TEST(TriangleBvh, NarrowingToTheNearestSoFarFindsTheNearestAndAllItsTies) {
     }
 }
 
-TEST(TriangleBvh, NearnessCountsFromTheReachAndTheSlack) {
+TEST(TriangleBvh, DistancesCountFromTheMarginAndTheSlack) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
     for (const double margin : {0.0, 0.01, 3.0}) {
         const TriangleBvh bvh(mesh.vertices, mesh.triangles, margin);

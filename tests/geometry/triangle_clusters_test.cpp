@@ -39,7 +39,7 @@ Vec3 point_of(const TriangleMesh& mesh, const Triangle& triangle, RandomSequence
     return a + u * (mesh.vertices[triangle[1]] - a) + v * (mesh.vertices[triangle[2]] - a);
 }
 
-TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
+TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
     int near_triangles = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));

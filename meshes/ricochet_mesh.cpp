@@ -24,7 +24,7 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
 
-/// What the command line asks for.
+/// The command line.
 struct Request {
     std::size_t triangles = 10'000;
     std::filesystem::path output;

@@ -10,7 +10,7 @@
 namespace ricochet::meshes {
 namespace {
 
-constexpr std::size_t kMostTriangles = 100'000'000;
+constexpr std::size_t kMaxTriangles = 100'000'000;
 constexpr std::size_t kCalibrationTriangles = 40'000;  // large enough to be past the coarse shape's fixed parts
 constexpr double kGoodEnough = 0.02;
 constexpr int kAttempts = 5;
@@ -27,8 +27,8 @@ double rescaled(double edge, std::size_t count, std::size_t target) {
 }  // namespace
 
 TriangleMesh build_near(std::size_t target, double coarse_edge, const ShapeBuilder& build) {
-    if (target < 2 || target > kMostTriangles) {
-        throw InputError(fmt::format("--triangles must be between 2 and {}, got {}", kMostTriangles, target));
+    if (target < 2 || target > kMaxTriangles) {
+        throw InputError(fmt::format("--triangles must be between 2 and {}, got {}", kMaxTriangles, target));
     }
     TriangleMesh best = build(coarse_edge);
     double edge = coarse_edge;

@@ -27,7 +27,7 @@ Point2 polar(double radius, double turns) {
 }
 
 /// Inside of the barrel, counter-clockwise, at strictly growing angles: for each lifter its rising flank, its head, its
-/// falling flank and the stretch of barrel to the next one.
+/// falling flank and the barrel up to the next one.
 std::vector<Point2> inner_outline(const DrumShape& shape, double edge_length) {
     const double head = shape.radius - shape.lifter_height;
     const double spacing = 1.0 / shape.lifters;

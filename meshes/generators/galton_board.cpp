@@ -17,7 +17,7 @@ constexpr double kDivider = 0.12;  // thickness of dividers, fraction of the spa
 constexpr double kWall = 0.3;      // thickness of walls, floor and plate, fraction of the spacing
 constexpr double kHopper = 2.0;    // height of the hopper, spacings
 constexpr double kThroat = 0.2;    // half width of its opening, spacings
-constexpr int kFewestPegSides = 12;
+constexpr int kMinPegSides = 12;
 
 /// Adds prisms along y, from the front to the back plate.
 class Board {
@@ -37,7 +37,7 @@ public:
     }
 
     void peg(double x, double z) {
-        const int sides = steps_in(kTwoPi * shape_.peg_radius, edge_, kFewestPegSides);
+        const int sides = steps_in(kTwoPi * shape_.peg_radius, edge_, kMinPegSides);
         const int rings = steps_in(shape_.peg_radius, edge_);
         const std::vector<std::vector<Point2>> loops{circle_loop(shape_.peg_radius / rings, sides),
                                                      circle_loop(shape_.peg_radius, sides)};
@@ -75,27 +75,27 @@ void add_pegs(Board& board, const GaltonBoardShape& shape) {
     }
 }
 
-/// A stretch of the frame along x with what stands on the floor there.
-struct Stretch {
+/// A section of the frame along x with the height of what is on the floor there.
+struct Section {
     double width = 0.0;
     double height = 0.0;  // over the floor; 0 leaves the floor bare
 };
 
 /// From the left wall over the dividers to the right wall. Dividers stand below the lowest row's pegs and one more on
 /// either side: a bin for every number of turns.
-std::vector<Stretch> frame_stretches(const GaltonBoardShape& shape, double wall_height) {
+std::vector<Section> frame_sections(const GaltonBoardShape& shape, double wall_height) {
     const double wall = kWall * shape.spacing;
     const double thickness = kDivider * shape.spacing;
     const double bin = shape.spacing - thickness;
     const double first = half_width(shape) - wall - 0.5 * (shape.rows + 1) * shape.spacing - 0.5 * thickness;
-    std::vector<Stretch> stretches{{wall, wall_height}, {first, 0.0}};
+    std::vector<Section> sections{{wall, wall_height}, {first, 0.0}};
     for (int divider = 0; divider < shape.rows + 2; ++divider) {
-        if (divider > 0) stretches.push_back({bin, 0.0});
-        stretches.push_back({thickness, shape.bin_height});
+        if (divider > 0) sections.push_back({bin, 0.0});
+        sections.push_back({thickness, shape.bin_height});
     }
-    stretches.push_back({first, 0.0});
-    stretches.push_back({wall, wall_height});
-    return stretches;
+    sections.push_back({first, 0.0});
+    sections.push_back({wall, wall_height});
+    return sections;
 }
 
 void append_steps(std::vector<double>& lines, double last, double edge_length) {
@@ -109,10 +109,10 @@ PlanarRegion frame_region(const GaltonBoardShape& shape, double wall_height, dou
     std::vector<double> xs{-half_width(shape)};
     std::vector<double> tops;  // of the solid in every column of cells
     double x = xs.back();
-    for (const Stretch& stretch : frame_stretches(shape, wall_height)) {
-        x += stretch.width;
+    for (const Section& section : frame_sections(shape, wall_height)) {
+        x += section.width;
         append_steps(xs, x, edge_length);
-        tops.resize(xs.size() - 1, floor + stretch.height);
+        tops.resize(xs.size() - 1, floor + section.height);
     }
     std::vector<double> zs{0.0};
     for (const double z : {floor, floor + shape.bin_height, floor + wall_height}) append_steps(zs, z, edge_length);

@@ -137,9 +137,9 @@ TriangleMesh make_gear(const GearShape& shape, double edge_length) {
     check(shape);
     const std::vector<Point2> outline = gear_outline(shape, edge_length);
     const double bore = shape.bore_radius;
-    const double room = circles(shape).root - bore;
-    const double hub = bore + 0.25 * room;
-    const double rim = bore + 0.75 * room;
+    const double depth = circles(shape).root - bore;
+    const double hub = bore + 0.25 * depth;
+    const double rim = bore + 0.75 * depth;
     const std::vector<std::vector<Point2>> loops{on_circle(outline, bore), on_circle(outline, hub),
                                                  on_circle(outline, rim), outline};
     const std::array bands{Band{steps_in(hub - bore, edge_length), kHub}, Band{steps_in(rim - hub, edge_length), kWeb},

@@ -17,7 +17,7 @@ struct GearShape {
 };
 
 /// Full-depth spur gear with a pressure angle of 20 degrees, axis z, centred on the origin; closed, of genus 1. Throws
-/// InputError for parameters out of range and for a bore that leaves no room for hub and rim.
+/// InputError for parameters out of range and for a bore that leaves no space for hub and rim.
 /// Method: involute flanks and proportions (addendum one module, dedendum 1.25) as in ISO 53.
 [[nodiscard]] TriangleMesh make_gear(const GearShape& shape, double edge_length);
 

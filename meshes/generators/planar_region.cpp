@@ -10,9 +10,9 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
-constexpr double kMostSteps = 1e6;  // keeps a tiny edge length from overflowing the step count
+constexpr double kMaxSteps = 1e6;  // keeps a tiny edge length from overflowing the step count
 
-/// Hands out point numbers of a grid, making a point when it is first asked for.
+/// Hands out point numbers of a grid, making a point when it is first used.
 class GridPoints {
 public:
     GridPoints(std::span<const double> xs, std::span<const double> ys, PlanarRegion& region)
@@ -71,7 +71,7 @@ void add_core(PlanarRegion& region, std::uint32_t loop, std::uint32_t count, int
 }  // namespace
 
 int steps_in(double length, double edge_length, int fewest) {
-    const double steps = std::fmin(kMostSteps, std::floor(length / edge_length + 0.5));
+    const double steps = std::fmin(kMaxSteps, std::floor(length / edge_length + 0.5));
     return std::max(fewest, static_cast<int>(steps));
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Box, plate and wedge: plain shapes at any refinement.
+/// Box, plate, wedge and staircase: plain shapes at any refinement.
 #pragma once
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -35,5 +35,17 @@ struct WedgeShape {
 /// Closed prism over an isosceles triangle whose sharp edge is the y axis, opening along +x; particles inside bounce
 /// between two planes that meet at an angle. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_wedge(const WedgeShape& shape, double edge_length);
+
+/// Shape of a staircase.
+struct StaircaseShape {
+    int steps = 12;      ///< 1 to 10000
+    double run = 0.3;    ///< depth of a tread, metres
+    double rise = 0.18;  ///< height of a riser, metres
+    double width = 1.2;  ///< metres
+};
+
+/// Stairs that go down along +x from x = 0, on the floor z = 0, with y in [-width/2, width/2]; closed. Throws
+/// InputError for parameters out of range.
+[[nodiscard]] TriangleMesh make_staircase(const StaircaseShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

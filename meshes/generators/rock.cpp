@@ -69,10 +69,10 @@ double cut_radius(const Vec3& ray, const std::vector<Cut>& cuts, double rounding
 }
 
 /// Unit icosphere with every vertex moved along its ray to the given distance.
-TriangleMesh displaced(int divisions, const std::function<Vec3(const Vec3& ray)>& place) {
+TriangleMesh displaced(int divisions, const std::function<Vec3(const Vec3& ray)>& position) {
     TriangleMesh mesh = unit_icosphere(divisions);
     parallel_for_blocks(mesh.vertices.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) mesh.vertices[i] = place(mesh.vertices[i]);
+        for (std::size_t i = begin; i < end; ++i) mesh.vertices[i] = position(mesh.vertices[i]);
     });
     return mesh;
 }
@@ -95,7 +95,7 @@ TriangleMesh make_rock(const RockShape& shape, double edge_length) {
     const std::vector<Cut> cuts = random_cuts(shape);
     const Vec3 stretch{shape.stretch_x, shape.stretch_y, shape.stretch_z};
     const Octaves grain{6, 2.03, 0.55};
-    const auto place = [&](const Vec3& ray) {
+    const auto position = [&](const Vec3& ray) {
         const Vec3 crumbled = normalized(ray + 0.5 * shape.roughness * gradient_noise(3.0 * ray, shape.seed).gradient);
         const double facets = cut_radius(crumbled, cuts, shape.rounding);
         const double bumps = fractal_noise(ray / kFacetCrumble, grain, shape.seed + 1);
@@ -103,7 +103,7 @@ TriangleMesh make_rock(const RockShape& shape, double edge_length) {
         return Vec3{r * ray.x * stretch.x, r * ray.y * stretch.y, r * ray.z * stretch.z};
     };
     const double widest = shape.radius * std::max({stretch.x, stretch.y, stretch.z});
-    return displaced(icosphere_divisions(widest, edge_length), place);
+    return displaced(icosphere_divisions(widest, edge_length), position);
 }
 
 TriangleMesh make_cavity(const CavityShape& shape, double edge_length) {
@@ -111,14 +111,14 @@ TriangleMesh make_cavity(const CavityShape& shape, double edge_length) {
     require_between("cavity", "roughness", shape.roughness, 0.0, 0.8);
     require_between("cavity", "wavelength", shape.wavelength, 0.1, 10.0);
     const Octaves bays{6, 2.1, 0.5};
-    const auto place = [&](const Vec3& ray) {
+    const auto position = [&](const Vec3& ray) {
         const Vec3 p = ray / shape.wavelength;
         const double noses = ridged_noise(p, bays, shape.seed);
         const double swell = fractal_noise(0.7 * p, Octaves{3, 2.0, 0.5}, shape.seed + 1);
         const double r = 1.0 + shape.roughness * (1.2 * swell + 1.0 - 2.0 * noses);
         return (shape.radius * std::max(kNearestCut, r)) * ray;
     };
-    return displaced(icosphere_divisions(shape.radius, edge_length), place);
+    return displaced(icosphere_divisions(shape.radius, edge_length), position);
 }
 
 }  // namespace ricochet::meshes

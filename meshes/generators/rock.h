@@ -1,6 +1,6 @@
 /// \file
-/// Rocks and cavities: icospheres displaced along their rays from the centre. Every ray meets the surface once, so the
-/// surface cannot cross itself however strong the displacement is.
+/// Rocks and cavities: icospheres displaced along their rays from the centre. Every ray crosses the surface once, so
+/// the surface cannot cross itself however strong the displacement is.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ struct TerrainShape {
     std::uint64_t seed = 1;     ///< another seed, another mountain
 };
 
-/// Height over the foot at a place; x in [0, length], y in [-width/2, width/2], metres.
+/// Height over the foot at a point; x in [0, length], y in [-width/2, width/2], metres.
 [[nodiscard]] double terrain_height(const TerrainShape& shape, double x, double y);
 
 /// The terrain as a grid with cells of the edge length, upward normals. With `base` > 0 it is a closed block with a

@@ -19,7 +19,7 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kThicknessMargin = 0.95;  // the tube's cross-sections are polygons and the knot is sampled
 constexpr int kSamplesPerWinding = 400;
-constexpr int kFewestAround = 8;
+constexpr int kMinAround = 8;
 
 /// Point of the knot's centre line with its frame: tangent, the torus' outward normal, and their cross product.
 struct KnotPoint {
@@ -121,7 +121,7 @@ TriangleMesh make_torus_knot(const TorusKnotShape& shape, double edge_length) {
     check(shape);
     const double total = curve_length(knot_points(shape, sample_count(shape)));
     const int along = steps_in(total, edge_length, 16 * std::max(shape.p, shape.q));
-    const int around = steps_in(kTwoPi * shape.tube_radius, edge_length, kFewestAround);
+    const int around = steps_in(kTwoPi * shape.tube_radius, edge_length, kMinAround);
     const std::vector<Point2> circle = circle_loop(shape.tube_radius, around);
     TriangleMesh mesh;
     for (const KnotPoint& k : knot_points(shape, along)) {

@@ -92,7 +92,7 @@ bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q) {
         const Vec3& c = mesh.vertices[t[2]];
         // All of a triangle is within its longer edges' length of a corner; the factor leaves room for rounding.
         const double reach = 1.001 * std::max(length(b - a), length(c - a)) + rounding;
-        return distance(a, p, q) <= reach && exact_segment_meets_triangle(p, q, a, b, c);
+        return distance(a, p, q) <= reach && exact_segment_intersects_triangle(p, q, a, b, c);
     });
 }
 

@@ -183,7 +183,7 @@ TEST(ContactQuery, DecidesAboutSegmentsNearThePathExactly) {
         std::optional<SurfaceId> smallest;
         for (std::uint32_t t = 0; t < mesh.triangles.size() && !smallest; ++t) {
             const auto [a, b, c] = world.corners_of_triangle(t);
-            if (testing::exact_segment_meets_triangle(p, q, a, b, c)) smallest = t;
+            if (testing::exact_segment_intersects_triangle(p, q, a, b, c)) smallest = t;
         }
         ASSERT_EQ(found.near.is_free(p, q), !smallest.has_value()) << i;
         ASSERT_EQ(found.near.blocker(p, q), smallest) << i;

@@ -25,7 +25,7 @@ using testing::world_of;
 bool meets_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
     for (std::uint32_t t = 0; t < world.triangles().size(); ++t) {
         const auto [a, b, c] = world.corners_of_triangle(t);
-        if (testing::exact_segment_meets_triangle(p, q, a, b, c)) return true;
+        if (testing::exact_segment_intersects_triangle(p, q, a, b, c)) return true;
     }
     return false;
 }

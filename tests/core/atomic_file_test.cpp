@@ -19,7 +19,7 @@ std::size_t files_beside(const std::filesystem::path& target) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(target.parent_path()), {}));
 }
 
-TEST(AtomicFile, NothingStandsUnderItsNameBeforeItIsComplete) {
+TEST(AtomicFile, NothingHasItsNameBeforeItIsComplete) {
     const TemporaryFolder folder;
     const auto target = folder.path("frame");
     AtomicFile file(target);

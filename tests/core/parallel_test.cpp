@@ -47,8 +47,8 @@ TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
     }
 }
 
-// More threads than processors, so that waiting threads look for work in each other's lists; an arena of its own, since
-// the one that the library makes has no more places than there are processors.
+// More threads than processors, so that waiting threads steal work from each other; an arena of its own, since
+// the one that the library makes has no more slots than there are processors.
 TEST(Parallel, ABodyThatWaitsForTasksOfItsOwnIsNotInterruptedByAnotherOne) {
     const ThreadLimit limit(8);
     std::atomic<int> interrupted{0};

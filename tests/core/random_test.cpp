@@ -15,7 +15,7 @@ TEST(Philox, GivesThePublishedKnownAnswers) {
               (Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
-TEST(RandomSequence, GoesOnWhereItWasLeft) {
+TEST(RandomSequence, ContinuesWhereItStopped) {
     RandomSequence whole(7, 3, 42);
     for (int i = 0; i < 5; ++i) (void)whole.uniform();
     RandomSequence resumed(7, 3, 42, whole.draws());

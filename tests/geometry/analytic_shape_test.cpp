@@ -74,9 +74,9 @@ Case random_case(Draws& draws) {
         placement.rotation_axis = draws.direction();
         placement.rotation_degrees = draws.uniform(-180, 180);
     }
-    const int place = draws.one_of(3);
-    if (place == 1) placement.position = 3.0 * scale * draws.direction();
-    if (place == 2) placement.position = 1e6 * draws.direction();
+    const int position = draws.one_of(3);
+    if (position == 1) placement.position = 3.0 * scale * draws.direction();
+    if (position == 2) placement.position = 1e6 * draws.direction();
     return {placement, draws.one_of(2) == 0};
 }
 
@@ -126,7 +126,7 @@ double largest_speed(const Path& path) {
 // ---- side and nearest point
 // ------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, TellsTheSideAsFiftyDigitsDo) {
+TEST(AnalyticShape, DecidesTheSideAsFiftyDigitsDo) {
     int undecided = 0;
     for (int i = 0; i < cases(4000); ++i) {
         SCOPED_TRACE(i);
@@ -176,7 +176,7 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
         EXPECT_LE(std::fabs(length(p - nearest.point) - size), rounding);
         EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(nearest.point)).distance)), rounding);
         EXPECT_NEAR(length(nearest.normal), 1.0, 0x1p-51);
-        // The normal errs as if the place were off by its rounding; outside it turns by 1 / (radius of curvature +
+        // The normal errs as if the position were off by its rounding; outside it turns by 1 / (radius of curvature +
         // distance). Inside the radius is less, by the depth.
         const double curvature_radius = c.smallest * c.smallest / c.largest;
         const double turn = 0x1p-52 * length(p - c.placement.position) / (curvature_radius + size);
@@ -247,7 +247,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
 // ---- segments
 // ------------------------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
+TEST(AnalyticShape, ClearsASegmentExactlyWhenFiftyDigitsDo) {
     int refused = 0;
     int freed = 0;
     for (int i = 0; i < cases(6000); ++i) {
@@ -263,18 +263,18 @@ TEST(AnalyticShape, FreesALegExactlyWhenFiftyDigitsDo) {
             q = p - below.distance * (1.0 - draws.power_of_ten(-15, -1)) * below.normal +
                 c.smallest * draws.power_of_ten(-8, 1) * aside;
         }
-        const bool is_free = c.shape.segment_is_clear(p, q);
-        const bool meets = c.oracle.meets(real(p), real(q));
-        EXPECT_FALSE(is_free && meets);
+        const bool is_clear = c.shape.segment_is_clear(p, q);
+        const bool intersects = c.oracle.intersects(real(p), real(q));
+        EXPECT_FALSE(is_clear && intersects);
         // Refused without need only where the segment passes within rounding, which random segments do not.
-        EXPECT_TRUE(is_free || meets || c.shape.side(p) == 0 || c.shape.side(q) == 0);
-        ++(is_free ? freed : refused);
+        EXPECT_TRUE(is_clear || intersects || c.shape.side(p) == 0 || c.shape.side(q) == 0);
+        ++(is_clear ? freed : refused);
     }
     EXPECT_GT(freed, refused / 4);
     EXPECT_GT(refused, freed / 4);
 }
 
-TEST(AnalyticShape, BoundsTheDistanceOfALegFromBelowTightly) {
+TEST(AnalyticShape, BoundsTheDistanceOfASegmentFromBelowTightly) {
     for (int i = 0; i < cases(300); ++i) {
         SCOPED_TRACE(i);
         Draws draws(6, i);
@@ -322,14 +322,14 @@ void expect_true_first_contact(const Case& c, const Path& path, double radius,
     for (int k = 0; k < 16; ++k) EXPECT_GE(gap_at(end * (1.0 - std::pow(10.0, -k))), -rounding) << k;
     if (!found) return;
     EXPECT_LE(std::fabs(gap_at(end)), rounding);
-    const Vec3 place = path.position(end);
-    const double far = 8.0 * ulp(largest_coordinate(place, c)) + rounding;
-    EXPECT_NEAR(length(place - found->point), radius, far);
+    const Vec3 position = path.position(end);
+    const double far = 8.0 * ulp(largest_coordinate(position, c)) + rounding;
+    EXPECT_NEAR(length(position - found->point), radius, far);
     EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(found->point)).distance)), far);
     EXPECT_LE(dot(found->normal, path.velocity(end)), 0x1p-20 * largest_speed(path));
     EXPECT_NEAR(length(found->normal), 1.0, 0x1p-51);
     // From the surface to the centre: that is the outward normal at the point, turned to the side it comes from.
-    EXPECT_LE(length(place - found->point - radius * found->normal), far + 0x1p-48 * size);
+    EXPECT_LE(length(position - found->point - radius * found->normal), far + 0x1p-48 * size);
 }
 
 void check_first_contacts(std::uint32_t stream, int count, bool with_radius) {
@@ -365,7 +365,7 @@ AnalyticShape cylinder_of(const Vec3& scale) {
     return AnalyticShape::cylinder(world_from_local(placement));
 }
 
-TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
+TEST(AnalyticShape, TimesTheContactWithASphereAsTheQuadraticFormulaDoes) {
     for (int i = 0; i < cases(10000); ++i) {
         SCOPED_TRACE(i);
         Draws draws(9, i);
@@ -384,8 +384,8 @@ TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
         const RealVector w = testing::sum(real(p), Real(-1), real(placement.position));
         const Real a = testing::dot(real(v), real(v));
         const Real b = testing::dot(real(v), w);
-        const Real reach = is_inside ? Real(radius) - swept : Real(radius) + swept;
-        const Real c = testing::dot(w, w) - reach * reach;
+        const Real distance = is_inside ? Real(radius) - swept : Real(radius) + swept;
+        const Real c = testing::dot(w, w) - distance * distance;
         if (is_inside ? c >= 0 : c <= 0) continue;  // rounded into overlap
         const Real discriminant = b * b - a * c;
         if (!is_inside && (discriminant <= 0 || b >= 0)) {
@@ -401,9 +401,9 @@ TEST(AnalyticShape, TimesTheMeetingWithASphereAsTheQuadraticFormulaDoes) {
     }
 }
 
-TEST(AnalyticShape, StopsABallOnTheRimOfACylinder) {
+TEST(AnalyticShape, StopsABallOnTheEdgeOfACylinder) {
     const AnalyticShape can = cylinder_of({2, 2, 3});
-    // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the rim 0.4 above the cap.
+    // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the edge 0.4 above the cap.
     const auto contact = can.first_contact(line_path({2.3, 0, 10}, {0, 0, -1}, 10.0), 0.5);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->time, 6.6, 4e-15);
@@ -413,7 +413,7 @@ TEST(AnalyticShape, StopsABallOnTheRimOfACylinder) {
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->time, 6.5);
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->normal, Vec3(0, 0, 1));
     EXPECT_FALSE(can.first_contact(line_path({2.5 + 1e-12, 0, 10}, {0, 0, -1}, 20.0), 0.5));
-    // On its way along the side a parabola comes down to the lower rim.
+    // Along the side a parabola comes down to the lower edge.
     EXPECT_NEAR(can.first_contact(parabola_path({3, 0, -6}, {0, 0, 0}, {-0.28, 0, 1.04}, 4.0), 0.5)->time,
                 std::sqrt(5.0), 4e-15);
 }
@@ -444,7 +444,7 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
     EXPECT_NEAR(wedged->time, held, 1e-14);
 }
 
-TEST(AnalyticShape, TellsGrazesFromMissesToRounding) {
+TEST(AnalyticShape, DistinguishesGrazesFromMissesToRounding) {
     // Lines that dip into, or pass, the sphere by d: the dip lasts sqrt(8 d).
     for (const double d : {1e-3, 1e-9, 1e-14, 4e-16}) {
         EXPECT_TRUE(unit_ball().first_contact(line_path({-2, 1 - d, 0}, {1, 0, 0}, 4), 0.0)) << d;
@@ -503,11 +503,11 @@ TEST(AnalyticShape, StopsOnlyApproachingMotionOfAnOverlappingBall) {
 
 TEST(AnalyticShape, TurnsAPointBornOnTheSurfaceBackFromWhereItHeads) {
     for (const AnalyticShape& shape : {ball_of({2, 2, 2}), ball_of({2, 3, 4}), cylinder_of({2, 3, 4})}) {
-        for (const double way : {1.0, -1.0}) {
-            const auto contact = shape.first_contact(line_path({2, 0, 0}, {way, 0.1, 0.2}, 1), 0.0);
+        for (const double direction : {1.0, -1.0}) {
+            const auto contact = shape.first_contact(line_path({2, 0, 0}, {direction, 0.1, 0.2}, 1), 0.0);
             ASSERT_TRUE(contact);
             EXPECT_EQ(contact->time, 0.0);
-            EXPECT_EQ(contact->normal, Vec3(-way, 0, 0));
+            EXPECT_EQ(contact->normal, Vec3(-direction, 0, 0));
             EXPECT_EQ(contact->point, Vec3(2, 0, 0));
         }
     }
@@ -517,7 +517,7 @@ TEST(AnalyticShape, TurnsAPointBornOnTheSurfaceBackFromWhereItHeads) {
 // ---- culling
 // -----------------------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
+TEST(AnalyticShape, CullsOnlyPathsThatStayAway) {
     int cleared = 0;
     int clearable = 0;
     for (int i = 0; i < cases(5000); ++i) {
@@ -527,7 +527,7 @@ TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
         const Vec3 p = random_point(draws, c);
         const Path path = random_path(draws, p, p + c.largest * draws.power_of_ten(-2, 1) * draws.direction(),
                                       c.largest * draws.power_of_ten(-3, 0));
-        const double reach = c.smallest * draws.power_of_ten(-6, 1);
+        const double margin = c.smallest * draws.power_of_ten(-6, 1);
         double least = std::numeric_limits<double>::infinity();
         const int side = c.shape.side(p);
         for (int k = 0; k <= 100; ++k) {
@@ -536,12 +536,12 @@ TEST(AnalyticShape, ClearsOnlyPathsThatStayAway) {
                 least = std::min(least, side * c.shape.closest_point(q).distance);
             }
         }
-        const bool is_clear = c.shape.can_cull(path, reach);
+        const bool is_clear = c.shape.can_cull(path, margin);
         if (is_clear) {
-            EXPECT_GT(least, reach);
+            EXPECT_GT(least, margin);
         }
-        clearable += static_cast<int>(least > 1.5 * reach + 0.1 * c.largest);
-        cleared += static_cast<int>(is_clear && least > 1.5 * reach + 0.1 * c.largest);
+        clearable += static_cast<int>(least > 1.5 * margin + 0.1 * c.largest);
+        cleared += static_cast<int>(is_clear && least > 1.5 * margin + 0.1 * c.largest);
     }
     EXPECT_GT(cleared, clearable * 9 / 10);
 }
@@ -564,11 +564,11 @@ struct Bouncer {
             v = path.velocity(path.duration);
             return false;
         }
-        const Vec3 place = path.position(contact->time);
-        const double distance = std::fabs(shape.closest_point(place).distance);
-        const bool is_past = radius == 0.0 && dot(place - contact->point, contact->normal) < 0.0;
+        const Vec3 position = path.position(contact->time);
+        const double distance = std::fabs(shape.closest_point(position).distance);
+        const bool is_past = radius == 0.0 && dot(position - contact->point, contact->normal) < 0.0;
         const double lift = radius - (is_past ? -distance : distance);
-        p = place + (std::max(lift, 0.0) + contact_offset(place)) * contact->normal;
+        p = position + (std::max(lift, 0.0) + contact_offset(position)) * contact->normal;
         v = path.velocity(contact->time);
         v -= (2.0 * dot(v, contact->normal)) * contact->normal;
         return true;

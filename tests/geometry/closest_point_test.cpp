@@ -78,12 +78,12 @@ TEST(BarycentricCoordinates, AreExactAtCornersAndOnEdges) {
     EXPECT_EQ(at({1, 2, 2}), Vec3(0.25, 0.25, 0.5));
 }
 
-TEST(ClosestPointOnTriangle, TellsTheFeature) {
+TEST(ClosestPointOnTriangle, NamesTheFeature) {
     const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
     const auto feature_at = [&](const Vec3& p) { return closest_point_on_triangle(p, a, b, c).feature; };
     EXPECT_EQ(feature_at({1, 1, 5}), TriangleFeature::kFace);
     EXPECT_EQ(feature_at({1, 1, 0}), TriangleFeature::kFace);
-    EXPECT_EQ(feature_at({2, 0, -3}), TriangleFeature::kFace);  // above the rim the face goes first
+    EXPECT_EQ(feature_at({2, 0, -3}), TriangleFeature::kFace);  // above an edge the face comes first
     EXPECT_EQ(feature_at({1, -2, 1}), TriangleFeature::kEdgeAB);
     EXPECT_EQ(feature_at({3, 3, 1}), TriangleFeature::kEdgeBC);
     EXPECT_EQ(feature_at({-1, 2, 1}), TriangleFeature::kEdgeCA);

@@ -44,9 +44,9 @@ TEST(DistanceField, NeverSaysMoreThanTheDistanceFromTheNearestTriangle) {
     for (int i = 0; i < test::scaled(30); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
         TriangleMesh mesh = soup(1U + static_cast<std::uint32_t>(40.0 * random.uniform()), random);
-        const Vec3 stretch{1.0, i % 3 == 0 ? 1e-3 : 1.0, i % 5 == 0 ? 0.0 : 1.0};
+        const Vec3 scale{1.0, i % 3 == 0 ? 1e-3 : 1.0, i % 5 == 0 ? 0.0 : 1.0};
         const Vec3 origin = i % 2 == 0 ? Vec3{} : 1e5 * random.in_unit_ball();
-        for (Vec3& v : mesh.vertices) v = origin + Vec3{stretch.x * v.x, stretch.y * v.y, stretch.z * v.z};
+        for (Vec3& v : mesh.vertices) v = origin + Vec3{scale.x * v.x, scale.y * v.y, scale.z * v.z};
         const DistanceField grid = grid_of(mesh);
         ASSERT_GT(grid.cell(), 0.0);
         for (int k = 0; k < 100; ++k) {
@@ -61,7 +61,7 @@ TEST(DistanceField, NeverSaysMoreThanTheDistanceFromTheNearestTriangle) {
     EXPECT_GT(told, test::scaled(30) * 50);
 }
 
-TEST(DistanceField, TellsMostOfTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
+TEST(DistanceField, IsCloseToTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
     for (const int levels : {0, 3, 6}) {
         SCOPED_TRACE("levels " + std::to_string(levels));
         const TriangleMesh mesh = testing::sphere_mesh({3, 4, 5}, 1.0, levels);

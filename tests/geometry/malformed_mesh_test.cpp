@@ -27,7 +27,7 @@ struct BadFile {
     const char* kind;       // what is wrong, as a test name
     const char* name;       // file name
     std::string bytes;      // contents
-    const char* place;      // what must follow the path in the message
+    const char* position;   // what must follow the path in the message
     const char* complaint;  // what the message must also hold
 };
 
@@ -259,14 +259,14 @@ std::string refusal(const std::filesystem::path& path) {
 
 class MalformedMesh : public ::testing::TestWithParam<BadFile> {};
 
-TEST_P(MalformedMesh, IsRefusedWithItsPlaceInLittleMemory) {
+TEST_P(MalformedMesh, IsRefusedWithItsLocationInLittleMemory) {
     const BadFile& bad = GetParam();
     const test::TemporaryFolder folder;
     const std::filesystem::path path = folder.write(bad.name, bad.bytes);
     const test::AllocationGuard guard;
     const std::string message = refusal(path);
     EXPECT_LT(guard.peak_bytes(), kAllowedBytes);
-    EXPECT_TRUE(message.starts_with(path.string() + bad.place)) << message;
+    EXPECT_TRUE(message.starts_with(path.string() + bad.position)) << message;
     EXPECT_NE(message.find(bad.complaint), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }

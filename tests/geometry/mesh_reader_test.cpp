@@ -165,7 +165,7 @@ TEST(ObjReader, JoinsContinuedLines) {
     EXPECT_EQ(mesh.polygons.face_offsets, (std::vector<std::uint32_t>{0, 4, 7}));
 }
 
-TEST(ObjReader, PassesOverWhatParticlesCannotMeet) {
+TEST(ObjReader, IgnoresWhatParticlesCannotHit) {
     const ImportedMesh mesh = read_mesh(
         "a.obj",
         "\xef\xbb\xbf# byte order mark\nmtllib a.mtl b.mtl\no thing # 1\nvt 0 0\nvn nan 0 0\nvp 0\ns off\n\t v 0 0 0 1 "
@@ -467,7 +467,7 @@ TriangleMesh sheet(std::uint32_t cells) {
     return mesh;
 }
 
-TEST(MeshReader, KeepsTheSameTrianglesWhereNothingElseIsWanted) {
+TEST(MeshReader, KeepsTheSameTrianglesWhereNothingElseIsKept) {
     const test::TemporaryFolder folder;
     for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
         write_mesh(sheet(20), folder.path(name));

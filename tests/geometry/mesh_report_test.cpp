@@ -135,7 +135,7 @@ TEST(MeshReport, CountsDuplicateFacesInAnyOrderOfCorners) {
     EXPECT_TRUE(warns_of(report, "3 edges belong to three faces or more"));
 }
 
-TEST(MeshReport, TellsHowStlCornersWereJoined) {
+TEST(MeshReport, ShowsHowStlCornersWereJoined) {
     const std::string facet =
         "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     const std::string other =

@@ -144,7 +144,7 @@ TEST(MeshTopology, OfAMeshWithoutFacesIsEmpty) {
     EXPECT_EQ(MeshTopology(TriangleMesh{}).report().shells, 0U);
 }
 
-TEST(MeshTopology, TakesAFaceThatWalksABridgeBothWaysForManifold) {
+TEST(MeshTopology, TreatsAFaceThatRunsAlongABridgeTwiceAsManifold) {
     const TopologyReport report = report_of(8, {{0, 1, 2, 3, 0, 4, 5, 6, 7, 4}});
     EXPECT_EQ(report.boundary_edges, 8U);
     EXPECT_EQ(report.boundary_loops, 2U);

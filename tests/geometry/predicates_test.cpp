@@ -68,12 +68,19 @@ TEST(Collinearity, HoldsExactlyWhenTheAreaVectorIsZero) {
     });
 }
 
+TEST(Collinearity, IsDecidedToTheLastBit) {
+    EXPECT_TRUE(are_collinear({0, 0, 0}, {1, 2, 3}, {3, 6, 9}));
+    EXPECT_TRUE(are_collinear({1, 2, 3}, {1, 2, 3}, {5, 5, 5}));
+    EXPECT_FALSE(are_collinear({0, 0, 0}, {1, 2, 3}, {3, 6, 9 + 0x1p-49}));
+    EXPECT_FALSE(are_collinear({0, 0, 0}, {1, 0, 0}, {0.5, 0x1p-280, 0}));
+}
+
 TEST(SegmentIntersectsTriangle, AgreesWithLinearEquationsAndInequalities) {
     std::array<int, 2> count{};
     for_cases(kCases, [&count](const SegmentTriangle& s) {
-        const bool meets = testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c);
-        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c), meets);
-        ++count[meets ? 1U : 0U];
+        const bool intersects = testing::exact_segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c), intersects);
+        ++count[intersects ? 1U : 0U];
     });
     // Both answers must be common, or the cases test nothing.
     EXPECT_GT(count[0], static_cast<int>(kCases / 5));
@@ -82,12 +89,12 @@ TEST(SegmentIntersectsTriangle, AgreesWithLinearEquationsAndInequalities) {
 
 TEST(SegmentIntersectsTriangle, DoesNotDependOnTheOrderOfEndsAndCorners) {
     for_cases(kCases, [](const SegmentTriangle& s) {
-        const bool meets = segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
-        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.a, s.b, s.c), meets);
-        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.c, s.a), meets);
-        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.c, s.a, s.b), meets);
-        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.a, s.c), meets);
-        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.c, s.b, s.a), meets);
+        const bool intersects = segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
+        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.a, s.b, s.c), intersects);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.c, s.a), intersects);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.c, s.a, s.b), intersects);
+        ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.b, s.a, s.c), intersects);
+        ASSERT_EQ(segment_intersects_triangle(s.q, s.p, s.c, s.b, s.a), intersects);
     });
 }
 
@@ -115,7 +122,7 @@ TEST(PointOnTriangle, AgreesWithASegmentThatIsAPoint) {
     std::array<int, 2> count{};
     for_cases(kCases, [&count](const SegmentTriangle& s) {
         for (const Vec3& point : {s.p, s.q}) {
-            const bool on = testing::exact_segment_meets_triangle(point, point, s.a, s.b, s.c);
+            const bool on = testing::exact_segment_intersects_triangle(point, point, s.a, s.b, s.c);
             ASSERT_EQ(point_on_triangle(point, s.a, s.b, s.c), on);
             ++count[on ? 1U : 0U];
         }

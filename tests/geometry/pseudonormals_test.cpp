@@ -52,7 +52,7 @@ std::vector<Vec3> all_of(const TriangleMesh& mesh) {
     return all;
 }
 
-/// A cube about the origin: the mean over three right angles points along the diagonal, whatever way the squares are
+/// A cube about the origin: the mean over three right angles points along the diagonal, however the squares are
 /// cut; an edge's is the mean of its squares' normals, a diagonal's the square's own.
 void expect_cube(const TriangleMesh& mesh) {
     const Pseudonormals normals(mesh.vertices, mesh.triangles);
@@ -197,7 +197,7 @@ TEST(Pseudonormals, VanishOnSheetsBackToBack) {
         TriangleMesh sheet{{random.in_unit_ball(), random.in_unit_ball(), random.in_unit_ball()},
                            {{0, 1, 2}, {2, 1, 0}}};
         for (const Vec3& normal : all_of(sheet)) EXPECT_EQ(normal, Vec3{});
-        sheet.triangles = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}};  // twice one way round, once the other
+        sheet.triangles = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}};  // twice with one winding, once with the other
         const Pseudonormals normals(sheet.vertices, sheet.triangles);
         for (std::uint32_t t = 0; t < 3; ++t) {
             for (const auto feature : {TriangleFeature::kFace, TriangleFeature::kEdgeBC, TriangleFeature::kVertexC}) {
@@ -245,9 +245,9 @@ TriangleMesh wedge(double opening) {
             {{0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}}};
 }
 
-// All around the edge and as near to it as doubles go, the nearest place tells the side, or nothing (next to knives).
-TEST(Pseudonormals, TellTheSideNextToEdgesHoweverSharp) {
-    int decided = 0, asked = 0;
+// All around the edge and as near to it as doubles go, the closest point tells the side, or nothing (next to knives).
+TEST(Pseudonormals, DecideTheSideNextToEdgesHoweverSharp) {
+    int decided = 0, queries = 0;
     for (const double opening : {3.1, 1.0, 1e-3, 1e-6}) {
         const TriangleMesh mesh = wedge(opening);
         const Pseudonormals normals(mesh.vertices, mesh.triangles);
@@ -273,9 +273,9 @@ TEST(Pseudonormals, TellTheSideNextToEdgesHoweverSharp) {
             ASSERT_EQ(side, expected) << i << ", opening " << opening;
             ++decided;
         }
-        asked += test::scaled(3000);
+        queries += test::scaled(3000);
     }
-    EXPECT_GT(decided, asked * 9 / 10);
+    EXPECT_GT(decided, queries * 9 / 10);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
 #include "support/simple_meshes.h"
@@ -34,17 +35,17 @@ TEST(SelfIntersection, CountsTrianglesThatCrossOrTouch) {
     EXPECT_EQ(count({kA, kB, kC, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {3, 4, 5}}), 1U) << "lies inside";
 }
 
-TEST(SelfIntersection, CountsAVertexAtTheSamePlaceUnderAnotherNumber) {
+TEST(SelfIntersection, CountsACoincidentVertexWithAnotherIndex) {
     EXPECT_EQ(count({kA, kB, kC, kA, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {3, 4, 5}}), 1U);
     EXPECT_EQ(count({kA, kB, kC, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}), 0U);
 }
 
-TEST(SelfIntersection, LooksBeyondACommonVertex) {
+TEST(SelfIntersection, FindsWhatIsBeyondACommonVertex) {
     EXPECT_EQ(count({kA, kB, kC, {2, 2, -1}, {1, 1, 1}}, {{0, 1, 2}, {0, 3, 4}}), 1U);
     EXPECT_EQ(count({kA, kB, kC, {2, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {3, 0, 4}}), 1U) << "in one plane";
 }
 
-TEST(SelfIntersection, LooksBeyondACommonEdge) {
+TEST(SelfIntersection, FindsWhatIsBeyondACommonEdge) {
     EXPECT_EQ(count({kA, kB, kC, {4, -4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 0U);
     EXPECT_EQ(count({kA, kB, kC, {4, 4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, edges cross";
     EXPECT_EQ(count({kA, kB, kC, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, one inside the other";
@@ -60,7 +61,7 @@ TEST(SelfIntersection, PassesOverDegenerateTriangles) {
 }
 
 // By rational arithmetic, without trees: what two triangles have in common is more than the vertices they share when an
-// edge of one meets the other after the shared vertices have been cut off far enough.
+// edge of one intersects the other after the shared vertices have been cut off far enough.
 bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t) {
     std::vector<std::uint32_t> common;
     for (const std::uint32_t v : s) {
@@ -68,7 +69,7 @@ bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t
     }
     const auto at = [&](std::uint32_t v) { return mesh.vertices[v]; };
     const auto edge_meets = [&](const Vec3& p, const Vec3& q, const Triangle& u) {
-        return testing::exact_segment_meets_triangle(p, q, at(u[0]), at(u[1]), at(u[2]));
+        return testing::exact_segment_intersects_triangle(p, q, at(u[0]), at(u[1]), at(u[2]));
     };
     const auto is_common = [&](std::uint32_t v) { return std::find(common.begin(), common.end(), v) != common.end(); };
     if (common.size() == 3) return true;
@@ -100,7 +101,7 @@ TEST(SelfIntersection, AgreesWithRationalArithmeticOnRandomTriangles) {
             std::vector<std::uint32_t> names = {0, 1, 2, 3, 4, 5, 6};
             std::shuffle(names.begin(), names.end(), random);
             const Triangle t{names[0], names[1], names[2]};
-            if (!is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]))
+            if (!are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]))
                 mesh.triangles.push_back(t);
         }
         std::size_t expected = 0;

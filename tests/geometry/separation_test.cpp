@@ -25,7 +25,7 @@ Vec3 random_point(RandomSequence& random) {
 }
 
 struct PointCase {
-    Vec3 place;
+    Vec3 point;
     Triangle triangle;
     bool is_plain = true;  ///< neither slender nor far from the origin
 };
@@ -42,14 +42,14 @@ PointCase random_case(std::uint64_t index) {
     const double away = std::pow(10.0, 2.0 - 14.0 * random.uniform());
     const double u = random.uniform();
     const double v = random.uniform() * (1.0 - u);
-    Vec3 place = a + u * (b - a) + v * (c - a) + away * random.unit_vector();
+    Vec3 point = a + u * (b - a) + v * (c - a) + away * random.unit_vector();
     Triangle triangle{a, b, c};
     const bool is_far = kind == 2;
     const Vec3 by = is_far ? std::pow(10.0, 6.0 * random.uniform()) * random_point(random) : Vec3{};
     const double scale = kind == 3 ? std::pow(10.0, 60.0 * (2.0 * random.uniform() - 1.0)) : 1.0;
     for (Vec3& corner : triangle) corner = scale * (corner + by);
-    place = scale * (place + by);
-    return {place, triangle, kind > 2 && away > 1e-6};
+    point = scale * (point + by);
+    return {point, triangle, kind > 2 && away > 1e-6};
 }
 
 TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles) {
@@ -72,7 +72,7 @@ TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles)
 }
 
 // All of a segment lies beyond the triangle by the smaller of its ends' bounds along one direction.
-TEST(Separation, HoldsBetweenTwoPlacesOfTheSameDirection) {
+TEST(Separation, HoldsBetweenTwoPointsWithTheSameDirection) {
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(1000)); ++index) {
         const auto [p, triangle, is_plain] = random_case(index);
         const auto& [a, b, c] = triangle;
@@ -88,7 +88,7 @@ TEST(Separation, HoldsBetweenTwoPlacesOfTheSameDirection) {
     }
 }
 
-TEST(Separation, ClaimsNothingWhereTheDirectionTellsNothing) {
+TEST(Separation, ClaimsNothingWhereTheDirectionDoesNotSeparate) {
     const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, p{0.2, 0.2, 3.0};
     const double infinite = std::numeric_limits<double>::infinity();
     const double none = std::numeric_limits<double>::quiet_NaN();

@@ -81,7 +81,7 @@ Triangle random_triangle(RandomSequence& random) {
     }
 }
 
-/// A place on the triangle, on its rim or at a corner, and a direction in which a sphere may touch there.
+/// A point on the triangle, on its boundary or at a corner, and a direction in which a sphere may touch there.
 struct Touch {
     Vec3 point;
     Vec3 direction;
@@ -174,11 +174,11 @@ void compare(const SphereCase& s, const SphereContact& found, const Digits& time
     const double slack = found.feature == TriangleFeature::kFace ? kSeamSlack * largest_coordinate(s) / s.radius : 0.0;
     const double turn = length(s.path.velocity(t)) * ulp(t) * (1.0 + time_ulps) / s.radius;
     const double normal_error = error_of(found.normal, testing::difference(p, nearest));
-    const double place =
+    const double deviation =
         static_cast<double>(testing::length(testing::difference(testing::digits(found.point), nearest)));
     EXPECT_LE(time_ulps, 2.0);
     EXPECT_LE(normal_error, 0x1p-51 + turn + slack);
-    EXPECT_LE(place, 0x1p-50 * largest_coordinate(s) + (turn + slack) * s.radius);
+    EXPECT_LE(deviation, 0x1p-50 * largest_coordinate(s) + (turn + slack) * s.radius);
     ++tally.contacts;
     ++tally.by_rank[static_cast<std::size_t>(rank(found.feature))];
     tally.worst_time_ulps = std::max(tally.worst_time_ulps, time_ulps);
@@ -262,8 +262,8 @@ TEST(SphereSweep, CountsContactAtTheLastMomentAndNotAfterIt) {
     EXPECT_FALSE(contact(line_path({1, 1, 3}, {0, 0, -1}, std::nextafter(2.5, 0.0)), 0.5));
 }
 
-TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastPlace) {
-    // Heights above and below the exact touch by one place; the parabola's lowest point is exact.
+TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastBit) {
+    // Heights above and below the exact touch by one ulp; the parabola's lowest point is exact.
     for (const double sign : {-1.0, 1.0}) {
         const double lowest = 0.5 + sign * 0x1p-52;
         const Vec3 up{0, 0, 2};
@@ -276,14 +276,14 @@ TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastPlace) {
     }
 }
 
-TEST(SphereSweep, DoesNotStretchTheTipOfASlenderTriangle) {
+TEST(SphereSweep, DoesNotExtendTheTipOfASlenderTriangle) {
     // A sphere that falls past the tip at a distance which plain doubles take for inside.
     const Vec3 a{0.1, 0.2, 0.3}, b = a + Vec3{0.7, 0.3, 0.1}, c = b + Vec3{1e-12, -1e-12, 0.5e-12};
     for (const double beyond : {1e-9, 1e-6, 1e-3, 0.1}) {
         const Vec3 n = unit_normal(a, b, c);
-        const Vec3 place = a - beyond * (b - a);
+        const Vec3 start = a - beyond * (b - a);
         const double radius = 0.5 * beyond;  // too small to reach the tip
-        EXPECT_FALSE(contact(line_path(place + n, -n, 2.0), radius, a, b, c)) << beyond;
+        EXPECT_FALSE(contact(line_path(start + n, -n, 2.0), radius, a, b, c)) << beyond;
     }
 }
 
@@ -419,14 +419,14 @@ TEST(SphereSweepInOverlap, TreatsAPlaneLikeATriangleInIt) {
 // Flat plates cut into triangles.
 
 /// Corners of the triangles of a square of 2^level x 2^level cells on [0, 1]^2, in its own frame.
-template <class Place>
-std::vector<Triangle> plate(int cells, const Place& place) {
+template <class Position>
+std::vector<Triangle> plate(int cells, const Position& position) {
     std::vector<Triangle> triangles;
     const double step = 1.0 / cells;
     for (int i = 0; i < cells; ++i) {
         for (int j = 0; j < cells; ++j) {
-            const Vec3 p = place(i * step, j * step), q = place((i + 1) * step, j * step);
-            const Vec3 r = place((i + 1) * step, (j + 1) * step), s = place(i * step, (j + 1) * step);
+            const Vec3 p = position(i * step, j * step), q = position((i + 1) * step, j * step);
+            const Vec3 r = position((i + 1) * step, (j + 1) * step), s = position(i * step, (j + 1) * step);
             triangles.push_back({p, q, r});
             triangles.push_back({p, r, s});
         }
@@ -537,9 +537,9 @@ TEST(SphereSweep, GivesASharedEdgeTheSameBitsInBothTriangles) {
     EXPECT_GT(shared, 300);
 }
 
-// What discards candidates.
+// Culling.
 
-TEST(SphereSweepClears, NeverDiscardsATriangleThatIsTouched) {
+TEST(SphereSweepCulling, NeverCullsATriangleThatIsTouched) {
     int touched = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
@@ -551,7 +551,7 @@ TEST(SphereSweepClears, NeverDiscardsATriangleThatIsTouched) {
     EXPECT_GT(touched, static_cast<int>(kCases));
 }
 
-TEST(SphereSweepClears, DiscardsWhatIsBeyondTheBoxOrThePlane) {
+TEST(SphereSweepCulling, CullsWhatIsBeyondTheBoxOrThePlane) {
     const SphereSweep sweep(line_path({1, 1, 3}, {0, 0, -1}, 2.0), 0.5);
     EXPECT_TRUE(sweep.can_cull(kA, kB, kC));
     EXPECT_TRUE(sweep.can_cull(kA + Vec3{2, 0, 0}, kB + Vec3{2, 0, 0}, kC + Vec3{2, 0, 0}));
@@ -560,7 +560,7 @@ TEST(SphereSweepClears, DiscardsWhatIsBeyondTheBoxOrThePlane) {
 
 // Certificates.
 
-TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
+TEST(SphereSegmentCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     int clear = 0, blocked = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         SphereCase s = random_case(index);
@@ -595,7 +595,7 @@ TEST(SphereLegCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     EXPECT_GT(blocked, static_cast<int>(kCases / 10));
 }
 
-TEST(SphereLegCertificate, HoldsUpToTheContactAndNotBeyond) {
+TEST(SphereSegmentCertificate, HoldsUpToTheContactAndNotBeyond) {
     int segments = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
@@ -618,7 +618,7 @@ SphereCase often_straight_case(std::uint64_t index) {
     return s;
 }
 
-TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOverlapped) {
+TEST(SphereSweep, WhatItSeparatesFromAndWhatItStartsSeparatedFromIsNeverHitAndNeverOverlapped) {
     int receding = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
@@ -640,7 +640,7 @@ TEST(SphereSweep, WhatItRecedesFromAndWhatItStartsApartFromAreNeverMetAndNeverOv
     EXPECT_GT(apart, test::scaled(20'000) / 10);
 }
 
-TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped) {
+TEST(SphereSweep, WhatItLeavesBehindOrCullsAtItsEndIsNeverHitAndNeverOverlapped) {
     int left = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
@@ -664,8 +664,8 @@ TEST(SphereSweep, WhatItLeavesBehindOrStaysApartFromIsNeverMetAndNeverOverlapped
     EXPECT_GT(apart, test::scaled(20'000) / 40);
 }
 
-// What another surface has been found to stop need not be followed further, and what comes before that is not changed.
-TEST(SphereSweep, FindsTheSameBitsWhenNarrowedAndNothingEarlier) {
+// A sweep that another contact has shortened finds the same earlier contacts.
+TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
     int kept = 0;
     int dropped = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {

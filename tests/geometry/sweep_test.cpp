@@ -45,7 +45,7 @@ TEST(LineSweep, DecidesExactlyAndTimesWithinAFewUlpWhateverTheTriangle) {
         if (are_collinear(s.a, s.b, s.c)) continue;
         SCOPED_TRACE(testing::description(s));
         const auto crossing = crossing_of(line_between(s.p, s.q, kDuration), s);
-        ASSERT_EQ(crossing.has_value(), testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c));
+        ASSERT_EQ(crossing.has_value(), testing::exact_segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c));
         if (!crossing) continue;
         ASSERT_GE(crossing->time, 0.0);
         ASSERT_LE(crossing->time, kDuration);
@@ -75,7 +75,7 @@ TEST(LineSweep, TimesGrazingAndSlenderHitsToTheLastBits) {
         const Vec3 p = target - (0.2 + random.uniform()) * heading;
         const Vec3 q = target + (0.2 + random.uniform()) * heading;
         const auto crossing = first_crossing(line_between(p, q, 1.0), a, b, c);
-        ASSERT_EQ(crossing.has_value(), testing::exact_segment_meets_triangle(p, q, a, b, c)) << i;
+        ASSERT_EQ(crossing.has_value(), testing::exact_segment_intersects_triangle(p, q, a, b, c)) << i;
         if (!crossing || crossing->side == 0) continue;
         const Rational time = testing::exact_crossing_fraction(p, q, a, b, c);
         EXPECT_LE(boost::multiprecision::abs(exact(crossing->time) - time), exact(4.0 * kRoundoff) * time) << i;
@@ -103,7 +103,7 @@ const Vec3 kA{0, 0, 0};
 const Vec3 kB{4, 0, 0};
 const Vec3 kC{0, 4, 0};
 
-TEST(LineSweep, MeetsVerticesAndEdges) {
+TEST(LineSweep, HitsVerticesAndEdges) {
     for (const Vec3& target : {kA, kB, kC, Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{2, 2, 0}, Vec3{1, 1, 0}}) {
         const auto crossing =
             first_crossing(line_between(target + Vec3{1, 2, 3}, target - Vec3{1, 2, 3}, 2.0), kA, kB, kC);
@@ -113,7 +113,7 @@ TEST(LineSweep, MeetsVerticesAndEdges) {
     }
 }
 
-TEST(LineSweep, MeetsATriangleThatThePathEndsOn) {
+TEST(LineSweep, HitsATriangleThatThePathEndsOn) {
     for (const Vec3& target : {kA, Vec3{2, 2, 0}, Vec3{1, 1, 0}}) {
         const auto crossing = first_crossing(line_between(target + Vec3{1, 2, -3}, target, 2.0), kA, kB, kC);
         ASSERT_TRUE(crossing);
@@ -130,7 +130,7 @@ TEST(LineSweep, AStartOnTheTriangleComesFromTheSideItDoesNotHeadFor) {
     EXPECT_FALSE(first_crossing(line_between({5, 5, 0}, {5, 5, 2}, 1.0), kA, kB, kC));  // in the plane, beside it
 }
 
-TEST(LineSweep, AStretchInThePlaneEntersAtTheRim) {
+TEST(LineSweep, ASegmentInThePlaneEntersAtTheBoundary) {
     const auto crossing = first_crossing(line_between({-1, 1, 0}, {3, 1, 0}, 2.0), kA, kB, kC);
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->side, 0);
@@ -141,14 +141,14 @@ TEST(LineSweep, AStretchInThePlaneEntersAtTheRim) {
     EXPECT_DOUBLE_EQ(corner->time, 1.0);
 }
 
-TEST(LineSweep, APathWithoutLengthMeetsOnlyWhatItStandsOn) {
+TEST(LineSweep, APathWithoutLengthHitsOnlyWhatItIsOn) {
     EXPECT_TRUE(first_crossing(line_path({1, 1, 0}, {}, 1.0), kA, kB, kC));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1e-300}, {}, 1.0), kA, kB, {0, 4, -1e-200}));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1}, {}, 0.0), kA, kB, kC));
 }
 
-/// Times at which the exact parabola meets the plane, in order, and how deep inside the triangle (negative: outside, in
-/// barycentric units) it does so.
+/// Times at which the exact parabola crosses the plane, in order, and how deep inside the triangle (negative: outside,
+/// in barycentric units) it does so.
 struct ReferenceHit {
     Digits time;
     double inside;
@@ -217,7 +217,7 @@ TEST(ParabolaSweep, FindsTheFirstHitAndItsTimeAsHundredDigitsDo) {
         const Vec3 c = a + 0.5 * (b - a) + slenderness * random.unit_vector();
         const Path path = random_parabola(a + random.uniform() * 0.7 * (b - a) + 0.2 * (c - a), random);
         const auto reference = reference_hits(path, a, b, c);
-        // What rounding may decide either way is left out: the rim, the ends, and touching the plane.
+        // What rounding may decide is left out: the boundary, the ends, and touching the plane.
         const bool unclear = std::any_of(reference.begin(), reference.end(), [&](const ReferenceHit& hit) {
             const auto s = static_cast<double>(hit.time);
             return std::fabs(hit.inside) < 1e-7 || s < 1e-9 || s > path.duration - 1e-9 || hit.normal_speed < 1e-6;
@@ -259,7 +259,7 @@ TEST(ParabolaSweep, AThrowFromJustAboveThePlaneComesBackToIt) {
     EXPECT_FALSE(first_crossing(parabola_path({1, 1, 0x1p-48}, {0, 0, 1}, {0, 0, -2}, 0.999), kA, kB, kC));
 }
 
-TEST(ParabolaSweep, AStartInThePlaneMeetsOnlyWhatItReturnsTo) {
+TEST(ParabolaSweep, AStartInThePlaneHitsOnlyWhatItReturnsTo) {
     const auto returns = first_crossing(parabola_path({-1, 1, 0}, {2, 0, 1}, {0, 0, -2}, 2.0), kA, kB, kC);
     ASSERT_TRUE(returns);
     EXPECT_NEAR(returns->time, 1.0, 1e-15);
@@ -299,7 +299,7 @@ TEST(PlaneSweep, CrossesWhereTheClosedFormSays) {
     EXPECT_FALSE(first_crossing(parabola_path({0, 0, 5}, {0, 0, -9}, {0, 0, 10}, 10.0), floor));  // turns round above
 }
 
-TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
+TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
     RandomSequence random(17, 0, 0);
     int cleared = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {
@@ -308,7 +308,7 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
             continue;
         const Path path = i % 2 == 0 ? line_between(s.p, s.q, 1.0)
                                      : parabola_path(s.p, s.q - s.p, length(s.q - s.p) * random.unit_vector(), 1.0);
-        // As the search has it; the second part is for coordinates that safe_position places replace by zero.
+        // As in the query; the second part is for coordinates that safe positions replace by zero.
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
         if (!stays_on_one_side(path, TrianglePlane(s.a, s.b, s.c), slack)) continue;
         ++cleared;
@@ -320,13 +320,13 @@ TEST(ClearsPlane, NeverDropsATriangleThatAPlaceNearThePathMeets) {
     EXPECT_GT(cleared, 0);
 }
 
-TEST(TimeOverTriangle, EndsWhereThePathPassesTheRim) {
+TEST(TriangleExitTime, IsWhereThePathLeavesTheTriangle) {
     const Vec3 up{0, 0, 1};
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 0.25), kA, kB, kC, up, 0.0), 0.25);
     EXPECT_EQ(triangle_exit_time(line_path({-1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.5), 0.0);
-    const Path braking = parabola_path({1, 1, 0}, {0, 2, 0}, {0, -2, 0}, 2.0);  // turns at y = 2, before the rim at 3
+    const Path braking = parabola_path({1, 1, 0}, {0, 2, 0}, {0, -2, 0}, 2.0);  // turns at y = 2, before the edge at 3
     EXPECT_DOUBLE_EQ(triangle_exit_time(braking, kA, kB, kC, up, 0.0), 2.0);
 }
 

@@ -28,13 +28,13 @@ std::vector<std::uint32_t> visited(const TriangleBvh& bvh, const Vec3& from, con
     return triangles;
 }
 
-/// Every triangle that the segment meets exactly is visited.
-void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec3& from, const Vec3& to, int& met) {
+/// Every triangle that the segment intersects exactly is visited.
+void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec3& from, const Vec3& to, int& hits) {
     const std::vector<std::uint32_t> seen = visited(bvh, from, to);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto& [a, b, c] = mesh.triangles[t];
         if (!segment_intersects_triangle(from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
-        ++met;
+        ++hits;
         ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << "triangle " << t;
     }
 }
@@ -91,22 +91,23 @@ std::array<Vec3, 2> hard_segment(const TriangleMesh& mesh, const Box3& box, int 
     }
 }
 
-struct Place {
+struct Location {
     std::string name;
     double scale;
     double offset;  // in diagonals
 };
 
-class TriangleBvhPlaces : public ::testing::TestWithParam<Place> {};
+class TriangleBvhLocations : public ::testing::TestWithParam<Location> {};
 
-INSTANTIATE_TEST_SUITE_P(All, TriangleBvhPlaces,
-                         ::testing::Values(Place{"AtTheOrigin", 1.0, 0.0}, Place{"Tiny", 0x1p-40, 0.0},
-                                           Place{"Huge", 0x1p40, 0.0}, Place{"Immense", 1e70, 0.0},
-                                           Place{"Minute", 1e-70, 0.0}, Place{"MovedByAThousand", 1.0, 1e3},
-                                           Place{"MovedByAMillion", 1.0, 1e6}, Place{"TinyAndMoved", 0x1p-40, 1e6}),
-                         [](const auto& place) { return place.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, TriangleBvhLocations,
+                         ::testing::Values(Location{"AtTheOrigin", 1.0, 0.0}, Location{"Tiny", 0x1p-40, 0.0},
+                                           Location{"Huge", 0x1p40, 0.0}, Location{"Immense", 1e70, 0.0},
+                                           Location{"Minute", 1e-70, 0.0}, Location{"MovedByAThousand", 1.0, 1e3},
+                                           Location{"MovedByAMillion", 1.0, 1e6},
+                                           Location{"TinyAndMoved", 0x1p-40, 1e6}),
+                         [](const auto& location) { return location.param.name; });
 
-TEST_P(TriangleBvhPlaces, VisitsEveryTriangleThatASegmentMeets) {
+TEST_P(TriangleBvhLocations, VisitsEveryTriangleThatASegmentIntersects) {
     for (const TriangleMesh& original :
          {soup(300, 1), testing::sphere_mesh({}, 1.0, 3), testing::box_mesh({-1, -1, -1}, {1, 1, 1})}) {
         TriangleMesh mesh = original;
@@ -116,14 +117,14 @@ TEST_P(TriangleBvhPlaces, VisitsEveryTriangleThatASegmentMeets) {
         const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
         const Box3 box = bounds(mesh);
         RandomSequence random(2, 0, 0);
-        int met = 0;
+        int hits = 0;
         for (int i = 0; i < test::scaled(900); ++i) {
             SCOPED_TRACE(i);
             const auto [from, to] = hard_segment(mesh, box, i % 9, random);
-            expect_complete(mesh, bvh, flush_tiny(from), flush_tiny(to), met);
+            expect_complete(mesh, bvh, flush_tiny(from), flush_tiny(to), hits);
             if (HasFatalFailure()) return;
         }
-        EXPECT_GT(met, 0);
+        EXPECT_GT(hits, 0);
     }
 }
 
@@ -134,18 +135,18 @@ double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
     return length(x - (p + s * d));
 }
 
-TEST(TriangleBvh, VisitsWhatComesWithinTheReachAndTheSlack) {
+TEST(TriangleBvh, VisitsWhatIsWithinTheMarginAndTheSlack) {
     const TriangleMesh mesh = soup(500, 3);
-    for (const double reach_of_boxes : {0.0, 1e-3, 0.1}) {
-        SCOPED_TRACE(reach_of_boxes);
-        const TriangleBvh bvh(mesh.vertices, mesh.triangles, reach_of_boxes);
-        EXPECT_EQ(bvh.margin(), reach_of_boxes);
-        const double reach = reach_of_boxes + bvh.slack();
+    for (const double margin_of_boxes : {0.0, 1e-3, 0.1}) {
+        SCOPED_TRACE(margin_of_boxes);
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, margin_of_boxes);
+        EXPECT_EQ(bvh.margin(), margin_of_boxes);
+        const double margin = margin_of_boxes + bvh.slack();
         RandomSequence random(4, 0, 0);
         int near = 0;
         for (int i = 0; i < test::scaled(300); ++i) {
             const auto& t = mesh.triangles[static_cast<std::size_t>(random.uniform() * 500.0)];
-            const Vec3 beside = mesh.vertices[t[0]] + 0.999 * reach * random.unit_vector();
+            const Vec3 beside = mesh.vertices[t[0]] + 0.999 * margin * random.unit_vector();
             const Vec3 heading = random.unit_vector();
             const Vec3 from = beside - random.uniform() * heading;
             const Vec3 to = beside + random.uniform() * heading;
@@ -153,7 +154,7 @@ TEST(TriangleBvh, VisitsWhatComesWithinTheReachAndTheSlack) {
             for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
                 const auto& corners = mesh.triangles[k];
                 const bool is_near = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-                    return distance(mesh.vertices[v], from, to) <= reach;
+                    return distance(mesh.vertices[v], from, to) <= margin;
                 });
                 near += is_near ? 1 : 0;
                 ASSERT_TRUE(!is_near || std::binary_search(seen.begin(), seen.end(), k)) << i;
@@ -205,21 +206,21 @@ TEST(TriangleBvh, WithoutTrianglesVisitsNothing) {
     EXPECT_EQ(empty.memory_bytes(), 0U);
 }
 
-TEST(TriangleBvh, LooksAtFewTrianglesOfALargeMesh) {
+TEST(TriangleBvh, VisitsFewTrianglesOfALargeMesh) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, test::scaled(7) > 3 ? 7 : 5);  // 131 072 triangles
     const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
     EXPECT_GT(bvh.memory_bytes(), mesh.triangles.size());
     RandomSequence random(6, 0, 0);
     std::size_t seen = 0;
     constexpr int kRays = 200;
-    int met = 0;
+    int hits = 0;
     for (int i = 0; i < kRays; ++i) {
         const Vec3 from = 0.5 * random.in_unit_ball();
         const Vec3 to = 2.0 * random.unit_vector();
         seen += visited(bvh, from, to).size();
-        if (i % 20 == 0) expect_complete(mesh, bvh, from, to, met);
+        if (i % 20 == 0) expect_complete(mesh, bvh, from, to, hits);
     }
-    EXPECT_GE(met, kRays / 20);
+    EXPECT_GE(hits, kRays / 20);
     EXPECT_LT(seen, std::size_t{20} * kRays);
 }
 
@@ -251,7 +252,7 @@ Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSeque
     return box.lower + Vec3{random.uniform() * box.size().x, random.uniform() * box.size().y, 0.5 * box.size().z};
 }
 
-TEST_P(TriangleBvhPlaces, VisitsEveryTriangleWithinADistanceOfAPoint) {
+TEST_P(TriangleBvhLocations, VisitsEveryTriangleWithinADistanceOfAPoint) {
     for (const TriangleMesh& original : {soup(300, 7), testing::sphere_mesh({}, 1.0, 2)}) {
         TriangleMesh mesh = original;
         const double size = bounds(mesh).diagonal();
@@ -264,7 +265,7 @@ TEST_P(TriangleBvhPlaces, VisitsEveryTriangleWithinADistanceOfAPoint) {
         for (int i = 0; i < test::scaled(400); ++i) {
             const Vec3 p = flush_tiny(hard_point(mesh, box, i % 8, random));
             for (std::uint32_t t = 0; t < distances.size(); ++t) distances[t] = distance_of(mesh, t, p);
-            // Just as far as one of them, so that the border itself is asked about; nothing; everything.
+            // Just as far as one of them, so that the border itself is tested; nothing; everything.
             const double one = distances[static_cast<std::size_t>(random.uniform() * 100.0)];
             for (const double within : {one, 0.0, 1e-3 * box.diagonal(), HUGE_VAL}) {
                 const auto seen = visited_near(bvh, p, within);
@@ -300,24 +301,24 @@ TEST(TriangleBvh, NarrowingToTheNearestSoFarFindsTheNearestAndAllItsTies) {
     }
 }
 
-TEST(TriangleBvh, NearnessCountsFromTheReachAndTheSlack) {
+TEST(TriangleBvh, DistancesCountFromTheMarginAndTheSlack) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
-    for (const double reach : {0.0, 0.01, 3.0}) {
-        const TriangleBvh bvh(mesh.vertices, mesh.triangles, reach);
+    for (const double margin : {0.0, 0.01, 3.0}) {
+        const TriangleBvh bvh(mesh.vertices, mesh.triangles, margin);
         RandomSequence random(10, 0, 0);
         for (int i = 0; i < test::scaled(200); ++i) {
             const Vec3 p = 3.0 * random.in_unit_ball();
             const double within = random.uniform();
             const auto seen = visited_near(bvh, p, within);
             for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-                if (distance_of(mesh, t, p) > within + 0.999 * (reach + bvh.slack())) continue;
-                ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << i << ", reach " << reach;
+                if (distance_of(mesh, t, p) > within + 0.999 * (margin + bvh.slack())) continue;
+                ASSERT_TRUE(std::binary_search(seen.begin(), seen.end(), t)) << i << ", margin " << margin;
             }
         }
     }
 }
 
-TEST(TriangleBvh, LooksAtFewTrianglesAroundAPoint) {
+TEST(TriangleBvh, VisitsFewTrianglesAroundAPoint) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 5);  // 8192 triangles
     const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
     EXPECT_TRUE(visited_near(bvh, {3, 0, 0}, 1.9).empty());

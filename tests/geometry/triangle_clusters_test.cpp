@@ -39,7 +39,7 @@ Vec3 point_of(const TriangleMesh& mesh, const Triangle& triangle, RandomSequence
     return a + u * (mesh.vertices[triangle[1]] - a) + v * (mesh.vertices[triangle[2]] - a);
 }
 
-TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
+TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
     int near_triangles = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -55,23 +55,23 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
         const double after = scale * std::pow(10.0, 5.0 * random.uniform() - 2.0);
         const Vec3 from = target - before * direction;
         const Vec3 to = target + (random.uniform() < 0.2 ? 0.0 : after) * direction;
-        // Half of the ways are parabolas that still go through the target.
+        // Half of the paths are parabolas that still go through the target.
         const double aimed = before / length(to - from);
         const double sag = i % 2 == 0 ? 0.0 : scale * std::pow(10.0, 3.0 * random.uniform() - 3.0);
         const Vec3 curve = sag * random.unit_vector();
         const Vec3 shift = aimed * (1.0 - aimed) * curve;
         const Tube tube(from + shift, to + shift, margin, curve);
         for (const TriangleCluster& cluster : clusters) {
-            TubeIntervals stretches;
-            const unsigned bits = cluster.overlaps(tube, stretches);
+            TubeIntervals intervals;
+            const unsigned bits = cluster.overlaps(tube, intervals);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if (cluster.triangle[lane] == kNoTriangle) continue;
                 const auto& [a, b, c] = mesh.triangles[cluster.triangle[lane]];
                 for (int k = 0; k <= 64; ++k) {
                     // Densest about the target.
                     const double part = static_cast<double>(k - 32) / 32.0;
-                    const double way = part < 0.0 ? part * part * part * before : part * part * part * after;
-                    const double fraction = (before + way) / length(to - from);
+                    const double offset = part < 0.0 ? part * part * part * before : part * part * part * after;
+                    const double fraction = (before + offset) / length(to - from);
                     if (!(fraction >= 0.0 && fraction <= 1.0)) continue;
                     const Vec3 p = tube.from + tube.offset(fraction);
                     const double distance =
@@ -80,8 +80,8 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsStretch) {
                     if (!(distance < margin * (1.0 - 1e-6))) continue;
                     ++near_triangles;
                     ASSERT_NE(bits & (1U << lane), 0U) << "fraction " << fraction;
-                    ASSERT_LE(stretches.enter[lane], fraction * (1.0 + 1e-12));
-                    ASSERT_GE(stretches.leave[lane], fraction * (1.0 - 1e-12));
+                    ASSERT_LE(intervals.enter[lane], fraction * (1.0 + 1e-12));
+                    ASSERT_GE(intervals.leave[lane], fraction * (1.0 - 1e-12));
                 }
             }
         }
@@ -94,8 +94,8 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     const std::vector<TriangleCluster> clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
         for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
-            TubeIntervals stretches;
-            EXPECT_EQ(clusters[0].overlaps(Tube({}, size * direction, 1e-12), stretches), 1U) << size;
+            TubeIntervals intervals;
+            EXPECT_EQ(clusters[0].overlaps(Tube({}, size * direction, 1e-12), intervals), 1U) << size;
         }
     }
 }
@@ -111,16 +111,16 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
         const Vec3 to = random.in_unit_ball();
         const Tube tube(from, to, 1e-9);
         for (const TriangleCluster& cluster : clusters) {
-            TubeIntervals stretches;
-            const unsigned bits = cluster.overlaps(tube, stretches);
+            TubeIntervals intervals;
+            const unsigned bits = cluster.overlaps(tube, intervals);
             for (std::size_t lane = 0; lane < 4; ++lane) {
                 if ((bits & (1U << lane)) == 0) continue;
                 const auto& [a, b, c] = mesh.triangles[cluster.triangle[lane]];
-                const bool meets = squared_distance_of_segment_from_triangle(from, to, mesh.vertices[a],
-                                                                             mesh.vertices[b], mesh.vertices[c]) == 0.0;
-                ++(meets ? right : wrong);
-                if (meets) {
-                    EXPECT_LT(stretches.leave[lane] - stretches.enter[lane], 0.01);
+                const bool intersects = squared_distance_of_segment_from_triangle(
+                                            from, to, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) == 0.0;
+                ++(intersects ? right : wrong);
+                if (intersects) {
+                    EXPECT_LT(intervals.leave[lane] - intervals.enter[lane], 0.01);
                 }
             }
         }

@@ -39,12 +39,5 @@ TEST(TriangleMesh, BoundsLeaveOutUnusedVertices) {
     EXPECT_TRUE(bounds(TriangleMesh{}).empty());
 }
 
-TEST(TriangleMesh, IsDegenerateOnlyWhenTheCornersAreExactlyCollinear) {
-    EXPECT_TRUE(is_degenerate({0, 0, 0}, {1, 2, 3}, {3, 6, 9}));
-    EXPECT_TRUE(is_degenerate({1, 2, 3}, {1, 2, 3}, {5, 5, 5}));
-    EXPECT_FALSE(is_degenerate({0, 0, 0}, {1, 2, 3}, {3, 6, 9 + 0x1p-49}));
-    EXPECT_FALSE(is_degenerate({0, 0, 0}, {1, 0, 0}, {0.5, 0x1p-280, 0}));
-}
-
 }  // namespace
 }  // namespace ricochet

@@ -35,21 +35,22 @@ TEST(TrianglePlane, DecidesAsTheExactOracleDoes) {
         const int side = testing::sign_of(testing::exact_orient3d(s.a, s.b, s.c, s.p));
         ASSERT_EQ(plane.side(s.p), side);
         ASSERT_TRUE(plane.filtered_side(s.p) == side || plane.filtered_side(s.p) == 0);
-        ASSERT_EQ(plane.intersects_segment(s.p, s.q), testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c));
+        ASSERT_EQ(plane.intersects_segment(s.p, s.q),
+                  testing::exact_segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c));
     });
 }
 
 TEST(TrianglePlane, AnswersWithTheSameBitsInAnyOrderAndEveryTime) {
     for_cases(52, 10000, [](const SegmentTriangle& s) {
-        const TrianglePlane asked(s.a, s.b, s.c);
-        const Vec3 normal = asked.unit_normal();
-        const double distance = asked.signed_distance(s.p);
+        const TrianglePlane triangle(s.a, s.b, s.c);
+        const Vec3 normal = triangle.unit_normal();
+        const double distance = triangle.signed_distance(s.p);
         ASSERT_EQ(normal, unit_normal(s.a, s.b, s.c));
         ASSERT_EQ(bits(distance), bits(signed_distance(s.p, s.a, s.b, s.c)));
-        ASSERT_EQ(asked.unit_normal(), normal);
-        ASSERT_EQ(bits(asked.signed_distance(s.p)), bits(distance));
-        if (asked.side(s.p) == asked.side(s.q)) return;
-        const double fraction = asked.crossing_fraction(s.p, s.q);
+        ASSERT_EQ(triangle.unit_normal(), normal);
+        ASSERT_EQ(bits(triangle.signed_distance(s.p)), bits(distance));
+        if (triangle.side(s.p) == triangle.side(s.q)) return;
+        const double fraction = triangle.crossing_fraction(s.p, s.q);
         ASSERT_EQ(bits(fraction), bits(crossing_fraction(s.p, s.q, s.a, s.b, s.c)));
         ASSERT_EQ(bits(TrianglePlane(s.a, s.b, s.c).crossing_fraction(s.p, s.q)), bits(fraction));
     });

@@ -44,7 +44,8 @@ double twice_area(const Outline& outline) {
     return sum;
 }
 
-// The diagonals are cut into a disk: every edge of the outline once, in its direction, every diagonal once each way.
+// The diagonals are cut into a disk: every edge of the outline once, in its direction, every diagonal once in each
+// direction.
 void expect_disk(const PolygonMesh& mesh, const Triangulation& cut) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const Triangle& t : cut.triangles) {
@@ -133,7 +134,7 @@ TEST(Triangulation, CutsAQuadWithACollinearCornerIntoTwoTrianglesWithArea) {
         const Triangulation cut = triangulate(mesh);
         expect_exact_cover(mesh, cut, 0.0);
         for (const Triangle& t : cut.triangles) {
-            EXPECT_FALSE(is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+            EXPECT_FALSE(are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
         }
     }
 }
@@ -149,12 +150,12 @@ TEST(Triangulation, MakesNoDegenerateTriangleFromCollinearCorners) {
     const Triangulation cut = triangulate(mesh);
     expect_exact_cover(mesh, cut, 0.0);
     for (const Triangle& t : cut.triangles) {
-        EXPECT_FALSE(is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+        EXPECT_FALSE(are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
     }
 }
 
 TEST(Triangulation, CutsAnOutlineWithABridgeToItsHole) {
-    // A square with a square hole, joined by a bridge that is walked both ways (corners 0 and 4 twice).
+    // A square with a square hole, joined by a bridge that is walked in both directions (corners 0 and 4 twice).
     PolygonMesh mesh;
     mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}};
     const std::vector<std::uint32_t> outline = {0, 1, 2, 3, 0, 4, 5, 6, 7, 4};

@@ -12,7 +12,6 @@
 #include "generators/icosphere.h"
 #include "generators/primitives.h"
 #include "generators/rock.h"
-#include "generators/staircase.h"
 #include "generators/terrain.h"
 #include "generators/torus_knot.h"
 #include "generators/vessels.h"

@@ -29,10 +29,10 @@ void release(void* memory) {
 
 }  // namespace
 
-// An allocation that asks for far more than the machine has counts too, since it fails: bad_alloc is not InputError.
+// An allocation that requests far more than the machine has counts too, since it fails: bad_alloc is not InputError.
 void* operator new(std::size_t size) { return counted(std::malloc(size == 0 ? 1 : size)); }
 void* operator new[](std::size_t size) { return counted(std::malloc(size == 0 ? 1 : size)); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort asks for it
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort requests it
     void* memory = std::malloc(size == 0 ? 1 : size);
     return memory == nullptr ? nullptr : counted(memory);
 }

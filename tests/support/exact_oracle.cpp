@@ -136,7 +136,7 @@ std::array<Rational, 3> exact_area_vector(const Vec3& a, const Vec3& b, const Ve
     return {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
 }
 
-bool exact_segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+bool exact_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto w = whole_points(std::array{p, q, a, b, c});
     // Variables t, beta, gamma: p + t (q - p) = a + beta (b - a) + gamma (c - a).
     std::vector<LinearForm> equations;

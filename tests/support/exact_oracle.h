@@ -27,8 +27,8 @@ using Rational = boost::multiprecision::cpp_rational;
 /// Whether some t in [0, 1] and some barycentric coordinates in the triangle give the same point: the three linear
 /// equations are eliminated, the inequalities that remain are decided by Fourier-Motzkin elimination. No case is
 /// special.
-[[nodiscard]] bool exact_segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                                                const Vec3& c);
+[[nodiscard]] bool exact_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                                     const Vec3& c);
 
 /// Fraction of [p, q] at which the plane of (a, b, c) is crossed; the orientations of p and q must differ.
 [[nodiscard]] Rational exact_crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,

@@ -177,8 +177,8 @@ SegmentTriangle segment_triangle_case(std::uint64_t seed, std::uint64_t index) {
     const std::uint64_t placement = index / (kTriangleKinds * kSegmentKinds) % kPlacements;
     const Corners t = triangle_of_kind(triangle_kind, random);
     const std::array<Vec3, 2> s = segment_of_kind(segment_kind, t, random);
-    const auto place = [placement](const Vec3& point) { return flush_tiny(placed(point, placement)); };
-    return {place(s[0]), place(s[1]), place(t[0]), place(t[1]), place(t[2])};
+    const auto transform = [placement](const Vec3& point) { return flush_tiny(placed(point, placement)); };
+    return {transform(s[0]), transform(s[1]), transform(t[0]), transform(t[1]), transform(t[2])};
 }
 
 std::string description(const SegmentTriangle& s) {

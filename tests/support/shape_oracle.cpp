@@ -75,7 +75,7 @@ Real ShapeOracle::value(const RealVector& p) const {
     return std::max(form(y), over_cap);
 }
 
-/// The largest root t of sum (a y / (a^2 + t))^2 = 1 gives the foot y a^2 / (a^2 + t). Where the sum stays below 1
+/// The largest root t of sum (a y / (a^2 + t))^2 = 1 gives the point y a^2 / (a^2 + t). Where the sum stays below 1
 /// down to t = -smallest^2 the point is on the medial axis.
 ShapeOracle::Nearest ShapeOracle::nearest_around(const RealVector& y) const {
     const auto end = half_.begin() + static_cast<std::ptrdiff_t>(round_axes_);
@@ -84,13 +84,13 @@ ShapeOracle::Nearest ShapeOracle::nearest_around(const RealVector& y) const {
     Real reach = 0;
     for (std::size_t i = 0; i < round_axes_; ++i) reach += square(y[i] * half_[i]);
     // In terms of u = t + smallest^2 > 0, which keeps its digits near 0.
-    const auto foot_at = [&](const Real& u) {
-        RealVector foot = y;
+    const auto point_at = [&](const Real& u) {
+        RealVector point = y;
         for (std::size_t i = 0; i < round_axes_; ++i) {
             const Real a2 = square(Real(half_[i]));
-            foot[i] = y[i] == 0 ? Real(0) : Real(y[i] * a2 / (a2 - smallest_square + u));
+            point[i] = y[i] == 0 ? Real(0) : Real(y[i] * a2 / (a2 - smallest_square + u));
         }
-        return foot;
+        return point;
     };
     Real low = 0;
     for (std::size_t i = 0; i < round_axes_; ++i) {
@@ -99,24 +99,25 @@ ShapeOracle::Nearest ShapeOracle::nearest_around(const RealVector& y) const {
     Real high = sqrt(reach) + smallest_square;
     for (int k = 0; k < kHalvings; ++k) {
         const Real middle = (low + high) / 2;
-        (form(foot_at(middle)) > 0 ? low : high) = middle;
+        (form(point_at(middle)) > 0 ? low : high) = middle;
     }
     for (int k = 0; k < kMostSteps; ++k) {
-        const RealVector foot = foot_at(low);
+        const RealVector point = point_at(low);
         Real slope = 0;
         for (std::size_t i = 0; i < round_axes_; ++i) {
             const Real a2 = square(Real(half_[i]));
-            if (y[i] != 0) slope += 2 * square(foot[i]) / a2 / (a2 - smallest_square + low);
+            if (y[i] != 0) slope += 2 * square(point[i]) / a2 / (a2 - smallest_square + low);
         }
-        const Real next = slope == 0 ? low : Real(low + form(foot) / slope);
+        const Real next = slope == 0 ? low : Real(low + form(point) / slope);
         if (next <= low) break;
         low = next;
     }
-    RealVector foot = foot_at(low);
-    const Real rest = -form(foot);
-    if (rest > Real("1e-30")) foot[smallest] = half_[smallest] * sqrt(rest + square(foot[smallest] / half_[smallest]));
+    RealVector point = point_at(low);
+    const Real rest = -form(point);
+    if (rest > Real("1e-30"))
+        point[smallest] = half_[smallest] * sqrt(rest + square(point[smallest] / half_[smallest]));
     RealVector gradient{0, 0, 0};
-    for (std::size_t i = 0; i < round_axes_; ++i) gradient[i] = foot[i] / square(Real(half_[i]));
+    for (std::size_t i = 0; i < round_axes_; ++i) gradient[i] = point[i] / square(Real(half_[i]));
     return {(low - smallest_square) * length(gradient), unit(gradient)};
 }
 
@@ -137,7 +138,7 @@ ShapeOracle::Nearest ShapeOracle::nearest(const RealVector& p) const {
     return {near.distance, sum(sum(scaled(n[0], axes_[0]), n[1], axes_[1]), n[2], axes_[2])};
 }
 
-bool ShapeOracle::meets(const RealVector& p, const RealVector& q) const {
+bool ShapeOracle::intersects(const RealVector& p, const RealVector& q) const {
     const Real at_p = value(p);
     const Real at_q = value(q);
     if (at_p == 0 || at_q == 0 || (at_p > 0) != (at_q > 0)) return true;

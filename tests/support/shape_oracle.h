@@ -19,7 +19,7 @@ using RealVector = std::array<Real, 3>;
 /// u + s v.
 [[nodiscard]] RealVector sum(const RealVector& u, const Real& s, const RealVector& v);
 
-/// Place on the polynomial of the path's stored coefficients.
+/// Position on the polynomial of the path's stored coefficients.
 [[nodiscard]] RealVector position(const Path& path, const Real& s);
 
 /// The shape that AnalyticShape documents: its axes are the columns of the map, orthonormalised in their order; its
@@ -33,13 +33,13 @@ public:
         RealVector normal;  ///< outward, world
     };
     [[nodiscard]] Nearest nearest(const RealVector& p) const;
-    /// Negative inside, positive outside, 0 on the surface; smooth but for the rim.
+    /// Negative inside, positive outside, 0 on the surface; smooth except at the edge.
     [[nodiscard]] Real value(const RealVector& p) const;
     /// Has the closed segment a point on the surface?
-    [[nodiscard]] bool meets(const RealVector& p, const RealVector& q) const;
+    [[nodiscard]] bool intersects(const RealVector& p, const RealVector& q) const;
 
     [[nodiscard]] const std::array<double, 3>& half_axes() const { return half_; }
-    /// World coordinates of a place given in the shape's frame.
+    /// World coordinates of a point given in the shape's frame.
     [[nodiscard]] RealVector world(const RealVector& local) const;
 
 private:

@@ -113,7 +113,7 @@ void collect_doubtful(const Clearance<long double>& clearance, double speed, dou
         return;
     }
     collect_doubtful(clearance, speed, slack, smallest, from, middle, doubtful);
-    // Once a whole interval lies in overlap there is nothing to look for behind it.
+    // Once a whole interval lies in overlap nothing behind it matters.
     if (!doubtful.empty() && static_cast<double>(clearance(doubtful.back()[1])) < -slack) return;
     collect_doubtful(clearance, speed, slack, smallest, middle, to, doubtful);
 }

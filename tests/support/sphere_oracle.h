@@ -24,7 +24,7 @@ using Triangle = std::array<Vec3, 3>;
 [[nodiscard]] DigitsVec3 position(const Path& path, const Digits& s);
 
 /// Nearest point of the closed triangle, degenerate ones included: the smallest of the distances from the three
-/// segments and, where the foot of the perpendicular solves the Gram equations inside, from the plane.
+/// segments and, where the projection solves the Gram equations inside, from the plane.
 [[nodiscard]] DigitsVec3 nearest_point(const DigitsVec3& p, const Triangle& triangle);
 [[nodiscard]] Digits distance(const DigitsVec3& p, const Triangle& triangle);
 

@@ -30,7 +30,7 @@ private:
     double squares_ = 0.0;
 };
 
-/// Independent pairs (numerator, denominator) whose means have the ratio that is asked for.
+/// Independent pairs (numerator, denominator) whose means have the wanted ratio.
 class RatioSample {
 public:
     explicit RatioSample(double expected) : expected_(expected) {}

@@ -53,7 +53,7 @@ TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
         const Vec3 q = random_place(map, random);
         SCOPED_TRACE(i);
         ASSERT_EQ(shape.side(p), oracle.value(real(p)).sign());
-        const bool meets = oracle.meets(real(p), real(q));
+        const bool meets = oracle.intersects(real(p), real(q));
         ASSERT_EQ(shape.meets(p, q), meets);
         (meets ? met : free) += 1;
         const auto& half = oracle.half_axes();

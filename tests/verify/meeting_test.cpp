@@ -42,7 +42,7 @@ TEST(Meeting, AgreesWithTheEliminationOfInequalities) {
         if (area[0] == 0 && area[1] == 0 && area[2] == 0) continue;
         SCOPED_TRACE(testing::description(s));
         ++compared;
-        const bool expected = testing::exact_segment_meets_triangle(s.p, s.q, s.a, s.b, s.c);
+        const bool expected = testing::exact_segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
         ASSERT_EQ(meets(s.p, s.q, {s.a, s.b, s.c}), expected);
         met += expected ? 1 : 0;
     }

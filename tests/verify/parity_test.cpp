@@ -120,8 +120,8 @@ TEST(ParityOracle, CallsASurfacePointWhatTheExactIntersectionCallsOne) {
         for (const Vec3& p : {va + u * (vb - va) + v * (vc - va), 0.5 * va + 0.5 * vb}) {
             bool touches = false;
             for (const auto& [i, j, k] : sphere.triangles) {
-                touches = touches || exact_segment_meets_triangle(p, p, sphere.vertices[i], sphere.vertices[j],
-                                                                  sphere.vertices[k]);
+                touches = touches || exact_segment_intersects_triangle(p, p, sphere.vertices[i], sphere.vertices[j],
+                                                                       sphere.vertices[k]);
             }
             ASSERT_EQ(oracle.side(p) == Side::on_surface, touches);
             on_surface += touches ? 1 : 0;

@@ -236,7 +236,7 @@ unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& s
     const Quad none{};
     const Quad lower = min(first, second);
     const Quad upper = max(first, second);
-    // A slope that is rounding says nothing about where.
+    // A slope that is rounding gives no interval.
     const Mask is_level = abs(slope) <= rounding;
     const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
     const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
 
-constexpr std::size_t kFewestSlots = 64;
+constexpr std::size_t kMinSlots = 64;
 
 // Mixing step of MurmurHash3's 64-bit finaliser (A. Appleby, public domain).
 std::uint64_t mixed(std::uint64_t x) {
@@ -55,7 +55,7 @@ std::size_t VertexWelder::slot_of(const Vec3& position) const {
 }
 
 std::uint32_t VertexWelder::index_of(const Vec3& position) {
-    if (slots_.size() <= 2 * vertices_.size()) set_slots(slots_.empty() ? kFewestSlots : 2 * slots_.size());
+    if (slots_.size() <= 2 * vertices_.size()) set_slots(slots_.empty() ? kMinSlots : 2 * slots_.size());
     const Vec3 key = position + Vec3{};  // -0 + 0 = 0
     const std::size_t slot = slot_of(key);
     if (slots_[slot] == kFree) {
@@ -67,7 +67,7 @@ std::uint32_t VertexWelder::index_of(const Vec3& position) {
 
 void VertexWelder::reserve(std::size_t positions) {
     const std::size_t count = std::bit_ceil(2 * positions + 1);
-    if (count > std::max(slots_.size(), kFewestSlots)) set_slots(count);
+    if (count > std::max(slots_.size(), kMinSlots)) set_slots(count);
     vertices_.reserve(positions);
 }
 

@@ -52,7 +52,7 @@ private:
     std::vector<Use> uses_;
 };
 
-/// Union-find with path halving; the smallest member stands for its set, so that results do not depend on the order.
+/// Union-find with path halving; the smallest member represents its set, so that results do not depend on the order.
 /// Source: R. E. Tarjan, J. van Leeuwen, "Worst-case Analysis of Set Union Algorithms", JACM 31(2), 1984.
 class DisjointSets {
 public:

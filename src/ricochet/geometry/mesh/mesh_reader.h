@@ -12,7 +12,8 @@
 ///    ignored; free-form curves and surfaces, `call` and `csh` are refused.
 ///  - PLY: ASCII and both binary byte orders, elements and properties in any order, unknown ones skipped, faces as
 ///    vertex_indices or vertex_index lists, triangle strips.
-///  - STL: ASCII (several solids too) and binary, told apart by size. Corners with equal coordinates become one vertex.
+///  - STL: ASCII (several solids too) and binary, distinguished by size. Corners with equal coordinates become one
+///  vertex.
 ///  - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used); 4OFF, nOFF and binary OFF are
 ///    refused.
 #pragma once

@@ -168,7 +168,7 @@ private:
 
 std::size_t count_degenerate(const TriangleMesh& mesh) {
     const auto without_area = [&mesh](const Triangle& t) {
-        return is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+        return are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
     };
     return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), without_area));
 }
@@ -272,7 +272,7 @@ std::size_t count_self_intersections(const TriangleMesh& mesh) {
     std::vector<Box3> boxes;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
-        if (is_degenerate(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
+        if (are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
         Box3 box;
         for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
         boxes.push_back(box);

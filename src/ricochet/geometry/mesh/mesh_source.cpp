@@ -50,7 +50,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 bool is_line_break(char c) { return c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// from_chars knows no leading plus; the formats allow it.
+// from_chars refuses a leading plus; the formats allow it.
 const char* skip_plus(const char* at, const char* end) {
     return end - at > 1 && *at == '+' && (is_digit(at[1]) || at[1] == '.') ? at + 1 : at;
 }

@@ -155,7 +155,7 @@ private:
     return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
 }
 
-/// Reads OBJ text. Faces are grouped by the name in force at the face: its material (usemtl) if there is one, else its
+/// Reads OBJ text. Faces are grouped by the name valid at the face: its material (usemtl) if there is one, else its
 /// group (g), else its object (o), else the empty name.
 [[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
 

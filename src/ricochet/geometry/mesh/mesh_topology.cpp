@@ -221,7 +221,7 @@ void MeshTopology::Impl::add_faces(const FaceList& faces) {
     }
 }
 
-// A vertex at a gap starts exactly one half-edge without a face; OpenMesh wants it to be the vertex's own.
+// A vertex at a gap starts exactly one half-edge without a face; OpenMesh requires it to be the vertex's own.
 void MeshTopology::Impl::close_gaps() {
     for (std::size_t h = 0; h < mesh.n_halfedges(); ++h) {
         const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));

@@ -66,7 +66,7 @@ private:
         if (cursor_.at_line_end()) cursor_.next_line();
     }
 
-    // Vertices, faces, and edges, which nobody needs and some programs leave out.
+    // Vertices, faces, and edges, which are not used and which some programs leave out.
     void read_counts() {
         if (!cursor_.next_filled_line()) cursor_.fail("file ends before the counts of vertices and faces");
         vertex_count_ = count("number of vertices", 6);

@@ -12,8 +12,8 @@ namespace ricochet {
 namespace {
 
 // Far beyond what programs write; names are looked up one by one.
-constexpr std::size_t kMostElements = 256;
-constexpr std::size_t kMostProperties = 1024;
+constexpr std::size_t kMaxElements = 256;
+constexpr std::size_t kMaxProperties = 1024;
 
 std::optional<PlyType> type_of(std::string_view word) {
     using Entry = std::pair<std::string_view, PlyType>;
@@ -92,7 +92,7 @@ private:
         element.name = cursor_.word();
         element.line = cursor_.line();
         if (element.name.empty()) cursor_.fail("element without a name");
-        if (header_.elements.size() >= kMostElements) cursor_.fail(fmt::format("more than {} elements", kMostElements));
+        if (header_.elements.size() >= kMaxElements) cursor_.fail(fmt::format("more than {} elements", kMaxElements));
         if (header_.find(element.name) != nullptr)
             cursor_.fail(fmt::format("second element {}", in_quotes(element.name)));
         const std::int64_t count = cursor_.integer("number of elements");
@@ -116,8 +116,8 @@ private:
         property.name = cursor_.word();
         if (property.name.empty()) cursor_.fail("property without a name");
         PlyElement& element = header_.elements.back();
-        if (element.properties.size() >= kMostProperties)
-            cursor_.fail(fmt::format("more than {} properties", kMostProperties));
+        if (element.properties.size() >= kMaxProperties)
+            cursor_.fail(fmt::format("more than {} properties", kMaxProperties));
         if (element.find(property.name))
             cursor_.fail(fmt::format("second property {} of {}", in_quotes(property.name), in_quotes(element.name)));
         element.properties.push_back(std::move(property));

@@ -15,7 +15,7 @@ namespace {
 
 /// Marks a triangle without area, instead of its first neighbour.
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
-/// Added to indices into the list of irregular edges, to tell them from triangles.
+/// Added to indices into the list of irregular edges, to distinguish them from triangles.
 constexpr std::uint32_t kIrregularEdge = 1U << 31U;
 
 /// Arc tangent of t in [0, 1] within some 2^-51. The library's own, because that of the system may differ in its last

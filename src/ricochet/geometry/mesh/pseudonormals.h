@@ -1,5 +1,5 @@
 /// \file
-/// Angle-weighted pseudonormals: they tell on which side of a mesh a point is from its closest point alone.
+/// Angle-weighted pseudonormals: the side of a mesh that a point is on, from its closest point alone.
 ///
 /// Method: J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG
 /// 11(3), 2005. For triangles that bound a solid and are wound outward, the scalar product with the offset from the

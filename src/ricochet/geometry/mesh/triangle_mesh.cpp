@@ -71,8 +71,6 @@ double signed_volume(const TriangleMesh& mesh) {
     return six_volumes / 6.0;
 }
 
-bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) { return are_collinear(a, b, c); }
-
 TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement) {
     const AffineMap map = world_from_local(placement);
     TriangleMesh result;

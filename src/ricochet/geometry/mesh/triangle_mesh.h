@@ -51,8 +51,6 @@ struct PolygonMesh {
 [[nodiscard]] double surface_area(const TriangleMesh& mesh);
 /// Signed volume by the divergence theorem, m^3; meaningful when the mesh is closed. Positive when wound outward.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
-/// True when the corners of a triangle are exactly collinear or coincide (decided with exact arithmetic).
-[[nodiscard]] bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The mesh in world coordinates, tiny ones made zero (flush_tiny), the winding reversed where the placement mirrors,
 /// so that outward stays outward. The order of triangles and vertices stays. Callers refuse results that are not

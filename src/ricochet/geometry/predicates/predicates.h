@@ -78,7 +78,7 @@ struct FilteredCross {
 /// harmless: terms are multiples of 2^-1020, so sums below 2^-967 are exact.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
-/// Sign of (u x v) . w when the error bound allows to tell it, else 0. All of u, v, w are rounded differences of
+/// Sign of (u x v) . w when the error bound decides it, else 0. All of u, v, w are rounded differences of
 /// points.
 [[nodiscard]] inline int filtered_sign(const FilteredCross& cross, const Vec3& w) {
     const double determinant = cross.value.x * w.x + cross.value.y * w.y + cross.value.z * w.z;

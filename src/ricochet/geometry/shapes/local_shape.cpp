@@ -183,7 +183,7 @@ double Ellipsoid::distance_error(double distance, const Vec3& y) const {
 
 /// With t = distance / |gradient at the point| the point is x_i = y_i a_i^2 / (a_i^2 + t). For sigma = 1 + t /
 /// smallest^2 and b_i = |y_i| a_i / smallest^2 it lies on the surface when sum (b_i / (excess_i + sigma))^2 = 1. The
-/// largest root is sought; it is >= 0, and 0 stands for the medial axis (unless b vanishes along the smallest axes
+/// largest root is sought; it is >= 0, and 0 means the medial axis (unless b vanishes along the smallest axes
 /// there is no root at 0).
 double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
     std::array<double, 3> b{};

@@ -118,7 +118,7 @@ public:
     static LocalShape ball(const std::array<double, 3>& half_axes);
     static LocalShape cylinder(const std::array<double, 3>& half_axes);
 
-    /// +1 outside, -1 inside, 0 when the errors given with the segment do not let its `from` be told.
+    /// +1 outside, -1 inside, 0 when the errors given with the segment leave the side of `from` open.
     template <class Scalar>
     [[nodiscard]] int side_of_start(const LocalSegment<Scalar>& segment) const;
     /// True when both ends of the segment are certainly on the same side and all that is between them with them.

@@ -14,7 +14,7 @@
 
 namespace ricochet {
 
-/// A plane through a point. The stored double values are the plane: no rounding stands between it and the predicates.
+/// A plane through a point. The stored double values are the plane: the predicates use them without rounding.
 struct Plane {
     Vec3 point;
     Vec3 normal;  ///< of unit length up to rounding
@@ -49,8 +49,8 @@ struct Crossing {
                                         const Vec3& normal, double slack);
 
 /// Signed distance of p from the plane of (a, b, c), m. Its relative error is a few ulp times the longest edge over the
-/// height of the triangle, also where p almost lies in the plane (down to some 1e-30 of the sizes involved; the exact
-/// side is orient3d's to tell).
+/// height of the triangle, also where p almost lies in the plane (down to some 1e-30 of the sizes involved; orient3d
+/// decides the exact side).
 [[nodiscard]] double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 [[nodiscard]] double signed_distance(const Vec3& p, const Plane& plane);
 

@@ -280,12 +280,6 @@ Polynomial Polynomial::derivative() const {
     return result;
 }
 
-double Polynomial::magnitude() const {
-    double sum = 0.0;
-    for (int k = degree; k >= 0; --k) sum = std::fabs(coefficient(*this, k).hi) + duration * sum;
-    return sum;
-}
-
 Times sign_changes(const Polynomial& p) { return sign_changes_within(p, 0.0); }
 
 // The pieces are those of the whole duration, so that `from` and `to` select roots and do not change them.

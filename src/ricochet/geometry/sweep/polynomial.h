@@ -31,8 +31,6 @@ struct Polynomial {
     /// dp/ds in plain doubles.
     [[nodiscard]] double slope(double s) const;
     [[nodiscard]] Polynomial derivative() const;
-    /// sum |c_k| duration^k, in terms of which errors are stated.
-    [[nodiscard]] double magnitude() const;
 };
 
 /// Times in ascending order.
@@ -47,7 +45,7 @@ struct Times {
 };
 
 /// Every time inside (0, duration) at which p changes sign, within two ulp of a root of the given coefficients or, at a
-/// multiple root, where |p| is below 2^-97 magnitude(). None where p only touches zero or is zero throughout.
+/// multiple root, where |p| is below 2^-97 sum |c_k| duration^k. None where p only touches zero or is zero throughout.
 [[nodiscard]] Times sign_changes(const Polynomial& p);
 
 /// Every time in (from, to] at which p falls from positive values to zero, or touches it (as the rounded coefficients

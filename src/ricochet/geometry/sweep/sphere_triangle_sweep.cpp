@@ -140,8 +140,8 @@ Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& hei
 bool SphereTriangleSweep::certainly_passes_beside_face() const {
     const double normal_size = length(plane_.cross().magnitude);
     for (int i = 0; i < 3; ++i) {
-        const Vec3& from = corners_[static_cast<size_t>(i)];
-        const Vec3 d = corners_[static_cast<size_t>(next(i))] - from;
+        const Vec3& from = corner(i);
+        const Vec3 d = corner(next(i)) - from;
         const Vec3 outward = cross(d, plane_.cross().value);
         const double size = length(d) * normal_size;
         bool is_outside = true;
@@ -161,8 +161,8 @@ bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     if (projects_into_triangle(p, a, b, c, *normal_)) return true;
     const double slack = seam_slack(p);
     for (int i = 0; i < 3; ++i) {
-        const Vec3& from = corners_[static_cast<size_t>(i)];
-        const Vec3& to = corners_[static_cast<size_t>(next(i))];
+        const Vec3& from = corner(i);
+        const Vec3& to = corner(next(i));
         if (is_along_normal(closest_point_on_segment(p, from, to).offset, slack)) return true;
     }
     return false;
@@ -207,13 +207,12 @@ Polynomial SphereTriangleSweep::polynomial(const Coefficients<DoubleDouble>& coe
     return p;
 }
 
-/// Nothing for an edge without length: its vertices stand for it.
+/// Nothing for an edge without length: its vertices represent it.
 std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int i) const {
-    const bool in_order = is_before(corners_[static_cast<size_t>(i)], corners_[static_cast<size_t>(next(i))]);
+    const bool in_order = is_before(corner(i), corner(next(i)));
     const int first = in_order ? i : next(i);
     const int second = in_order ? next(i) : i;
-    const PreciseVec3 d =
-        difference<DoubleDouble>(corners_[static_cast<size_t>(second)], corners_[static_cast<size_t>(first)]);
+    const PreciseVec3 d = difference<DoubleDouble>(corner(second), corner(first));
     const double largest = max_abs(rounded(d));
     if (largest == 0.0) return std::nullopt;
     const double scale = scale_to_one(largest);
@@ -223,7 +222,7 @@ std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int 
 }
 
 SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const EdgeLine& line) const {
-    const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[static_cast<size_t>(line.first)]);
+    const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corner(line.first));
     const auto along = component_along(path_, start, line.direction);
     const auto around_end = point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_);
     return {polynomial(line_clearance(around_end, along, path_.degree)), along};
@@ -231,11 +230,11 @@ SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const Edg
 
 /// Discards an edge by plain doubles: until the limit the path stays beyond one of its ends, or away from its line.
 bool SphereTriangleSweep::certainly_misses_edge(int i) const {
-    const Vec3& corner = corners_[static_cast<size_t>(i)];
-    const Vec3 edge = corners_[static_cast<size_t>(next(i))] - corner;
+    const Vec3& origin = corner(i);
+    const Vec3 edge = corner(next(i)) - origin;
     const double edge_length = length(edge);
     if (!(edge_length > 0.0)) return false;
-    const Vec3 start = path_.c[0] - corner;
+    const Vec3 start = path_.c[0] - origin;
     const auto along = component_along(path_, as_vector(start), edge / edge_length);
     double lowest = along[0];
     double highest = along[0];
@@ -269,11 +268,11 @@ void SphereTriangleSweep::search_edge(int i, double from) {
 }
 
 void SphereTriangleSweep::search_vertex(int i, double from) {
-    const Vec3& corner = corners_[static_cast<size_t>(i)];
-    const Vec3 rough_start = path_.c[0] - corner;
+    const Vec3& vertex = corner(i);
+    const Vec3 rough_start = path_.c[0] - vertex;
     const auto rough = point_clearance(path_, sphere_.squared_displacement_, as_vector(rough_start), radius_);
     if (certainly_clears(rough, length(rough_start))) return;
-    const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corner);
+    const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], vertex);
     const Polynomial clearance =
         polynomial(point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_));
     if (clearance.coefficients[0].hi <= 0.0) starts_in_overlap_ = true;
@@ -283,7 +282,7 @@ void SphereTriangleSweep::search_vertex(int i, double from) {
 
 std::span<const double> SphereTriangleSweep::distance_extrema(Extrema& extrema) {
     for (int i = 0; i < 3; ++i) {
-        const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[static_cast<size_t>(i)]);
+        const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corner(i));
         extrema.add_of(polynomial(point_clearance(path_, sphere_.precise_squared_displacement_, start, radius_)));
         if (const std::optional<EdgeLine> line = edge_line(i)) extrema.add_of(edge_clearance(*line).polynomial);
     }
@@ -325,9 +324,9 @@ PreciseVec3 SphereTriangleSweep::position_from(const Vec3& origin, double time) 
 /// From the nearest point of an edge or vertex to the centre, not rounded to the coordinates' last place.
 Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     const int i = index_of(candidate.feature);
-    if (rank(candidate.feature) == 2) return rounded(position_from(corners_[static_cast<size_t>(i)], candidate.time));
+    if (rank(candidate.feature) == 2) return rounded(position_from(corner(i), candidate.time));
     const std::optional<EdgeLine> line = edge_line(i);
-    const PreciseVec3 w = position_from(corners_[static_cast<size_t>(line->first)], candidate.time);
+    const PreciseVec3 w = position_from(corner(line->first), candidate.time);
     return rounded(w - dot_of(w, line->direction) * line->direction);
 }
 
@@ -339,8 +338,7 @@ SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
         const Vec3 offset = offset_at(candidate);
         const bool leans = !normal() || !is_along_normal(offset, seam_slack(p));
         if (leans) {
-            const Vec3 point =
-                rank(candidate.feature) == 2 ? corners_[static_cast<size_t>(index_of(candidate.feature))] : p - offset;
+            const Vec3 point = rank(candidate.feature) == 2 ? corner(index_of(candidate.feature)) : p - offset;
             return {candidate.time, normalized(offset), point, candidate.feature};
         }
     }

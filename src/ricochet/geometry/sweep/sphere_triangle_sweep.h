@@ -113,6 +113,7 @@ private:
     void add_contact(double time, TriangleFeature feature);
     [[nodiscard]] std::optional<SphereContact> search_from_overlap();
 
+    [[nodiscard]] const Vec3& corner(int i) const { return corners_[static_cast<std::size_t>(i)]; }
     [[nodiscard]] const std::optional<Vec3>& normal();
     [[nodiscard]] std::array<DoubleDouble, 4> height_over_face(DoubleDouble& scaled_radius);
     [[nodiscard]] Times face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,

@@ -62,7 +62,6 @@
 #include "ricochet/geometry/sweep/polynomial.h"
 #include "ricochet/geometry/sweep/sphere_sweep.h"
 #include "ricochet/io/checkpoint.h"
-#include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"

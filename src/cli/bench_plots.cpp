@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/cases.h"
-#include "ricochet/io/gnuplot_style.h"
+#include "ricochet/compare/gnuplot_style.h"
 
 namespace ricochet::cli {
 namespace {

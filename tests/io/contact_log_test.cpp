@@ -1,4 +1,4 @@
-#include "ricochet/io/contact_log.h"
+#include "ricochet/io/frame_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/io/contact_log.h"
+#include "ricochet/io/frame_writer.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/simulation.h"
 

@@ -3,7 +3,6 @@
 
 #include "io/example_frames.h"
 #include "ricochet/core/atomic_file.h"
-#include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"

@@ -10,7 +10,6 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/io/checkpoint.h"
-#include "ricochet/io/contact_log.h"
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/run_report.h"
 #include "ricochet/simulation.h"

@@ -20,8 +20,8 @@
 #include "ricochet/dynamics/keyed_curve.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/fields.h"
 #include "ricochet/io/scene/files.h"
-#include "ricochet/io/scene/object_view.h"
 
 namespace ricochet::detail {
 

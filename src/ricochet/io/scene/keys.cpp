@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/fields.h"
 
 namespace ricochet::detail {
 namespace {
+
+const JsonNode kAbsent{};
 
 std::string number_words(const KeySpec& key, std::string_view noun) {
     std::string words(noun);
@@ -135,31 +140,6 @@ std::string not_built(const std::string& what) {
 
 // Reading.
 
-void read_value(const JsonNode& node, const KeySpec& /*key*/, double& value) { value = node.number().value_or(value); }
-
-void read_value(const JsonNode& node, const KeySpec& /*key*/, bool& value) {
-    if (const bool* truth = std::get_if<bool>(&node.value)) value = *truth;
-}
-
-void read_value(const JsonNode& node, const KeySpec& /*key*/, std::string& value) {
-    if (const std::string* text = node.text()) value = *text;
-}
-
-void read_value(const JsonNode& node, const KeySpec& /*key*/, Vec3& value) {
-    if (const auto all = node.number()) value = {*all, *all, *all};
-    const JsonNode::Array* items = node.array();
-    for (std::size_t axis = 0; items != nullptr && axis < 3; ++axis) {
-        value[static_cast<int>(axis)] = (*items)[axis].number().value_or(0.0);
-    }
-}
-
-void read_value(const JsonNode& node, const KeySpec& /*key*/, MeanSpread& value) {
-    if (const auto mean = node.number()) value = {*mean, 0.0};
-    if (const JsonNode::Array* items = node.array()) {
-        value = {(*items)[0].number().value_or(0.0), (*items)[1].number().value_or(0.0)};
-    }
-}
-
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object) {
     for (const KeySpec& key : keys) {
         const JsonNode* value = node.find(key.name);
@@ -167,9 +147,76 @@ void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* 
     }
 }
 
-// Defaults as JSON.
+ObjectView::ObjectView(const JsonNode& node, const ObjectSpec& spec, std::string path)
+    : node_(&node), spec_(&spec), variant_(variant_of(node, spec)), path_(std::move(path)) {}
 
-std::string default_text(const KeySpec& /*key*/, double value) {
+const JsonNode* ObjectView::value(std::string_view key) const {
+    const JsonNode* found = node_->find(key);
+    return found == nullptr || found->is_null() ? nullptr : found;
+}
+
+const std::vector<KeySpec>& ObjectView::keys_for(const std::type_info& target) const {
+    if (*spec_->target == target) return spec_->keys;
+    if (variant_ != nullptr && *variant_->target == target) return variant_->keys;
+    throw std::logic_error("no keys of the table set this struct: " + std::string(spec_->title));
+}
+
+const KeySpec& ObjectView::container(std::string_view key) const {
+    const KeySpec* spec = find_key(*spec_, variant_, key);
+    if (spec == nullptr || spec->content == nullptr) {
+        throw std::logic_error("no such object in the table: " + std::string(key));
+    }
+    return *spec;
+}
+
+const JsonNode& ObjectView::node(std::string_view key) const {
+    const JsonNode* found = value(key);
+    return found == nullptr ? kAbsent : *found;
+}
+
+std::string ObjectView::text(std::string_view key) const {
+    const std::string* found = node(key).text();
+    return found == nullptr ? std::string() : *found;
+}
+
+ObjectView ObjectView::object(std::string_view key) const { return {node(key), *container(key).content, path_of(key)}; }
+
+std::vector<ObjectView> ObjectView::objects(std::string_view key) const {
+    std::vector<ObjectView> views;
+    const JsonNode::Array* items = node(key).array();
+    if (items == nullptr) return views;
+    const ObjectSpec& spec = *container(key).content;
+    for (std::size_t i = 0; i < items->size(); ++i) {
+        views.emplace_back((*items)[i], spec, path_of_item(path_of(key), i));
+    }
+    return views;
+}
+
+std::vector<NamedObject> ObjectView::named_objects(std::string_view key) const {
+    std::vector<NamedObject> objects;
+    const JsonNode::Object* members = node(key).object();
+    if (members == nullptr) return objects;
+    const ObjectSpec& spec = *container(key).content;
+    for (const JsonMember& member : *members) {
+        objects.push_back(
+            {member.key, member.key_location, {member.value, spec, path_of_key(path_of(key), member.key)}});
+    }
+    return objects;
+}
+
+const SourceLocation& ObjectView::location_of(std::string_view key) const {
+    const JsonNode* found = node_->find(key);
+    return found == nullptr ? node_->location : found->location;
+}
+
+std::string ObjectView::path_of(std::string_view key) const { return path_of_key(path_, key); }
+
+// Members of each type, and their defaults as JSON.
+
+void Format<double>::read(const JsonNode& node, const KeySpec& /*key*/, double& value) {
+    value = node.number().value_or(value);
+}
+std::string Format<double>::text(const KeySpec& /*key*/, double value) {
     if (!std::isfinite(value)) return "";
     std::string text = fmt::format("{}", value);
     // 1e-09 is written 1e-9.
@@ -177,17 +224,38 @@ std::string default_text(const KeySpec& /*key*/, double value) {
     return text;
 }
 
-std::string default_text(const KeySpec& /*key*/, std::uint64_t value) { return fmt::format("{}", value); }
+void Format<bool>::read(const JsonNode& node, const KeySpec& /*key*/, bool& value) {
+    if (const bool* truth = std::get_if<bool>(&node.value)) value = *truth;
+}
+std::string Format<bool>::text(const KeySpec& /*key*/, bool value) { return value ? "true" : "false"; }
 
-std::string default_text(const KeySpec& /*key*/, bool value) { return value ? "true" : "false"; }
-
-std::string default_text(const KeySpec& /*key*/, const std::string& value) {
+void Format<std::string>::read(const JsonNode& node, const KeySpec& /*key*/, std::string& value) {
+    if (const std::string* text = node.text()) value = *text;
+}
+std::string Format<std::string>::text(const KeySpec& /*key*/, const std::string& value) {
     return value.empty() ? "" : fmt::format("\"{}\"", value);
 }
 
-std::string default_text(const KeySpec& key, const Vec3& value) {
-    if (key.type == ValueType::scale) return default_text(key, value.x);
+void Format<Vec3>::read(const JsonNode& node, const KeySpec& /*key*/, Vec3& value) {
+    if (const auto all = node.number()) value = {*all, *all, *all};
+    const JsonNode::Array* items = node.array();
+    for (std::size_t axis = 0; items != nullptr && axis < 3; ++axis) {
+        value[static_cast<int>(axis)] = (*items)[axis].number().value_or(0.0);
+    }
+}
+std::string Format<Vec3>::text(const KeySpec& key, const Vec3& value) {
+    if (key.type == ValueType::scale) return fmt::format("{}", value.x);
     return fmt::format("[{}, {}, {}]", value.x, value.y, value.z);
+}
+
+void Format<MeanSpread>::read(const JsonNode& node, const KeySpec& /*key*/, MeanSpread& value) {
+    if (const auto mean = node.number()) value = {*mean, 0.0};
+    if (const JsonNode::Array* items = node.array()) {
+        value = {(*items)[0].number().value_or(0.0), (*items)[1].number().value_or(0.0)};
+    }
+}
+std::string Format<MeanSpread>::text(const KeySpec& key, const MeanSpread& value) {
+    return Format<double>::text(key, value.mean);
 }
 
 void set_option(KeySpec& key, Rule rule) {

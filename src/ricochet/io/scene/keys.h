@@ -1,25 +1,16 @@
 /// \file
-/// Scene keys bound to the members that they set. One line of a table says a key's name, member, range, unit and
-/// meaning; the checker, the reader, the JSON Schema and the reference in docs/ all follow from it. Types and defaults
-/// are those of the member.
+/// What the tables of scene keys say (fields.h makes them), the check of a document against them, and a checked object.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <typeinfo>
-#include <utility>
 #include <vector>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/core/vec3.h"
-#include "ricochet/dynamics/emitter.h"
 #include "ricochet/io/scene/document.h"
 
 namespace ricochet::detail {
@@ -144,211 +135,63 @@ struct ObjectSpec {
 /// checked further without a second error for the same mistake.
 void check_scene(JsonNode& root, Diagnostics& diagnostics);
 
-// How the type of a member says what JSON value sets it, and how its default is written. Values are checked before.
-
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-template <class T>
-struct IsVector : std::false_type {};
-template <class T>
-struct IsVector<std::vector<T>> : std::true_type {};
-
-void read_value(const JsonNode& node, const KeySpec& key, double& value);
-void read_value(const JsonNode& node, const KeySpec& key, bool& value);
-void read_value(const JsonNode& node, const KeySpec& key, std::string& value);
-/// [x, y, z], or one number for all three.
-void read_value(const JsonNode& node, const KeySpec& key, Vec3& value);
-void read_value(const JsonNode& node, const KeySpec& key, MeanSpread& value);
-/// The members of `object`, a struct whose members the content's keys set.
+/// The members of `object`, a struct whose members these keys set, from a checked object.
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object);
 
-template <class Member>
-void read_value(const JsonNode& node, const KeySpec& key, Member& value) {
-    if constexpr (IsOptional<Member>::value) {
-        read_value(node, key, value.emplace());
-    } else if constexpr (IsVector<Member>::value) {
-        for (const JsonNode& item : *node.array()) read_value(item, key, value.emplace_back());
-    } else if constexpr (std::is_integral_v<Member>) {
-        value = static_cast<Member>(node.whole_number().value_or(0));
-    } else if constexpr (std::is_enum_v<Member>) {
-        for (const Choice& choice : key.choices) {
-            if (choice.name == *node.text()) value = static_cast<Member>(choice.value);
-        }
-    } else {
-        read_members(node, key.content->keys, &value);
+struct NamedObject;
+
+/// Values that were refused count as absent; what then stands instead (the struct's default) is seen by no one, because
+/// the scene is refused as a whole.
+class ObjectView {
+public:
+    /// node: an object, or null (then everything is absent). path: for messages.
+    ObjectView(const JsonNode& node, const ObjectSpec& spec, std::string path);
+
+    /// The struct that the object's own keys set, or those of its variant; the other members keep their defaults.
+    template <class Struct>
+    [[nodiscard]] Struct read() const {
+        Struct result = Struct();
+        read_members(*node_, keys_for(typeid(Struct)), &result);
+        return result;
     }
-}
 
-template <class Member>
-constexpr ValueType type_of() {
-    if constexpr (IsOptional<Member>::value) {
-        return type_of<typename Member::value_type>();
-    } else if constexpr (IsVector<Member>::value) {
-        return std::is_integral_v<typename Member::value_type> ? ValueType::integers : ValueType::list;
-    } else if constexpr (std::is_same_v<Member, bool>) {
-        return ValueType::boolean;
-    } else if constexpr (std::is_integral_v<Member>) {
-        return ValueType::integer;
-    } else if constexpr (std::is_floating_point_v<Member>) {
-        return ValueType::number;
-    } else if constexpr (std::is_enum_v<Member>) {
-        return ValueType::choice;
-    } else if constexpr (std::is_same_v<Member, std::string>) {
-        return ValueType::text;
-    } else if constexpr (std::is_same_v<Member, Vec3>) {
-        return ValueType::vector;
-    } else {
-        return std::is_same_v<Member, MeanSpread> ? ValueType::pair : ValueType::object;
-    }
-}
+    /// True for an object that is not there, or was refused.
+    [[nodiscard]] bool is_absent() const { return node_->object() == nullptr; }
+    [[nodiscard]] bool has(std::string_view key) const { return value(key) != nullptr; }
+    /// The value itself; null where it is absent.
+    [[nodiscard]] const JsonNode& node(std::string_view key) const;
+    /// A name or a path; empty where it is absent.
+    [[nodiscard]] std::string text(std::string_view key) const;
+    [[nodiscard]] ObjectView object(std::string_view key) const;
+    /// The objects of a list.
+    [[nodiscard]] std::vector<ObjectView> objects(std::string_view key) const;
+    /// The objects of a table.
+    [[nodiscard]] std::vector<NamedObject> named_objects(std::string_view key) const;
 
-/// The JSON text of a default; empty where it is no value that a scene can hold (infinite, nothing, an empty text).
-[[nodiscard]] std::string default_text(const KeySpec& key, double value);
-[[nodiscard]] std::string default_text(const KeySpec& key, std::uint64_t value);
-[[nodiscard]] std::string default_text(const KeySpec& key, bool value);
-[[nodiscard]] std::string default_text(const KeySpec& key, const std::string& value);
-[[nodiscard]] std::string default_text(const KeySpec& key, const Vec3& value);
-
-template <class Member>
-[[nodiscard]] std::string default_text_of(const KeySpec& key, const Member& value) {
-    if constexpr (std::is_enum_v<Member>) {
-        for (const Choice& choice : key.choices) {
-            if (choice.value == static_cast<long>(value)) return default_text(key, std::string(choice.name));
-        }
-        return "";
-    } else if constexpr (std::is_same_v<Member, MeanSpread>) {
-        return default_text(key, value.mean);
-    } else if constexpr (std::is_integral_v<Member> && !std::is_same_v<Member, bool>) {
-        return default_text(key, static_cast<std::uint64_t>(value));
-    } else if constexpr (requires { default_text(key, value); }) {
-        return default_text(key, value);
-    } else {
-        return key.type == ValueType::list ? "[]" : "";
-    }
-}
-
-// What a line of the table can say besides name, member, range, unit and meaning.
-
-enum class Rule { required, not_zero, not_empty, not_built };
-inline constexpr Rule kRequired = Rule::required;
-inline constexpr Rule kNotZero = Rule::not_zero;
-inline constexpr Rule kNotEmpty = Rule::not_empty;
-inline constexpr Rule kNotBuilt = Rule::not_built;
-/// What the key's absence means, in place of a default.
-struct Without {
-    std::string_view words;
-};
-struct Unit {
-    std::string_view name;
-};
-/// Key that must stand beside it.
-struct Needs {
-    std::string_view key;
-};
-/// Allowed values of a pair's mean - spread.
-struct LowEnd {
-    Range range;
-};
-/// The scene's key with the objects that can be named instead.
-struct NamedIn {
-    std::string_view table;
-};
-using Choices = std::vector<Choice>;
-
-void set_option(KeySpec& key, Rule rule);
-inline void set_option(KeySpec& key, Without without) { key.without = without.words; }
-inline void set_option(KeySpec& key, Unit unit) { key.unit = unit.name; }
-inline void set_option(KeySpec& key, Needs needs) { key.needs = needs.key; }
-inline void set_option(KeySpec& key, LowEnd low_end) { key.low_end = low_end.range; }
-inline void set_option(KeySpec& key, NamedIn named_in) { key.table = named_in.table; }
-inline void set_option(KeySpec& key, ValueType type) { key.type = type; }
-inline void set_option(KeySpec& key, const ObjectSpec* content) { key.content = content; }
-inline void set_option(KeySpec& key, Choices choices) {
-    key.choices = std::move(choices);
-    key.type = ValueType::choice;
-}
-
-/// One line of the table of a struct: a key, bound to the member that `member` (a pointer to it, or a function) gives,
-/// or of a type without a member, for what the builder reads itself.
-template <class Struct>
-struct Field : KeySpec {
-    template <class Member, class... Options>
-    requires std::invocable<Member, Struct&> Field(std::string_view key, Member member, Range allowed,
-                                                   std::string_view si_unit, std::string_view meaning,
-                                                   Options... options) {
-        using Value = std::remove_cvref_t<std::invoke_result_t<Member, Struct&>>;
-        type = type_of<Value>();
-        describe(key, allowed, si_unit, meaning, options...);
-        if constexpr (std::default_initializable<Struct>) {
-            Struct defaults = Struct();
-            if (without.empty() && !required)
-                default_value = default_text_of<Value>(*this, std::invoke(member, defaults));
-        }
-        read = [member, spec = reading_spec()](void* object, const JsonNode& value) {
-            auto&& target = std::invoke(member, *static_cast<Struct*>(object));
-            read_value(value, spec, target);
-        };
-    }
-    template <class Member, class... Options>
-    requires std::invocable<Member, Struct&> Field(std::string_view key, Member member, std::string_view meaning,
-                                                   Options... options)
-        : Field(key, member, kAnyNumber, "", meaning, options...) {}
-
-    template <class... Options>
-    Field(std::string_view key, ValueType value_type, Range allowed, std::string_view si_unit, std::string_view meaning,
-          Options... options) {
-        type = value_type;
-        describe(key, allowed, si_unit, meaning, options...);
-        if (!without.empty() || required) return;
-        const bool is_list = type == ValueType::list || type == ValueType::list_or_file;
-        default_value = is_list ? "[]" : type == ValueType::table ? "{}" : "";
-    }
-    template <class... Options>
-    Field(std::string_view key, ValueType value_type, std::string_view meaning, Options... options)
-        : Field(key, value_type, kAnyNumber, "", meaning, options...) {}
+    /// Name of the variant; empty where it was refused.
+    [[nodiscard]] std::string_view type() const { return variant_ == nullptr ? "" : variant_->name; }
+    [[nodiscard]] const SourceLocation& location() const { return node_->location; }
+    [[nodiscard]] const SourceLocation& location_of(std::string_view key) const;
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] std::string path_of(std::string_view key) const;
 
 private:
-    template <class... Options>
-    void describe(std::string_view key, Range allowed, std::string_view si_unit, std::string_view meaning,
-                  Options... options) {
-        name = key;
-        range = allowed;
-        unit = si_unit;
-        description = meaning;
-        (set_option(*this, options), ...);
-    }
-    // What reading needs of the key.
-    [[nodiscard]] KeySpec reading_spec() const {
-        return {.name = name, .type = type, .description = description, .choices = choices, .content = content};
-    }
+    [[nodiscard]] const JsonNode* value(std::string_view key) const;
+    [[nodiscard]] const KeySpec& container(std::string_view key) const;
+    [[nodiscard]] const std::vector<KeySpec>& keys_for(const std::type_info& target) const;
+
+    const JsonNode* node_;
+    const ObjectSpec* spec_;
+    const Variant* variant_;
+    std::string path_;
 };
 
-template <class Struct>
-using Fields = std::vector<Field<Struct>>;
-
-template <class Struct>
-[[nodiscard]] Fields<Struct> joined(std::initializer_list<Fields<Struct>> parts) {
-    Fields<Struct> fields;
-    for (const Fields<Struct>& part : parts) fields.insert(fields.end(), part.begin(), part.end());
-    return fields;
-}
-
-template <class Struct>
-[[nodiscard]] Variant variant(std::string_view name, std::string_view description, const Fields<Struct>& fields,
-                              std::vector<std::string_view> exactly_one_of = {}) {
-    return {name, description, {fields.begin(), fields.end()}, std::move(exactly_one_of), &typeid(Struct)};
-}
-
-template <class Struct>
-[[nodiscard]] ObjectSpec object(std::string_view title, std::string_view description, const Fields<Struct>& fields,
-                                std::vector<Variant> variants = {}) {
-    return {title, description, {fields.begin(), fields.end()}, std::move(variants), &typeid(Struct)};
-}
-
-/// For tables of keys that set no members.
-struct Unbound {};
+/// One object of a table.
+struct NamedObject {
+    std::string name;
+    SourceLocation name_location;
+    ObjectView view;
+};
 
 /// The scene format's version: the value of the key "ricochet".
 inline constexpr unsigned kSceneVersion = 1;

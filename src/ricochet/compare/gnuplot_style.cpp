@@ -1,4 +1,4 @@
-#include "ricochet/io/gnuplot_style.h"
+#include "ricochet/compare/gnuplot_style.h"
 
 #include <fmt/format.h>
 

@@ -24,10 +24,10 @@ struct OutputKeys : OutputOptions {
 
 const ObjectSpec& tolerance_spec() {
     using T = ErrorTolerance;
-    static const ObjectSpec spec = object<T>(
-        "tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
-        {{"position", &T::position, kPositive, "m", "Of the position, also on the way between a sub-step's ends."},
-         {"velocity", &T::velocity, kPositive, "m/s", "Of the velocity."}});
+    static const ObjectSpec spec =
+        object<T>("tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
+                  {{"position", &T::position, kPositive, "m", "Of the position, also between a sub-step's ends."},
+                   {"velocity", &T::velocity, kPositive, "m/s", "Of the velocity."}});
     return spec;
 }
 

@@ -54,7 +54,7 @@ FlowLaw vortex_flow() {
         {axis_point(&V::point),
          axis(&V::axis),
          {"circulation", &V::circulation, kCoordinate, "m^2/s",
-          "Speed times circumference, outside the core; negative turns the other way.", kRequired},
+          "Speed times circumference, outside the core; negative turns in the other direction.", kRequired},
          {"core_radius", &V::core_radius, kLength, "m",
           "Radius of the core, in which the speed falls to 0 on the axis.", kRequired},
          {"profile", &V::profile, "How the speed depends on the distance.",
@@ -145,7 +145,7 @@ FlowLaw grid_flow() {
         {"array", &Grid::array, "Name of the array, with three components.",
          Without{"the first with three components"}},
         {"outside", &Grid::outside, "What holds beyond the grid.",
-         Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest place of the grid"),
+         Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest point of the grid"),
                  choice(OutsideGrid::zero, "zero", "nothing")}}};
     return {variant("grid", "Samples on a regular grid, interpolated linearly along each axis.", fields),
             [](const ObjectView& view, const SceneContext& context) -> FlowPointer {

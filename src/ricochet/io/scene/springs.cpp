@@ -93,8 +93,8 @@ Variant list_variant() {
 }
 
 Fields<RopeKeys> rope_ends() {
-    return {{"from", &RopeKeys::from, kCoordinate, "m", "Place of its first particle.", kRequired},
-            {"to", &RopeKeys::to, kCoordinate, "m", "Place of its last particle.", kRequired}};
+    return {{"from", &RopeKeys::from, kCoordinate, "m", "Position of its first particle.", kRequired},
+            {"to", &RopeKeys::to, kCoordinate, "m", "Position of its last particle.", kRequired}};
 }
 
 // What ropes and chains have in common.

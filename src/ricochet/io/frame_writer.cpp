@@ -87,8 +87,8 @@ constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-/// The files of a series and their list. Touched by the writer's thread, and by others only while that has no job; the
-/// frames to be used again are the exception.
+/// The files of a series and their list. Used by the writer's thread, and by others only while that has no job; frames
+/// to be filled again are handed over under a lock.
 class FrameWriter::Series {
 public:
     Series(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
@@ -104,7 +104,7 @@ public:
         if (keeps_frames_) written_.push_back(std::move(frame));
     }
 
-    // What is lost after a checkpoint must not leave the list behind.
+    // A checkpoint names the frames in the list, so the list must be complete before it is written.
     const std::vector<PvdEntry>& bring_up_to_date() {
         if (listed_ != entries_.size()) write_list();
         return entries_;

@@ -79,6 +79,8 @@ void WriterThread::work() {
     }
 }
 
+// Series of frames.
+
 namespace {
 
 // Up to this many frames the series file is rewritten after each; later only when the frames written since weigh as
@@ -159,6 +161,8 @@ std::vector<PvdEntry> FrameWriter::drain() {
     thread_->drain();
     return series_->bring_up_to_date();
 }
+
+// The contact log.
 
 namespace {
 

@@ -106,20 +106,17 @@ FlowLaw shear_flow() {
 
 FlowLaw turbulence_flow() {
     using T = TurbulenceSettings;
-    return flow_law<T>("turbulence", "Eddies of several sizes without divergence (curl noise).",
-                       {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
-                        {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
-                        {"octaves", &T::octaves, between(1, kMostOctaves), "",
-                         "Sizes of eddies, each half as large as the one before."},
-                        {"gain",
-                         &T::gain,
-                         {.lower = 0.0, .upper = 1.0, .lower_open = true},
-                         "",
-                         "Speed of the eddies of a size over that of the size before."},
-                        {"rate", &T::rate, kNotNegative, "1/s",
-                         "How often in a second the largest eddies are replaced by others; 0 is frozen."},
-                        {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
-                       &make_turbulence);
+    return flow_law<T>(
+        "turbulence", "Eddies of several sizes without divergence (curl noise).",
+        {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
+         {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
+         {"octaves", &T::octaves, between(1, kMostOctaves), "",
+          "Sizes of eddies, each half as large as the one before."},
+         {"gain", &T::gain, positive_up_to(1.0), "", "Speed of the eddies of a size over that of the size before."},
+         {"rate", &T::rate, kNotNegative, "1/s",
+          "How often in a second the largest eddies are replaced by others; 0 is frozen."},
+         {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
+        &make_turbulence);
 }
 
 FlowLaw sphere_flow() {

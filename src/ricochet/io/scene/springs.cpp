@@ -51,12 +51,9 @@ Field<Struct> damping() {
 }
 template <class Struct>
 Field<Struct> breaking_stretch() {
-    return {"breaking_stretch",
-            &Struct::breaking_stretch,
-            kPositive,
-            "",
-            "Stretch, as a part of the rest length, beyond which a spring breaks for good.",
-            Without{"it never breaks"}};
+    constexpr std::string_view kMeaning =
+        "Stretch, as a part of the rest length, beyond which a spring breaks for good.";
+    return {"breaking_stretch", &Struct::breaking_stretch, kPositive, "", kMeaning, Without{"it never breaks"}};
 }
 template <class Struct>
 Field<Struct> radius() {

@@ -27,9 +27,9 @@ bool has_type(const Json& value, const std::string& type) {
 
 bool matches(const std::string& text, const std::string& pattern) {
     static std::map<std::string, std::regex> compiled;
-    const auto [place, is_new] = compiled.try_emplace(pattern);
-    if (is_new) place->second = std::regex(pattern);
-    return std::regex_search(text, place->second);
+    const auto [found, is_new] = compiled.try_emplace(pattern);
+    if (is_new) found->second = std::regex(pattern);
+    return std::regex_search(text, found->second);
 }
 
 class Validator {

@@ -16,6 +16,7 @@
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/document.h"
+#include "ricochet/io/scene/keys.h"
 #include "support/counts.h"
 
 namespace ricochet {
@@ -143,28 +144,28 @@ TEST(SceneSchema, EveryDefaultConformsToItsOwnKey) {
 }
 
 // Pointers to every value of a document.
-std::vector<Json::json_pointer> places_in(const Json& document) {
-    std::vector<Json::json_pointer> places;
+std::vector<Json::json_pointer> pointers_in(const Json& document) {
+    std::vector<Json::json_pointer> pointers;
     const Json flat = document.flatten();
     std::set<std::string> seen;
     for (const auto& [path, value] : flat.items()) {
-        for (Json::json_pointer place(path); !place.empty(); place = place.parent_pointer()) {
-            if (seen.insert(place.to_string()).second) places.push_back(place);
+        for (Json::json_pointer pointer(path); !pointer.empty(); pointer = pointer.parent_pointer()) {
+            if (seen.insert(pointer.to_string()).second) pointers.push_back(pointer);
         }
     }
-    return places;
+    return pointers;
 }
 
 void expect_agreement_on_replaced_values(const Json& sample, const std::vector<Json>& values) {
     // All of them, or every so many where each one costs more.
     const auto stride = static_cast<std::size_t>(50 / scaled(50));
     std::size_t tried = 0;
-    for (const Json::json_pointer& place : places_in(sample)) {
+    for (const Json::json_pointer& pointer : pointers_in(sample)) {
         for (const Json& value : values) {
             if (tried++ % stride != 0) continue;
             Json spoiled = sample;
-            spoiled[place] = value;
-            SCOPED_TRACE(place.to_string() + " = " + value.dump());
+            spoiled[pointer] = value;
+            SCOPED_TRACE(pointer.to_string() + " = " + value.dump());
             expect_agreement(spoiled);
             if (testing::Test::HasFatalFailure()) return;
         }
@@ -221,15 +222,15 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValueOfForcesAndFlows) {
 }
 
 void expect_agreement_on_changed_keys(const Json& sample) {
-    for (const Json::json_pointer& place : places_in(sample)) {
-        const Json::json_pointer parent = place.parent_pointer();
+    for (const Json::json_pointer& pointer : pointers_in(sample)) {
+        const Json::json_pointer parent = pointer.parent_pointer();
         if (!sample.at(parent).is_object()) continue;
-        SCOPED_TRACE(place.to_string());
+        SCOPED_TRACE(pointer.to_string());
         Json removed = sample;
-        removed.at(parent).erase(place.back());
+        removed.at(parent).erase(pointer.back());
         expect_agreement(removed);
         Json renamed = removed;
-        renamed.at(parent)["other"] = sample.at(place);
+        renamed.at(parent)["other"] = sample.at(pointer);
         expect_agreement(renamed);
         for (const char* key : {"type", "radius", "size", "motion", "file", "collider", "scale", "particle_radius",
                                 "flow", "coefficient", "parts"}) {
@@ -246,7 +247,7 @@ TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
 }
 
 void expect_agreement_on_random_changes(const Json& sample) {
-    const auto places = places_in(sample);
+    const auto pointers = pointers_in(sample);
     RandomSequence random(8, 0, 0);
     const auto below = [&](std::size_t n) {
         return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
@@ -255,8 +256,8 @@ void expect_agreement_on_random_changes(const Json& sample) {
         SCOPED_TRACE(round);
         Json spoiled = sample;
         for (int i = 0; i < 3; ++i) {
-            const Json::json_pointer& to = places[below(places.size())];
-            const Json::json_pointer& from = places[below(places.size())];
+            const Json::json_pointer& to = pointers[below(pointers.size())];
+            const Json::json_pointer& from = pointers[below(pointers.size())];
             if (spoiled.contains(to) && sample.contains(from)) spoiled[to] = sample[from];
         }
         expect_agreement(spoiled);

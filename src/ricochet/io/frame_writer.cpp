@@ -79,6 +79,8 @@ void WriterThread::work() {
     }
 }
 
+// Series of frames.
+
 namespace {
 
 // Up to this many frames the series file is rewritten after each; later only when the frames written since weigh as
@@ -87,8 +89,8 @@ constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-/// The files of a series and their list. Touched by the writer's thread, and by others only while that has no job; the
-/// frames to be used again are the exception.
+/// The files of a series and their list. Used by the writer's thread, and by others only while that has no job; frames
+/// to be filled again are handed over under a lock.
 class FrameWriter::Series {
 public:
     Series(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
@@ -104,7 +106,7 @@ public:
         if (keeps_frames_) written_.push_back(std::move(frame));
     }
 
-    // What is lost after a checkpoint must not leave the list behind.
+    // A checkpoint names the frames in the list, so the list must be complete before it is written.
     const std::vector<PvdEntry>& bring_up_to_date() {
         if (listed_ != entries_.size()) write_list();
         return entries_;
@@ -159,6 +161,8 @@ std::vector<PvdEntry> FrameWriter::drain() {
     thread_->drain();
     return series_->bring_up_to_date();
 }
+
+// The contact log.
 
 namespace {
 

@@ -23,27 +23,26 @@
 
 namespace ricochet {
 
-/// Does jobs one after the other in the order they are given, and holds few of them: when kMostInFlight are waiting or
-/// in work, whoever brings the next one waits. After a job that throws none is done any more, and every call throws
-/// what it threw. Jobs are to be given by one thread.
+/// A queue of at most kMostInFlight jobs, done one after the other on one thread; submit() waits while it is full.
+/// After a job has thrown no further one is done, and every call throws what it threw. Only one thread may submit jobs.
 class WriterThread {
 public:
-    /// In the background, or at once in submit(): the same files, for tests and for whoever wants no further thread.
+    /// On a thread of its own, or at once in submit(), with the same files.
     enum class Mode { background, synchronous };
     static constexpr std::size_t kMostInFlight = 2;
 
     explicit WriterThread(Mode mode = Mode::background);
-    /// Finishes the job in work and gives up those that wait.
+    /// Finishes the job in progress and drops those that wait.
     ~WriterThread();
     WriterThread(const WriterThread&) = delete;
     WriterThread& operator=(const WriterThread&) = delete;
 
-    /// Waits until another job can be given without waiting.
+    /// Waits until submit() would not wait.
     void wait_for_room();
     void submit(std::function<void()> job);
     /// Waits until all jobs given so far are done.
     void drain();
-    /// Only throws, if an earlier job threw; never waits for a job.
+    /// Throws what an earlier job threw; never waits.
     void check();
 
 private:
@@ -53,7 +52,7 @@ private:
     Mode mode_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<std::function<void()>> jobs_;  // the first one may be in work
+    std::deque<std::function<void()>> jobs_;  // the first one may be in progress
     std::exception_ptr error_;
     bool closing_ = false;
     std::thread thread_;
@@ -72,9 +71,9 @@ public:
     /// A frame to be filled, once there is room for it: with the memory of one that has been written, whatever it
     /// holds, or empty. Making the frame only now is what keeps no more than two in memory. Throws like submit().
     [[nodiscard]] VtkPolyData blank_frame();
-    /// Hands over a frame. Throws what an earlier frame's writing threw.
+    /// Hands over a frame. Throws what writing an earlier frame threw.
     void submit(std::uint64_t step, VtkPolyData frame);
-    /// Throws what an earlier frame's writing threw, without waiting.
+    /// Throws what writing an earlier frame threw, without waiting.
     void check() { thread_->check(); }
     /// Waits until everything handed over so far is on disk; the whole series. Throws what the writing threw.
     [[nodiscard]] std::vector<PvdEntry> drain();
@@ -116,8 +115,8 @@ struct ContactColumns {
 /// in the order of steps and, within a step, of Simulation::contact_records().
 class ContactLog {
 public:
-    /// As many rows are written out at once, even between frames: some 100 MB. With those on their way to the disk at
-    /// most three times as much is in memory, besides the rows of the step in work.
+    /// Rows (some 100 MB) after which a file is written even between two frames. With the files that are being written,
+    /// at most three times as many are in memory, besides those of the step in progress.
     static constexpr std::size_t kMostRows = std::size_t{1} << 19;
 
     /// The simulation must record its contacts (SimulationOptions::record_contacts); its steps from now on are logged.
@@ -128,7 +127,7 @@ public:
     /// Takes the rows of the last step; to be called after every step (again for the same step: no effect). Throws
     /// std::logic_error when a step was left out, and what an earlier file's writing threw.
     void add_step(const Simulation& simulation);
-    /// Writes what has come since the file before, if only to say that nothing has. Throws like add_step().
+    /// Writes the rows since the file before, even if there are none. Throws like add_step().
     void write(const Simulation& simulation);
     /// Waits until the files so far are on disk; the whole series. Throws what the writing threw.
     [[nodiscard]] std::vector<PvdEntry> drain() { return files_.drain(); }

@@ -17,8 +17,7 @@ namespace ricochet {
 /// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
                                          bool has_spheres = false);
-/// The same in the memory of a frame that is no longer needed, whatever it holds: most of the time that a frame takes
-/// is that of fresh memory.
+/// The same, reusing the memory of a frame that is no longer needed: allocation is most of the cost of a frame.
 void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
                          bool has_spheres);
 

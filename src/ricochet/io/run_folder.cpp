@@ -20,6 +20,8 @@
 
 namespace ricochet {
 
+// Names of files.
+
 namespace {
 
 constexpr std::string_view kFramePrefix = "particles_";
@@ -107,6 +109,8 @@ bool is_run_file(std::string_view name) {
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
            step_of_frame_file(finished) || step_of_contact_file(finished) || index_of_collider_file(finished);
 }
+
+// The folder while a run writes.
 
 namespace {
 

@@ -1,5 +1,5 @@
 /// \file
-/// The folder that a run writes into: the names of its files, whose it is while a run writes, and what it holds.
+/// The folder that a run writes into: the names of its files, its lock while a run writes, and what it holds.
 #pragma once
 
 #include <array>
@@ -99,8 +99,8 @@ struct RunFolder {
     std::vector<std::filesystem::path> colliders;  ///< by index
 };
 
-/// Looks into a run's folder; a run that still writes or was cut off is fine. Throws InputError when there is no such
-/// folder or it holds no frame.
+/// Lists a run's folder; the run may still be writing, or have been interrupted. Throws InputError when there is no
+/// such folder or it holds no frame.
 [[nodiscard]] RunFolder open_run_folder(const std::filesystem::path& path);
 
 }  // namespace ricochet

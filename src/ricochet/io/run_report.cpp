@@ -15,6 +15,8 @@
 
 namespace ricochet {
 
+// run.json.
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,6 +103,8 @@ RunInfo read_run_info(const std::filesystem::path& path) {
                                      error.what()));
     }
 }
+
+// summary.json.
 
 namespace {
 
@@ -203,6 +207,8 @@ std::string summary_text(const RunSummary& summary) {
     // Names come from files and may hold bytes that are no UTF-8: they are replaced, never a reason to lose the run.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
+
+// The final state as text.
 
 namespace {
 

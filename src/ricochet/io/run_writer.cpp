@@ -12,7 +12,7 @@
 namespace ricochet {
 namespace {
 
-/// Adds the time until it goes to a sum of seconds.
+/// Adds its lifetime to a sum of seconds.
 class SecondsTo {
 public:
     explicit SecondsTo(double& sum) : sum_(sum) {}

@@ -21,8 +21,8 @@ namespace ricochet {
 
 /// Writes a run: first run.json and the colliders, then frames, at the end the colliders with their totals and the
 /// summary. What is on disk at any moment can be opened, however the run ends. Frames and contact files are written by
-/// one thread of its own; at most two of them are in memory, then the simulation waits. An error of that thread comes
-/// out of the next call, whichever it is.
+/// a thread of their own; at most two of them are in memory, then the simulation waits. The next call throws what that
+/// thread threw.
 class RunWriter {
 public:
     /// folder: an OutputDirectory's, which must outlive the writer. region: what a plane has to be large enough for,
@@ -32,12 +32,11 @@ public:
               const std::optional<Checkpoint>& resumed = std::nullopt,
               WriterThread::Mode mode = WriterThread::Mode::background);
 
-    /// To be called after every step: takes its contacts where the simulation records them, so that none is lost
-    /// between frames, and lets a run end soon whose frames cannot be written. Throws like ContactLog::add_step() and
-    /// what an earlier frame's writing threw.
+    /// To be called after every step. Logs its contacts where the simulation records them. Throws like
+    /// ContactLog::add_step(), and what writing an earlier frame threw, so that a run that cannot write ends soon.
     void add_step(const Simulation& simulation);
     /// Hands the present state over as a frame, with the contacts since the one before where the simulation records
-    /// them. Throws what an earlier frame's writing threw.
+    /// them. Throws what writing an earlier frame threw.
     void write_frame(const Simulation& simulation);
     /// Writes a checkpoint of the present state, which must be a frame already (write_frame()), and waits until all
     /// that it names is on disk. scene: the scene's fingerprint; wall_seconds: spent so far. Throws like write_frame().
@@ -50,7 +49,8 @@ public:
     /// The same for a run that has diverged inside a step: the frames end before it.
     [[nodiscard]] RunSummary finish_diverged(const Simulation& simulation, const std::string& message);
     void write_summary(const RunSummary& summary) const;
-    /// Time spent in here by those who call, waiting for the disk included; of a resumed run with that before, s.
+    /// s that the simulation's thread has spent in calls of this class, waiting for the disk included; a resumed run
+    /// counts on.
     [[nodiscard]] double output_seconds() const { return output_seconds_; }
 
 private:

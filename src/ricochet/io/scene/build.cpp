@@ -24,10 +24,10 @@ struct OutputKeys : OutputOptions {
 
 const ObjectSpec& tolerance_spec() {
     using T = ErrorTolerance;
-    static const ObjectSpec spec = object<T>(
-        "tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
-        {{"position", &T::position, kPositive, "m", "Of the position, also on the way between a sub-step's ends."},
-         {"velocity", &T::velocity, kPositive, "m/s", "Of the velocity."}});
+    static const ObjectSpec spec =
+        object<T>("tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
+                  {{"position", &T::position, kPositive, "m", "Of the position, also between a sub-step's ends."},
+                   {"velocity", &T::velocity, kPositive, "m/s", "Of the velocity."}});
     return spec;
 }
 
@@ -99,38 +99,24 @@ Choices motion_choices() {
 
 Fields<SimulationKeys> time_fields() {
     using S = SimulationKeys;
-    return {{"time_step", &S::time_step, kPositive, "s", "Length of a step."},
-            {"duration", &S::duration, kNotNegative, "s",
-             "Simulated time. The number of steps is ceil(duration / time_step - 1e-6); the last one is shortened."},
-            {"integrator", [](S & s) -> auto& {return s.integrator.kind;
-}
-,
-    "How particles move inside a step. Of these only `forward_euler`, `midpoint`, `rk4` and `dormand_prince` have "
-    "a meaning where a flow carries the particles.",
-    integrator_choices(), Without {
-    "`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"
-}
-}  // namespace
-, {"tolerance", [](S& s) -> auto& {return s.integrator.tolerance;
-}  // namespace ricochet::detail
-, "What one sub-step of dormand_prince may be wrong by.", &tolerance_spec(), Without { "its defaults" }
-}
-, {"response", &S::response, "How impacts are answered.", response_choices()},
-    {"motion", &S::motion, "What moves the particles.", motion_choices()},
-    {"flow",
-     ValueType::named_object,
-     "What carries the particles where `motion` is `flow`: a flow, or the name of one in `flows`.",
-     &flow_spec(),
-     NamedIn{"flows"},
-     Without{"none"}},
-{
-    "walls", &S::walls, "What happens to particles that the flow carries into a wall.", Choices {
-        choice(WallRule::slide, "slide", "they go on along it"),
-            choice(WallRule::stop, "stop", "they stay there until the flow turns away")
-    }
-}
-}
-;
+    return {
+        {"time_step", &S::time_step, kPositive, "s", "Length of a step."},
+        {"duration", &S::duration, kNotNegative, "s",
+         "Simulated time. The number of steps is ceil(duration / time_step - 1e-6); the last one is shortened."},
+        {"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
+         "How particles move inside a step. Of these only `forward_euler`, `midpoint`, `rk4` and `dormand_prince` have "
+         "a meaning where a flow carries the particles.",
+         integrator_choices(), Without{"`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"}},
+        {"tolerance", [](S& s) -> ErrorTolerance& { return s.integrator.tolerance; },
+         "What one sub-step of dormand_prince may be wrong by.", &tolerance_spec(), Without{"its defaults"}},
+        {"response", &S::response, "How impacts are answered.", response_choices()},
+        {"motion", &S::motion, "What moves the particles.", motion_choices()},
+        {"flow", ValueType::named_object,
+         "What carries the particles where `motion` is `flow`: a flow, or the name of one in `flows`.", &flow_spec(),
+         NamedIn{"flows"}, Without{"none"}},
+        {"walls", &S::walls, "What happens to particles that the flow carries into a wall.",
+         Choices{choice(WallRule::slide, "slide", "they go on along it"),
+                 choice(WallRule::stop, "stop", "they stay there until the flow turns away")}}};
 }
 
 Fields<SimulationKeys> rule_fields() {
@@ -140,10 +126,7 @@ Fields<SimulationKeys> rule_fields() {
         {"resting_speed", &S::resting_speed, kNotNegative, "m/s",
          "A rebound slower than this becomes resting or sliding contact, where restitution is below 1 and something "
          "presses the particle on."},
-        {"frame_rate",
-         &S::frame_rate,
-         {.lower = 0.0, .upper = 1e6, .lower_open = true},
-         "1/s",
+        {"frame_rate", &S::frame_rate, positive_up_to(1e6), "1/s",
          "Frames a second of emitters' rates per frame; neither the output's nor the time step's."},
         {"max_depth", &S::max_depth, kCount, "",
          "Highest generation of particles born of particles; births beyond are refused and counted."},

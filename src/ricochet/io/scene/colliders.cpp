@@ -222,7 +222,7 @@ const ObjectSpec& collider_spec() {
     static const ObjectSpec spec = object<Unbound>(
         "collider", "What particles bounce off. Both sides are solid.",
         {{"name", ValueType::text, "For messages, reports and emitters; no two colliders share one.",
-          Without{"made from type and place in the list"}},
+          Without{"made from type and index in the list"}},
          {"material", ValueType::text, "One of the names in `materials`.", Without{"restitution 1, no friction"}}},
         shapes());
     return spec;

@@ -9,6 +9,8 @@
 
 namespace ricochet::detail {
 
+// Errors and warnings.
+
 namespace {
 
 constexpr std::size_t kMostLines = 100;
@@ -69,6 +71,8 @@ std::vector<std::string> Diagnostics::lines(std::vector<Entry> entries) {
     }
     return result;
 }
+
+// Names near to a misspelt one.
 
 namespace {
 

@@ -18,6 +18,8 @@
 
 namespace ricochet::detail {
 
+// Nodes, and their values in messages.
+
 namespace {
 
 // Bytes of the UTF-8 character that the text begins with; 0 where it is none.
@@ -88,6 +90,8 @@ std::string printable(std::string_view text, std::size_t longest) {
     }
     return at < text.size() ? result + "..." : result;
 }
+
+// Changes from the command line.
 
 namespace {
 
@@ -229,6 +233,8 @@ void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics
         *node = JsonNode{std::string(value), location};
     }
 }
+
+// The fingerprint.
 
 namespace {
 

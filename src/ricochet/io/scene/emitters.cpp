@@ -46,7 +46,7 @@ Fields<EmitterDescription> schedule_fields() {
             {"limit", &E::limit, kCount, "", "Most particles ever born here; of type child: of one parent's life.",
              Without{"no limit"}},
             {"seed", &E::seed, kSeed, "", "Start of its own random numbers.",
-             Without{"the scene's seed and the place in the list"}}};
+             Without{"the scene's seed and the index in the list"}}};
 }
 
 Fields<EmitterDescription> launch_fields() {
@@ -64,13 +64,13 @@ Fields<EmitterDescription> launch_fields() {
         {"particle_radius", &E::radius, kNotNegative, "m", "Radius of a particle.", LowEnd{kNotNegative}},
         {"frame", ValueType::text,
          "One of the names in `frames`: shape, direction and velocity are in its coordinates, and particles are let go "
-         "with its velocity at the time and place of their birth.",
+         "with its velocity at the time and position of their birth.",
          Without{"the world"}}};
 }
 
 Field<Unbound> emitter_name() {
     return {"name", ValueType::text, "For messages and reports; no two emitters share one.",
-            Without{"made from type and place in the list"}};
+            Without{"made from type and index in the list"}};
 }
 
 template <class Shape>
@@ -110,7 +110,7 @@ Variant child_variant() {
     using On = BirthEvent;
     return variant<C>(
         "child",
-        "Where another emitter's particles are, launched from their place and velocity; `burst`, `start`, `stop`, "
+        "Where another emitter's particles are, launched from their position and velocity; `burst`, `start`, `stop`, "
         "`rate_per_frame` and `rate_per_area` do not apply.",
         {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
          {"on", &C::on, "When parents give birth.",

@@ -17,6 +17,8 @@
 
 namespace ricochet::detail {
 
+// Files and meshes.
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,6 +90,8 @@ const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
 std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path) { return entry(path).mesh; }
 
 const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path).groups; }
+
+// Groups of a mesh.
 
 namespace {
 

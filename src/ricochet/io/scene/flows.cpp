@@ -54,7 +54,7 @@ FlowLaw vortex_flow() {
         {axis_point(&V::point),
          axis(&V::axis),
          {"circulation", &V::circulation, kCoordinate, "m^2/s",
-          "Speed times circumference, outside the core; negative turns the other way.", kRequired},
+          "Speed times circumference, outside the core; negative turns in the other direction.", kRequired},
          {"core_radius", &V::core_radius, kLength, "m",
           "Radius of the core, in which the speed falls to 0 on the axis.", kRequired},
          {"profile", &V::profile, "How the speed depends on the distance.",
@@ -106,20 +106,17 @@ FlowLaw shear_flow() {
 
 FlowLaw turbulence_flow() {
     using T = TurbulenceSettings;
-    return flow_law<T>("turbulence", "Eddies of several sizes without divergence (curl noise).",
-                       {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
-                        {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
-                        {"octaves", &T::octaves, between(1, kMostOctaves), "",
-                         "Sizes of eddies, each half as large as the one before."},
-                        {"gain",
-                         &T::gain,
-                         {.lower = 0.0, .upper = 1.0, .lower_open = true},
-                         "",
-                         "Speed of the eddies of a size over that of the size before."},
-                        {"rate", &T::rate, kNotNegative, "1/s",
-                         "How often in a second the largest eddies are replaced by others; 0 is frozen."},
-                        {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
-                       &make_turbulence);
+    return flow_law<T>(
+        "turbulence", "Eddies of several sizes without divergence (curl noise).",
+        {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
+         {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
+         {"octaves", &T::octaves, between(1, kMostOctaves), "",
+          "Sizes of eddies, each half as large as the one before."},
+         {"gain", &T::gain, positive_up_to(1.0), "", "Speed of the eddies of a size over that of the size before."},
+         {"rate", &T::rate, kNotNegative, "1/s",
+          "How often in a second the largest eddies are replaced by others; 0 is frozen."},
+         {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
+        &make_turbulence);
 }
 
 FlowLaw sphere_flow() {
@@ -145,7 +142,7 @@ FlowLaw grid_flow() {
         {"array", &Grid::array, "Name of the array, with three components.",
          Without{"the first with three components"}},
         {"outside", &Grid::outside, "What holds beyond the grid.",
-         Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest place of the grid"),
+         Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest point of the grid"),
                  choice(OutsideGrid::zero, "zero", "nothing")}}};
     return {variant("grid", "Samples on a regular grid, interpolated linearly along each axis.", fields),
             [](const ObjectView& view, const SceneContext& context) -> FlowPointer {

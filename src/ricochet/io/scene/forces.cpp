@@ -177,7 +177,7 @@ ForceLaw swirl() {
                             {axis_point(&Swirl::point),
                              axis(&Swirl::axis),
                              {"acceleration", &Swirl::acceleration, kCoordinate, "m/s^2",
-                              "At the rim of the core; negative turns the other way.", kRequired},
+                              "At the rim of the core; negative turns in the other direction.", kRequired},
                              {"core_radius", &Swirl::core_radius, kLength, "m", "Radius of the core.", kRequired}},
                             [](const Swirl& s) { return make_swirl(s.point, s.axis, s.acceleration, s.core_radius); });
 }

@@ -40,7 +40,7 @@ Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
          kRequired, kNotEmpty, &key_spec},
         {"interpolation", &C::interpolation, "What holds between two keys.",
          Choices{choice(I::linear, "a straight line"),
-                 choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the way, so that it is at rest at every key"),
+                 choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the distance, so that it is at rest at every key"),
                  choice(I::spline, "a smooth cubic (Catmull-Rom, for uneven keys too)")}},
         {"ends", &C::ends, "What holds before the first and after the last key.",
          Choices{
@@ -87,7 +87,7 @@ const ObjectSpec& motion_spec() {
              "rotation", "A turn about an axis through the frame's origin, by the right-hand rule.",
              {{"axis", &Turn::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
               {"angle", ValueType::object, "The angle: a curve.", &number_curve_spec(), Unit{"degrees"}, kRequired}}),
-         variant<Unbound>("translation", "A way along a curve.",
+         variant<Unbound>("translation", "A translation along a curve.",
                           {{"way", ValueType::object, "Where the origin goes: a curve of [x, y, z].",
                             &vector_curve_spec(), Unit{"m"}, kRequired}})});
     return spec;

@@ -47,12 +47,15 @@ struct Range {
     [[nodiscard]] bool contains(double x) const { return (lower_open ? x > lower : x >= lower) && x <= upper; }
 };
 [[nodiscard]] constexpr Range between(double lower, double upper) { return {.lower = lower, .upper = upper}; }
+[[nodiscard]] constexpr Range positive_up_to(double upper) {
+    return {.lower = 0.0, .upper = upper, .lower_open = true};
+}
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{.lower = 0.0, .lower_open = true};
 inline constexpr Range kNotNegative{.lower = 0.0};
 inline constexpr Range kFraction = between(0.0, 1.0);
 inline constexpr Range kCoordinate = between(-kLargestCoordinate, kLargestCoordinate);
-inline constexpr Range kLength{.lower = 0.0, .upper = kLargestCoordinate, .lower_open = true};
+inline constexpr Range kLength = positive_up_to(kLargestCoordinate);
 inline constexpr Range kLengthOrZero = between(0.0, kLargestCoordinate);
 inline constexpr Range kCount = between(0.0, 4294967295.0);
 inline constexpr Range kSeed = between(0.0, 18446744073709551615.0);

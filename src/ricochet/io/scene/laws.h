@@ -57,8 +57,8 @@ Field<Struct> axis_point(Vec3 Struct::*member) {
 }
 template <class Struct>
 Field<Struct> axis(Vec3 Struct::*member) {
-    return {"axis",    member,  kCoordinate, "", "Direction of the axis, of any length; right-hand rule.",
-            kRequired, kNotZero};
+    constexpr std::string_view kMeaning = "Direction of the axis, of any length; right-hand rule.";
+    return {"axis", member, kCoordinate, "", kMeaning, kRequired, kNotZero};
 }
 
 }  // namespace ricochet::detail

@@ -51,12 +51,9 @@ Field<Struct> damping() {
 }
 template <class Struct>
 Field<Struct> breaking_stretch() {
-    return {"breaking_stretch",
-            &Struct::breaking_stretch,
-            kPositive,
-            "",
-            "Stretch, as a part of the rest length, beyond which a spring breaks for good.",
-            Without{"it never breaks"}};
+    constexpr std::string_view kMeaning =
+        "Stretch, as a part of the rest length, beyond which a spring breaks for good.";
+    return {"breaking_stretch", &Struct::breaking_stretch, kPositive, "", kMeaning, Without{"it never breaks"}};
 }
 template <class Struct>
 Field<Struct> radius() {
@@ -93,8 +90,8 @@ Variant list_variant() {
 }
 
 Fields<RopeKeys> rope_ends() {
-    return {{"from", &RopeKeys::from, kCoordinate, "m", "Place of its first particle.", kRequired},
-            {"to", &RopeKeys::to, kCoordinate, "m", "Place of its last particle.", kRequired}};
+    return {{"from", &RopeKeys::from, kCoordinate, "m", "Position of its first particle.", kRequired},
+            {"to", &RopeKeys::to, kCoordinate, "m", "Position of its last particle.", kRequired}};
 }
 
 // What ropes and chains have in common.

@@ -20,10 +20,10 @@ MoveOutcome AdvectResponse::move(MovingParticle& particle, double duration, Move
 }
 
 MoveOutcome Advector::run() {
-    for (std::size_t k = 0; k < particle_.support.count; ++k) {
-        if (const auto surface = touching(particle_.support.surfaces[k])) remember(*surface);
+    for (std::size_t k = 0; k < particle_.contact.count; ++k) {
+        if (const auto surface = touching(particle_.contact.surfaces[k])) remember(*surface);
     }
-    particle_.support = {};
+    particle_.contact = {};
     while (remaining_ > 0.0 && !outcome_.frozen) {
         if (outcome_.bounces + stretches_ >= rules_.settings.bounce_budget) {
             outcome_.unsimulated_time = remaining_;
@@ -180,8 +180,8 @@ void Advector::finish() {
     // In a steady flow what does not move never will.
     outcome_.held = outcome_.resting && flow_.is_steady() && outcome_.unsimulated_time == 0.0;
     if (!pressed) return;
-    for (std::size_t k = 0; k < count_; ++k) particle_.support.surfaces[k] = touched_[k].surface;
-    particle_.support.count = static_cast<std::uint8_t>(count_);
+    for (std::size_t k = 0; k < count_; ++k) particle_.contact.surfaces[k] = touched_[k].surface;
+    particle_.contact.count = static_cast<std::uint8_t>(count_);
 }
 
 }  // namespace ricochet

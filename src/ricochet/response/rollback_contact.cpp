@@ -148,9 +148,9 @@ void RollbackMover::book_contact(const Vec3& velocity_change, double elapsed) {
 }
 
 void RollbackMover::remember_contact() {
-    particle_.support = {};
-    for (std::size_t k = 0; k < count_; ++k) particle_.support.surfaces[k] = touched_[k].surface;
-    particle_.support.count = static_cast<std::uint8_t>(count_);
+    particle_.contact = {};
+    for (std::size_t k = 0; k < count_; ++k) particle_.contact.surfaces[k] = touched_[k].surface;
+    particle_.contact.count = static_cast<std::uint8_t>(count_);
 }
 
 }  // namespace ricochet

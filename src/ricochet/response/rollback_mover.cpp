@@ -17,8 +17,8 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
       outcome_(outcome),
       impact_(rules, particle, scratch, outcome),
       trial_(trial) {
-    for (std::size_t k = 0; k < particle.support.count; ++k) touched_[count_++].surface = particle.support.surfaces[k];
-    particle.support = {};
+    for (std::size_t k = 0; k < particle.contact.count; ++k) touched_[count_++].surface = particle.contact.surfaces[k];
+    particle.contact = {};
 }
 
 /// The loop that moves one particle: take all the time that is left, go back to what was in the way, answer, go on.

@@ -126,7 +126,9 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
     if (gravity != 0.0) list.push_back(make_gravity(gravity * mean_free_path_ * normalized(Vec3{0.1, 0.2, -1.0})));
     const ForceField forces(std::move(list));
     const std::vector<Material> materials{{"elastic", 1.0, 0.0}};
-    const ExactResponse response(world_, forces, materials, {kind, 1e-3, 1000, 0});
+    ResponseSettings settings;
+    settings.integrator = kind;
+    const ExactResponse response(world_, forces, materials, settings);
     std::vector<BilliardTally> parts((start.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(start.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         MoveScratch scratch;

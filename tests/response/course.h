@@ -42,13 +42,13 @@ struct Course {
     /// this move.
     MoveOutcome move(ForceInput& state, double duration) {
         const bool goes_on = state.position == last_position && state.velocity == last_velocity;
-        MovingParticle particle{state, {}, 0, 0, goes_on ? last_support : Support{}};
+        MovingParticle particle{state, {}, 0, 0, goes_on ? last_contact : KeptContact{}};
         if (goes_on) particle.sides = last_sides;
         const MoveOutcome outcome = move(particle, duration);
         state = particle.state;
         last_position = state.position;
         last_velocity = state.velocity;
-        last_support = particle.support;
+        last_contact = particle.contact;
         last_sides = particle.sides;
         return outcome;
     }
@@ -82,7 +82,7 @@ struct Course {
     MoveScratch scratch;
     Vec3 last_position;
     Vec3 last_velocity;
-    Support last_support;
+    KeptContact last_contact;
     std::span<SideMemory> last_sides;
     std::list<std::vector<SideMemory>> sides;  ///< one list a particle
 };

@@ -1,7 +1,6 @@
 #include "ricochet/response/advect.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
@@ -20,10 +19,8 @@ MoveOutcome AdvectResponse::move(MovingParticle& particle, double duration, Move
 }
 
 MoveOutcome Advector::run() {
-    for (std::size_t k = 0; k < particle_.support.count; ++k) {
-        if (const auto surface = touching(particle_.support.surfaces[k])) remember(*surface);
-    }
-    particle_.support = {};
+    manifold_.touch_again(particle_.contact, touch_rule());
+    particle_.contact = {};
     while (remaining_ > 0.0 && !outcome_.frozen) {
         if (outcome_.bounces + stretches_ >= rules_.settings.bounce_budget) {
             outcome_.unsimulated_time = remaining_;
@@ -42,7 +39,7 @@ MoveOutcome Advector::run() {
 
 /// One piece of way: to the end of the step or of the surface under it, or to the next contact.
 void Advector::go_on() {
-    const FlowAlong along(flow_, touched_normals());
+    const FlowAlong along(flow_, manifold_.normals());
     const FlowPath way =
         flow_path(rules_.settings.integrator, along, state_.position, state_.time, remaining_, next_duration_);
     next_duration_ = way.next_duration;
@@ -50,16 +47,17 @@ void Advector::go_on() {
     const auto pressed = can_be_followed(path) ? hardest_pressed() : std::nullopt;
     if (pressed) {
         ++stretches_;
-        if (touched_[*pressed].flat) path = held_down(path, normals_[*pressed], along);
-        path = stretch_on(touched_[*pressed], path);
+        const ContactSurface support = manifold_[*pressed];
+        if (support.flat) path = held_down(path, support.normal, along);
+        path = stretch_on(support, path);
         if (!(path.duration > 0.0)) {  // it is past that surface's end
-            forget(*pressed);
+            manifold_.remove(*pressed);
             return;
         }
     }
     const auto contact = follow(path);
     if (outcome_.frozen) return;
-    touch_again();
+    manifold_.touch_again(touch_rule());
     if (contact) answer(*contact);
 }
 
@@ -87,13 +85,13 @@ void Advector::wait() {
     const double release = time_to_release();
     state_.time += release;
     remaining_ = std::max(0.0, remaining_ - release);
-    if (remaining_ > 0.0) count_ = 0;  // it is free
+    if (remaining_ > 0.0) manifold_.clear();  // it is free
 }
 
 bool Advector::is_pressed_at(double time) const {
     const Vec3 g = flow_.velocity(state_.position, time);
-    return std::any_of(touched_.begin(), touched_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&](const ContactSurface& surface) { return dot(g, surface.normal) < 0.0; });
+    const auto normals = manifold_.normals();
+    return std::any_of(normals.begin(), normals.end(), [&](const Vec3& normal) { return dot(g, normal) < 0.0; });
 }
 
 double Advector::time_to_release() const {
@@ -125,8 +123,7 @@ std::optional<Contact> Advector::follow(const Path& path) {
         outcome_.stayed += safe_position.stayed ? 1 : 0;
         state_.position = safe_position.position;
     } else {
-        const CertifiedPath followed =
-            follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
+        const CertifiedPath followed = follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
         state_.position = followed.reached;
         if (followed.blocker) contact = contact_with_blocker(found.near, path, followed);
     }
@@ -158,13 +155,10 @@ void Advector::accept_chain() {
 /// Counts an impact; the surfaces met come first among those touched.
 void Advector::answer(const Contact& contact) {
     ++outcome_.bounces;
-    const std::array<ContactSurface, 3> before = touched_;
-    const std::size_t count = std::exchange(count_, 0);
-    for (const ContactSurface& surface : contact.all()) remember(surface);
-    for (std::size_t k = 0; k < count; ++k) remember(before[k]);
+    manifold_.replace(contact.all(), touch_rule());
     const Vec3 arriving = state_.velocity;
     const bool stops = rules_.settings.walls == WallRule::stop && is_pressed_at(state_.time);
-    state_.velocity = stops ? Vec3{} : project_off(flow_now(), touched_normals());
+    state_.velocity = stops ? Vec3{} : project_off(flow_now(), manifold_.normals());
     for (const ContactSurface& surface : contact.all()) {
         impact_.push(surface.surface, Vec3{}, true);
         impact_.record(surface, arriving);
@@ -175,13 +169,11 @@ void Advector::answer(const Contact& contact) {
 void Advector::finish() {
     const bool pressed = is_pressed_at(state_.time);
     const bool stopped = pressed && rules_.settings.walls == WallRule::stop;
-    state_.velocity = stopped ? Vec3{} : FlowAlong(flow_, touched_normals()).velocity(state_.position, state_.time);
+    state_.velocity = stopped ? Vec3{} : FlowAlong(flow_, manifold_.normals()).velocity(state_.position, state_.time);
     outcome_.resting = pressed && state_.velocity == Vec3{};
     // In a steady flow what does not move never will.
     outcome_.held = outcome_.resting && flow_.is_steady() && outcome_.unsimulated_time == 0.0;
-    if (!pressed) return;
-    for (std::size_t k = 0; k < count_; ++k) particle_.support.surfaces[k] = touched_[k].surface;
-    particle_.support.count = static_cast<std::uint8_t>(count_);
+    if (pressed) particle_.contact = manifold_.kept();
 }
 
 }  // namespace ricochet

@@ -12,8 +12,8 @@ std::optional<std::size_t> Advector::hardest_pressed() const {
     const Vec3 g = flow_now();
     std::optional<std::size_t> hardest;
     double most = 0.0;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const double pressing = -dot(g, normals_[k]);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const double pressing = -dot(g, manifold_.normals()[k]);
         if (!(pressing > most)) continue;
         most = pressing;
         hardest = k;
@@ -79,63 +79,11 @@ Path Advector::stretch_on_curved(const ContactSurface& support, Path path) const
     return path;
 }
 
-/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
-double Advector::seam_turn() const {
-    if (state_.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(state_.position) / state_.radius;
-}
-
-/// The surface as the particle touches it now; nothing when it does not.
-std::optional<ContactSurface> Advector::touching(SurfaceId surface) const {
-    const CollisionWorld& world = rules_.world;
-    const double reach = kTouchingOffsets * contact_offset(state_.position);
-    const CollisionWorld::Nearest nearest = world.nearest(surface, state_.position);
-    // Half of what a stretch goes beyond the rim, so that at its end the surface is surely left.
-    const bool beside_rim = state_.radius == 0.0 && !nearest.flat && world.is_flat(surface);
-    if (std::fabs(nearest.distance - state_.radius) >
-        (beside_rim ? 0.5 * kEdgeOffsets / kTouchingOffsets : 1.0) * reach) {
-        return std::nullopt;
-    }
-    if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
-    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
-    const double distance = world.signed_distance_from(surface, state_.position);
-    if (std::fabs(distance) > reach) return std::nullopt;
-    const Vec3 normal = world.unit_normal_of(surface, state_.position);
-    return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
-}
-
-/// At most three surfaces matter. An edge beside a face within the reach of touching is that face's own seam.
-void Advector::remember(const ContactSurface& surface) {
-    for (std::size_t k = 0; k < count_; ++k) {
-        const double turn = 1.0 - dot(normals_[k], surface.normal);
-        const bool is_seam = touched_[k].flat != surface.flat && turn <= seam_turn();
-        if (turn > kSameNormal && !is_seam) continue;
-        if (surface.flat && !touched_[k].flat) {
-            touched_[k] = surface;
-            normals_[k] = surface.normal;
-        }
-        return;
-    }
-    if (count_ == touched_.size()) return;
-    touched_[count_] = surface;
-    normals_[count_++] = surface.normal;
-}
-
-/// What was touched and still is, as it is touched here.
-void Advector::touch_again() {
-    const std::array<ContactSurface, 3> before = touched_;
-    const std::size_t count = count_;
-    count_ = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        if (const auto surface = touching(before[k].surface)) remember(*surface);
-    }
-}
-
-void Advector::forget(std::size_t k) {
-    for (--count_; k < count_; ++k) {
-        touched_[k] = touched_[k + 1];
-        normals_[k] = normals_[k + 1];
-    }
+/// Beside a rim half of what a segment goes beyond it, so that at its end the surface is surely left.
+TouchRule Advector::touch_rule() const {
+    TouchRule rule = TouchRule::at(state_.position);
+    rule.beyond_rim *= 0.5 * kEdgeOffsets / kTouchingOffsets;
+    return rule;
 }
 
 }  // namespace ricochet

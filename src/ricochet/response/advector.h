@@ -2,12 +2,12 @@
 /// Private to first-order motion: one particle on its way with the flow through one step.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 
 #include "ricochet/dynamics/flow_path.h"
 #include "ricochet/response/bounce.h"
+#include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/impact.h"
 #include "ricochet/response/response.h"
 
@@ -38,6 +38,7 @@ public:
           scratch_(scratch),
           geometry_(rules.world, scratch.contacts.plane_cache),
           impact_(rules, particle, scratch, outcome_),
+          manifold_(geometry_, state_),
           remaining_(duration) {}
 
     MoveOutcome run();
@@ -60,12 +61,7 @@ private:
     [[nodiscard]] Path stretch_on(const ContactSurface& support, Path path) const;
     [[nodiscard]] Path stretch_on_flat(const ContactSurface& support, Path path) const;
     [[nodiscard]] Path stretch_on_curved(const ContactSurface& support, Path path) const;
-    [[nodiscard]] double seam_turn() const;
-    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
-    void remember(const ContactSurface& surface);
-    void touch_again();
-    void forget(std::size_t k);
-    [[nodiscard]] std::span<const Vec3> touched_normals() const { return {normals_.data(), count_}; }
+    [[nodiscard]] TouchRule touch_rule() const;
     [[nodiscard]] Vec3 flow_now() const { return flow_.velocity(state_.position, state_.time); }
 
     const ResponseRules& rules_;
@@ -76,12 +72,10 @@ private:
     SurfaceGeometry geometry_;
     MoveOutcome outcome_;
     ImpactAnswer impact_;
+    ContactManifold manifold_;
     double remaining_;
     double next_duration_ = 0.0;   // s, of an adaptive method
     std::uint32_t stretches_ = 0;  // along surfaces; they share the budget with the impacts
-    std::array<ContactSurface, 3> touched_{};
-    std::array<Vec3, 3> normals_{};
-    std::size_t count_ = 0;
 };
 
 }  // namespace ricochet

@@ -97,7 +97,8 @@ std::optional<Contact> Mover::follow(const Flight& flight, const LookAhead* look
         leave_surface(flight, found.near);
         return std::nullopt;
     }
-    if (!contact && state_.radius > 0.0 && found.near.starts_in_overlap() && !found.near.surfaces_at(path.c[0]).empty()) {
+    if (!contact && state_.radius > 0.0 && found.near.starts_in_overlap() &&
+        !found.near.surfaces_at(path.c[0]).empty()) {
         leave_surface(flight, found.near);
         return std::nullopt;
     }
@@ -106,8 +107,7 @@ std::optional<Contact> Mover::follow(const Flight& flight, const LookAhead* look
         outcome_.stayed += safe_position.stayed ? 1 : 0;
         state_.position = safe_position.position;
     } else {
-        const CertifiedPath followed =
-            follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
+        const CertifiedPath followed = follow_path(found.near, path, path.duration, path.end, scratch_.contacts.chain);
         state_.position = followed.reached;
         if (followed.blocker) contact = contact_with_blocker(found.near, path, followed);
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/contact_mode.h"
 #include "ricochet/response/impact.h"
 
@@ -21,10 +22,11 @@ public:
           geometry_(rules.world, scratch.contacts.plane_cache),
           impact_(rules, particle, scratch, outcome_),
           start_(particle.state.position),
-          began_(particle.support),
+          began_(particle.contact),
           began_still_(particle.state.velocity == Vec3{} && particle.spin == Vec3{}),
           first_segment_(scratch.segments.size()),
           remaining_(duration),
+          manifold_(geometry_, state_),
           shortest_stretch_(duration / kShortestStretches) {}
 
     MoveOutcome run();
@@ -69,22 +71,6 @@ private:
     [[nodiscard]] Flight flight_of(const Stretch& stretch, const ContactSurface& support, bool& ends) const;
     [[nodiscard]] double time_on(const ContactSurface& support, const Path& path, double bend) const;
     void turn_along(ContactSurface& support);
-    void share(const Vec3& velocity_change, double elapsed);
-
-    // What the particle touches (mover_surface.cpp).
-    void remember(const ContactSurface& surface);
-    void gather_touched(const Contact& contact);
-    void note_recent(SurfaceId surface);
-    void set_touched(std::size_t k, const ContactSurface& surface);
-    void touch_again(const Support& support);
-    [[nodiscard]] double seam_turn() const;
-    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
-    [[nodiscard]] ContactSurface touched_surface(std::size_t k) const {
-        return {touched_.surfaces[k], touched_normals_[k], touched_flat_[k]};
-    }
-    [[nodiscard]] std::span<const Vec3> touched_normals() const {
-        return {touched_normals_.data(), static_cast<std::size_t>(touched_.count)};
-    }
 
     const ResponseRules& rules_;
     MovingParticle& particle_;
@@ -94,19 +80,14 @@ private:
     LookAheadResult ahead_;  // of the last query
     MoveOutcome outcome_;
     ImpactAnswer impact_;
-    Vec3 start_;        // where the step began
-    Support began_;     // what it touched then
-    bool began_still_;  // and that nothing moved
+    Vec3 start_;         // where the step began
+    KeptContact began_;  // what it touched then
+    bool began_still_;   // and that nothing moved
     std::size_t first_segment_;
     double remaining_;
-    Support touched_;  // cascade_left unused
-    std::array<Vec3, 3> touched_normals_;
-    std::array<bool, 3> touched_flat_{};
-    std::array<double, 3> shares_{};     // how hard the touched surfaces hold it in the present stretch, m/s^2
-    double shortest_stretch_ = 0.0;      // s
-    std::array<SurfaceId, 6> recent_{};  // the last surfaces met: what else may be touched when contact begins
-    std::size_t recent_count_ = 0;       // ever noted
-    int slow_contacts_ = 0;              // in a row, all slower than the resting speed or without time between them
+    ContactManifold manifold_;
+    double shortest_stretch_ = 0.0;  // s
+    int slow_contacts_ = 0;          // in a row, all slower than the resting speed or without time between them
     double remaining_at_contact_ = -1.0;
 };
 

@@ -42,19 +42,19 @@ const ContactSurface* Mover::support_of(const Flight& flight, const Contact& con
 /// Contact that lasted to the end of the last step goes on without a new landing. Returns the next contact when the
 /// particle slid into one; without time left it is done, else it flies on.
 std::optional<Contact> Mover::go_on_in_contact() {
-    if (particle_.support.count == 0) return std::nullopt;
-    const Support before = std::exchange(particle_.support, Support{});
-    touch_again(before);
+    if (particle_.contact.count == 0) return std::nullopt;
+    const KeptContact before = std::exchange(particle_.contact, KeptContact{});
+    manifold_.touch_again(before, TouchRule::at(state_.position));
     const Vec3 a = rules_.forces.acceleration(state_);
     std::size_t hardest = 0;
     double pressing = 0.0;
-    for (std::size_t k = 0; k < touched_.count; ++k) {
-        const double here = -dot(pull_on(touched_surface(k), a, state_.velocity), touched_normals_[k]);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const double here = -dot(pull_on(manifold_[k], a, state_.velocity), manifold_.normals()[k]);
         if (here > pressing) hardest = k;
         pressing = std::max(pressing, here);
     }
     if (!(pressing > 0.0)) return std::nullopt;
-    ContactSurface support = touched_surface(hardest);
+    ContactSurface support = manifold_[hardest];
     if (kicks_first(rules_.settings.integrator.kind)) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
@@ -93,7 +93,7 @@ std::optional<Contact> Mover::follow_surface(ContactSurface support, bool kicked
         auto next = travel_stretch(stretch, support, a, ended_early);
         if (next || ended_early) return next;
     }
-    if (remaining_ <= 0.0 && !kicked) particle_.support = touched_;
+    if (remaining_ <= 0.0 && !kicked) particle_.contact = manifold_.kept();
     return std::nullopt;
 }
 
@@ -103,7 +103,7 @@ std::optional<Contact> Mover::finish_cascade(ContactSurface support, bool& ended
     const Vec3 a = rules_.forces.acceleration(state_);
     const double pressing = -dot(pull_on(support, a, state_.velocity), support.normal);
     const Vec3 before = state_.velocity;
-    state_.velocity = project_off(before - rebound * support.normal, touched_normals());
+    state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
     impact_.push(support.surface, state_.velocity - before, false);
     if (!(pressing > 0.0)) return std::nullopt;
     const double duration = cascade_duration(rebound, pressing, slow_restitution(support.surface));
@@ -128,33 +128,28 @@ std::optional<Contact> Mover::spend_cascade(ContactSurface& support, double left
         left -= before - remaining_;
     }
     if (remaining_ <= 0.0) {
-        particle_.support = touched_;
-        particle_.support.cascade_left = std::max(0.0, left);
+        particle_.contact = manifold_.kept();
+        particle_.contact.cascade_left = std::max(0.0, left);
     }
     return std::nullopt;
 }
 
 /// Plans a stretch against all that is touched. pull: the forces' acceleration and what the bend of the way adds.
 Stretch Mover::plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration) {
-    shares_ = normal_accelerations(pull, touched_normals());
-    double friction = 0.0;
-    for (std::size_t k = 0; k < touched_.count; ++k) {
-        friction += shares_[k] * impact_.material_of(touched_.surfaces[k]).friction;
-    }
-    const double all = length(pull - project_off(pull, touched_normals()));
+    manifold_.load(pull);
     Grip grip;
-    grip.friction = all > 0.0 ? friction / all : 0.0;
+    grip.friction = manifold_.friction(pull, impact_);
     grip.rolling_friction = impact_.material_of(support.surface).rolling_friction;
     grip.pressure = pressure;
     grip.shortest = shortest_stretch_;
     grip.negligible_way = kTouchingOffsets * contact_offset(state_.position);
     const Motion motion{state_.velocity, particle_.spin};
-    return plan_stretch(motion, state_.radius, pull, touched_normals(), grip, duration);
+    return plan_stretch(motion, state_.radius, pull, manifold_.normals(), grip, duration);
 }
 
 /// Time passes at rest; the surfaces carry the weight.
 void Mover::wait(double duration, const Vec3& a) {
-    share(-state_.velocity - duration * a, duration);
+    manifold_.record_push(-state_.velocity - duration * a, duration, impact_);
     state_.velocity = Vec3{};
     state_.time += duration;
     remaining_ = std::max(0.0, remaining_ - duration);
@@ -172,15 +167,15 @@ std::optional<Contact> Mover::travel_stretch(const Stretch& stretch, ContactSurf
     const Vec3 turned = stretch.motion.velocity - state_.velocity;
     auto next = follow(flight);
     const double elapsed = before - remaining_;
-    share(turned + elapsed * (stretch.acceleration - a), elapsed);
+    manifold_.record_push(turned + elapsed * (stretch.acceleration - a), elapsed, impact_);
     finish_stretch(stretch, elapsed);
     if (!next && !support.flat && !ended_early) turn_along(support);
     return next;
 }
 
 void Mover::finish_stretch(const Stretch& stretch, double elapsed) {
-    const Motion motion =
-        end_of_stretch(stretch, elapsed, {state_.velocity, particle_.spin}, state_.radius, touched_normals_[0]);
+    const Vec3 normal = manifold_.empty() ? Vec3{} : manifold_.normals().front();
+    const Motion motion = end_of_stretch(stretch, elapsed, {state_.velocity, particle_.spin}, state_.radius, normal);
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
 }
@@ -190,14 +185,14 @@ void Mover::land(const Motion& arriving, double friction) {
     const Vec3 before = state_.velocity;  // with the rebound, whose impulse is booked already
     state_.velocity = arriving.velocity;
     particle_.spin = arriving.spin;
-    for (const Vec3& normal : touched_normals()) {
+    for (const Vec3& normal : manifold_.normals()) {
         const Motion after = bounce({state_.velocity, particle_.spin}, state_.radius, normal, 0.0, friction);
         state_.velocity = after.velocity;
         particle_.spin = after.spin;
     }
-    state_.velocity = project_off(state_.velocity, touched_normals());
-    shares_ = normal_accelerations(before - state_.velocity, touched_normals());
-    share(state_.velocity - before, 1.0);
+    state_.velocity = project_off(state_.velocity, manifold_.normals());
+    manifold_.load(before - state_.velocity);
+    manifold_.record_push(state_.velocity - before, 1.0, impact_);
 }
 
 /// Rests for what is left of the step. held: until the forces change.
@@ -216,17 +211,20 @@ void Mover::rest(const Vec3& a, bool held) {
     wait(remaining_, a);
     outcome_.resting = true;
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
-    outcome_.held = held && began_still_ && state_.position == start_ && began_.count == touched_.count &&
-                    began_.cascade_left == 0.0 && began_.surfaces == touched_.surfaces;
-    particle_.support = touched_;
+    outcome_.held = held && began_still_ && state_.position == start_ && began_ == manifold_.kept();
+    particle_.contact = manifold_.kept();
 }
 
 void Mover::weigh() {
-    touch_again(particle_.support);
+    manifold_.touch_again(particle_.contact, TouchRule::at(state_.position));
     const Vec3 a = rules_.forces.acceleration(state_);
-    shares_ = normal_accelerations(a, touched_normals());
-    if (touched_.count == 0) touched_.surfaces = particle_.support.surfaces;  // share() gives the rest to the first
-    wait(remaining_, a);
+    manifold_.load(a);
+    const Vec3 change = -state_.velocity - remaining_ * a;
+    if (manifold_.empty()) {
+        impact_.push(particle_.contact.surfaces[0], change, false);
+    } else {
+        manifold_.record_push(change, remaining_, impact_);
+    }
 }
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@ namespace ricochet {
 /// Responds to an impact. Returns the next contact when the particle slid into one.
 std::optional<Contact> Mover::answer(const Flight& flight, const Contact& contact) {
     ++outcome_.bounces;
-    for (const ContactSurface& surface : contact.all()) note_recent(surface.surface);
+    manifold_.meet(contact.all());
     const Motion arriving{state_.velocity, particle_.spin};
     impact_.reflect(contact.all());
     if (outcome_.absorbed) return std::nullopt;
@@ -17,9 +17,9 @@ std::optional<Contact> Mover::answer(const Flight& flight, const Contact& contac
     const bool is_slow = support != nullptr && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (support == nullptr) return std::nullopt;
-    gather_touched(contact);
+    manifold_.replace(contact.all(), TouchRule::at(state_.position));
     if (slow_contacts_ > kMaxSlowContacts) {
-        shares_ = {};
+        manifold_.unload();
         rest(flight.kick_duration > 0.0 ? Vec3{} : acceleration_now(flight), false);
         return std::nullopt;
     }

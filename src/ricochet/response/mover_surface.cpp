@@ -103,90 +103,14 @@ Flight Mover::flight_of(const Stretch& stretch, const ContactSurface& support, b
 /// After a chord: the surfaces as they are touched at its end, and the velocity turned along them. Its speed is kept;
 /// the curvature that turned it is part of the pull.
 void Mover::turn_along(ContactSurface& support) {
-    const Support before = touched_;
-    touch_again(before);
-    for (std::size_t k = 0; k < touched_.count; ++k) {
-        if (touched_.surfaces[k] == support.surface) support = touched_surface(k);
+    manifold_.touch_again(TouchRule::at(state_.position));
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (manifold_[k].surface == support.surface) support = manifold_[k];
     }
-    const Vec3 along = project_off(state_.velocity, touched_normals());
-    const double left = length(along);
-    if (left == 0.0) return;
-    const Vec3 turned = (length(state_.velocity) / left) * along;
-    impact_.push(support.surface, turned - state_.velocity, false);
-    state_.velocity = turned;
-}
-
-/// Books what the touched surfaces have changed the velocity by in `elapsed` seconds: each its normal part, and what is
-/// left (friction) on the first.
-void Mover::share(const Vec3& velocity_change, double elapsed) {
-    Vec3 left = velocity_change;
-    for (std::size_t k = 1; k < touched_.count; ++k) {
-        if (shares_[k] == 0.0) continue;
-        const Vec3 part = (elapsed * shares_[k]) * touched_normals_[k];
-        impact_.push(touched_.surfaces[k], part, false);
-        left -= part;
-    }
-    impact_.push(touched_.surfaces[0], left, false);
-}
-
-/// Surfaces touched together decide where a pressed particle can go; at most three matter. An edge beside a face within
-/// the reach of touching is that face's own seam: on a flat surface it must not be felt.
-void Mover::remember(const ContactSurface& surface) {
-    for (std::size_t k = 0; k < touched_.count; ++k) {
-        const double turn = 1.0 - dot(touched_normals_[k], surface.normal);
-        const bool is_seam = touched_flat_[k] != surface.flat && turn <= seam_turn();
-        if (turn > kSameNormal && !is_seam) continue;
-        if (surface.flat && !touched_flat_[k]) set_touched(k, surface);
-        return;
-    }
-    if (touched_.count < touched_normals_.size()) set_touched(touched_.count++, surface);
-}
-
-/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
-double Mover::seam_turn() const {
-    if (state_.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(state_.position) / state_.radius;
-}
-
-void Mover::set_touched(std::size_t k, const ContactSurface& surface) {
-    touched_.surfaces[k] = surface.surface;
-    touched_normals_[k] = surface.normal;
-    touched_flat_[k] = surface.flat;
-}
-
-/// What a particle touches that has just met `contact`: that, and what it met before and has not left.
-void Mover::gather_touched(const Contact& contact) {
-    touched_ = {};
-    for (const ContactSurface& surface : contact.all()) remember(surface);
-    for (std::size_t k = 0; k < std::min(recent_count_, recent_.size()); ++k) {
-        if (const auto surface = touching(recent_[k])) remember(*surface);
-    }
-}
-
-/// Begins with what was touched before and still is.
-void Mover::touch_again(const Support& support) {
-    touched_ = {};
-    for (std::size_t k = 0; k < support.count; ++k) {
-        note_recent(support.surfaces[k]);
-        if (const auto surface = touching(support.surfaces[k])) remember(*surface);
-    }
-}
-
-void Mover::note_recent(SurfaceId surface) {
-    const auto known = recent_.begin() + static_cast<std::ptrdiff_t>(std::min(recent_count_, recent_.size()));
-    if (std::find(recent_.begin(), known, surface) == known) recent_[recent_count_++ % recent_.size()] = surface;
-}
-
-/// The surface as the particle touches it now; nothing when it does not.
-std::optional<ContactSurface> Mover::touching(SurfaceId surface) const {
-    const double reach = kTouchingOffsets * contact_offset(state_.position);
-    const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
-    if (std::fabs(nearest.distance - state_.radius) > reach) return std::nullopt;
-    if (state_.radius > 0.0 || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
-    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
-    const double distance = geometry_.signed_distance_from(surface, state_.position);
-    const Vec3 normal = geometry_.unit_normal_of(surface, state_.position);
-    return ContactSurface{surface, distance < 0.0 ? -normal : normal, rules_.world.is_flat(surface)};
+    const auto turned = turned_along(state_.velocity, manifold_.normals());
+    if (!turned) return;
+    impact_.push(support.surface, *turned - state_.velocity, false);
+    state_.velocity = *turned;
 }
 
 }  // namespace ricochet

@@ -37,11 +37,13 @@ struct MoveScratch {
     bool record_segments = false;
 };
 
-/// The surfaces that a particle slides, rolls or rests on.
-struct Support {
-    std::array<SurfaceId, 3> surfaces{};
-    std::uint8_t count = 0;     ///< 0: it flies
-    double cascade_left = 0.0;  ///< s of a bounce cascade that the end of the step has cut in two
+/// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.
+struct KeptContact {
+    std::array<SurfaceId, 3> surfaces{};  ///< 0 beyond count
+    std::uint8_t count = 0;               ///< 0: it flies
+    double cascade_left = 0.0;            ///< s of a bounce cascade that the end of the step has cut in two
+
+    friend bool operator==(const KeptContact&, const KeptContact&) = default;
 };
 
 /// What the responses that look at the end of a step only remember of a particle and a collider.
@@ -58,7 +60,7 @@ struct MovingParticle {
     Vec3 spin;         ///< rad/s
     std::uint64_t id = 0;
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
-    Support support{};                 ///< what it is in contact with; contact goes on in the next step
+    KeptContact contact{};             ///< what it is in contact with; contact goes on in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
     /// N s: an impact that changes its momentum by as much ends its way there, as if it were absorbed.
     double shatter_impulse = std::numeric_limits<double>::infinity();

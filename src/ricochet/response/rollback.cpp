@@ -93,7 +93,7 @@ private:
             }
             if (p.outcome.absorbed) return;
             rest_in_pit(p, mover, found.free, at);
-            mover.remember_contact();
+            mover.keep_contact();
         }
     }
 

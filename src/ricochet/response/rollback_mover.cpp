@@ -15,10 +15,12 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
       state_(particle.state),
       scratch_(scratch),
       outcome_(outcome),
+      geometry_(rules.world, scratch.contacts.plane_cache),
+      manifold_(geometry_, state_),
       impact_(rules, particle, scratch, outcome),
       trial_(trial) {
-    for (std::size_t k = 0; k < particle.support.count; ++k) touched_[count_++].surface = particle.support.surfaces[k];
-    particle.support = {};
+    manifold_.recall(particle.contact);
+    particle.contact = {};
 }
 
 /// The loop that moves one particle: take all the time that is left, go back to what was in the way, answer, go on.
@@ -42,14 +44,14 @@ void RollbackMover::run(double duration) {
             break;
         }
     }
-    remember_contact();
+    keep_contact();
 }
 
 /// Rests for the time given: what circles into a pit gets there in infinitely many ever shorter stretches.
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
-    shares_ = normal_accelerations(pull_, normals());
-    book_contact(-state_.velocity - duration * pull_, duration);
+    manifold_.load(pull_);
+    manifold_.record_push(-state_.velocity - duration * pull_, duration, impact_);
     state_.velocity = particle_.spin = Vec3{};
     state_.time += duration;
     outcome_.resting = true;
@@ -59,8 +61,8 @@ bool RollbackMover::begin(double duration) {
     stretch_.reset();
     from_ = state_.position;
     outcome_.resting = false;
-    find_touched();
-    if (count_ > 0) plan_contact(duration);
+    manifold_.touch_again(touch_rule());
+    if (in_contact()) plan_contact(duration);
     if (!stretch_) flight_ = flight_for(duration);
     if (can_be_followed(flight_.path)) return true;
     outcome_.frozen = true;
@@ -136,10 +138,10 @@ void RollbackMover::follow_stretch(double elapsed) {
     const bool rests = stretch_->at_rest;
     if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
     const Motion arriving{rests ? Vec3{} : flight_.path.velocity(elapsed), particle_.spin};
-    const Motion motion = end_of_stretch(*stretch_, elapsed, arriving, state_.radius, normals_[0]);
+    const Motion motion = end_of_stretch(*stretch_, elapsed, arriving, state_.radius, manifold_.normals().front());
     state_.velocity = motion.velocity;
     particle_.spin = rests ? Vec3{} : motion.spin;
-    book_contact(state_.velocity - before - elapsed * pull_, elapsed);
+    manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
     outcome_.resting = rests;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
@@ -160,7 +162,7 @@ void RollbackMover::answer() {
     if (met_.empty()) return;
     if (will_stay()) {
         impact_.land(met_);
-        touch(met_);
+        for (const ContactSurface& met : met_) manifold_.add(met);
     } else {
         impact_.reflect(met_);
     }
@@ -168,9 +170,8 @@ void RollbackMover::answer() {
 
 /// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
 void RollbackMover::leave_surface() {
-    const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
     const Path path = line_path(state_.position, state_.velocity, flight_.path.duration);
-    const ContactQueryResult found = find_first_contact(geometry, {path, state_.radius}, scratch_.contacts);
+    const ContactQueryResult found = find_first_contact(geometry_, {path, state_.radius}, scratch_.contacts);
     const auto place = step_off(found.near, state_.position);
     if (!place) {
         ++outcome_.stayed;
@@ -184,7 +185,7 @@ void RollbackMover::leave_surface() {
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
     // What is touched already holds its part; what is left may press onto the next surface.
-    const Vec3 pull = project_off(a, normals());
+    const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& met : met_) {
         const Material& material = impact_.material_of(met.surface);

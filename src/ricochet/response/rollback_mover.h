@@ -2,12 +2,12 @@
 /// Private to the rollback response: one particle between two collisions.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "ricochet/collision/obstacles.h"
+#include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/contact_mode.h"
 #include "ricochet/response/impact.h"
 
@@ -43,11 +43,11 @@ public:
     /// Answers what is in the way at the bracket's blocked end. The particle has gone to its free end.
     void answer();
     /// True while it slides, rolls or rests.
-    [[nodiscard]] bool in_contact() const { return count_ > 0; }
+    [[nodiscard]] bool in_contact() const { return !manifold_.empty(); }
     /// Rests where it is for the time given.
     void rest(double duration);
     /// Keeps the contact for the next step.
-    void remember_contact();
+    void keep_contact() { particle_.contact = manifold_.kept(); }
     [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
 
 private:
@@ -61,22 +61,20 @@ private:
     [[nodiscard]] bool will_stay() const;
 
     // Contact (rollback_contact.cpp).
-    void find_touched();
-    [[nodiscard]] std::optional<ContactSurface> touching(SurfaceId surface) const;
-    void touch(std::span<const ContactSurface> surfaces);
+    [[nodiscard]] TouchRule touch_rule() const;
     void plan_contact(double duration);
     void limit_stretch();
     [[nodiscard]] double time_on_support() const;
     void bend_stretch(double duration);
     void turn_along();
-    void book_contact(const Vec3& velocity_change, double elapsed);
-    [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
 
     const ResponseRules& rules_;
     MovingParticle& particle_;
     ForceInput& state_;
     MoveScratch& scratch_;
     MoveOutcome& outcome_;
+    SurfaceGeometry geometry_;
+    ContactManifold manifold_;
     ImpactAnswer impact_;
     Trial trial_;
     Vec3 from_;           // where the piece began
@@ -87,10 +85,6 @@ private:
     std::optional<Stretch> stretch_;
     bool turns_ = false;  // the stretch is a chord of a surface that bends towards the particle
     Vec3 pull_;           // the forces' acceleration at the stretch's start
-    std::array<ContactSurface, 3> touched_;
-    std::array<Vec3, 3> normals_;
-    std::array<double, 3> shares_{};
-    std::size_t count_ = 0;
     std::vector<ContactSurface> met_;
 };
 

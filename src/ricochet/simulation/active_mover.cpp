@@ -16,7 +16,7 @@ constexpr std::size_t kVertexPrefetchDistance = 2;
 
 /// It flies on, in contact with nothing.
 bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
-    return moved.support.count == 0 && moved.support.cascade_left == 0.0 && !outcome.resting && !outcome.frozen &&
+    return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && !outcome.resting && !outcome.frozen &&
            !outcome.absorbed;
 }
 

@@ -62,16 +62,16 @@ std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
 
 MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
     MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
-    if (in_contact) load_contact(i, particle.support);
+    if (in_contact) load_contact(i, particle.contact);
     particle.sides = sides_of(i);
     return particle;
 }
 
-void ParticleStore::load_contact(std::size_t i, Support& support) const {
+void ParticleStore::load_contact(std::size_t i, KeptContact& contact) const {
     for (const SurfaceId surface : particles_.support[i]) {
-        if (surface != kNoSupport) support.surfaces[support.count++] = surface;
+        if (surface != kNoSupport) contact.surfaces[contact.count++] = surface;
     }
-    support.cascade_left = particles_.cascade_left[i];
+    contact.cascade_left = particles_.cascade_left[i];
 }
 
 void ParticleStore::store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
@@ -92,8 +92,8 @@ void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, co
     particles_.frozen[i] = outcome.frozen ? 1 : 0;
     particles_.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
     particles_.support[i].fill(kNoSupport);
-    std::copy_n(moved.support.surfaces.begin(), moved.support.count, particles_.support[i].begin());
-    particles_.cascade_left[i] = moved.support.cascade_left;
+    std::copy_n(moved.contact.surfaces.begin(), moved.contact.count, particles_.support[i].begin());
+    particles_.cascade_left[i] = moved.contact.cascade_left;
 }
 
 void ParticleStore::prefetch(std::size_t i) const {

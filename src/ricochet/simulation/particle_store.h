@@ -64,7 +64,7 @@ public:
     void archive(Archive& a);
 
 private:
-    void load_contact(std::size_t i, Support& support) const;
+    void load_contact(std::size_t i, KeptContact& contact) const;
     void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_held);
 
     Particles particles_;

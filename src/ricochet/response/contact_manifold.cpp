@@ -1,0 +1,131 @@
+#include "ricochet/response/contact_manifold.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_mode.h"
+#include "ricochet/response/impact.h"
+
+namespace ricochet {
+namespace {
+
+/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
+double seam_turn(const ForceInput& particle) {
+    if (particle.radius == 0.0) return kSameNormal;
+    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(particle.position) / particle.radius;
+}
+
+}  // namespace
+
+TouchRule TouchRule::at(const Vec3& position) {
+    const double reach = kTouchingOffsets * contact_offset(position);
+    return {reach, reach, reach};
+}
+
+bool ContactManifold::is_same_point(std::size_t k, const ContactSurface& surface) const {
+    const double turn = 1.0 - dot(normals_[k], surface.normal);
+    return !(turn > kSameNormal) || (flat_[k] != surface.flat && turn <= seam_turn(particle_));
+}
+
+void ContactManifold::add(const ContactSurface& surface) {
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (!is_same_point(k, surface)) continue;
+        if (surface.flat && !flat_[k]) set(k, surface);
+        return;
+    }
+    if (count_ < kMostPoints) set(count_++, surface);
+}
+
+void ContactManifold::clear() {
+    count_ = 0;
+    surfaces_ = {};
+}
+
+void ContactManifold::recall(const KeptContact& kept) {
+    surfaces_ = kept.surfaces;
+    count_ = kept.count;
+}
+
+void ContactManifold::remove(std::size_t k) {
+    for (--count_; k < count_; ++k) set(k, (*this)[k + 1]);
+    surfaces_[count_] = 0;
+}
+
+void ContactManifold::set(std::size_t k, const ContactSurface& surface) {
+    surfaces_[k] = surface.surface;
+    normals_[k] = surface.normal;
+    flat_[k] = surface.flat;
+}
+
+void ContactManifold::meet(std::span<const ContactSurface> surfaces) {
+    for (const ContactSurface& surface : surfaces) note_recent(surface.surface);
+}
+
+void ContactManifold::note_recent(SurfaceId surface) {
+    const auto known = recent_.begin() + static_cast<std::ptrdiff_t>(std::min(recent_count_, kMostRecent));
+    if (std::find(recent_.begin(), known, surface) == known) recent_[recent_count_++ % kMostRecent] = surface;
+}
+
+void ContactManifold::replace(std::span<const ContactSurface> surfaces, const TouchRule& rule) {
+    clear();
+    for (const ContactSurface& surface : surfaces) add(surface);
+    for (std::size_t k = 0; k < std::min(recent_count_, kMostRecent); ++k) {
+        if (const auto surface = touched(recent_[k], rule)) add(*surface);
+    }
+}
+
+void ContactManifold::touch_again(const KeptContact& kept, const TouchRule& rule) {
+    clear();
+    for (std::size_t k = 0; k < kept.count; ++k) {
+        note_recent(kept.surfaces[k]);
+        if (const auto surface = touched(kept.surfaces[k], rule)) add(*surface);
+    }
+}
+
+/// The surface as the particle touches it now; nothing when it does not.
+std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const TouchRule& rule) const {
+    const Vec3& p = particle_.position;
+    const CollisionWorld& world = geometry_.world();
+    const CollisionWorld::Nearest nearest = geometry_.nearest(surface, p);
+    const bool is_point = particle_.radius == 0.0;
+    const bool is_beside_rim = is_point && !nearest.flat && world.is_flat(surface);
+    const double above = nearest.distance - particle_.radius;
+    if (above > (is_beside_rim ? rule.beyond_rim : rule.above) || above < -rule.overlap) return std::nullopt;
+    if (dot(particle_.velocity, nearest.normal) > rule.departure) return std::nullopt;
+    if (!is_point || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
+    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
+    const double distance = geometry_.signed_distance_from(surface, p);
+    if (rule.beyond_rim > rule.above && std::fabs(distance) > rule.above) return std::nullopt;
+    const Vec3 normal = geometry_.unit_normal_of(surface, p);
+    return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
+}
+
+void ContactManifold::load(const Vec3& pull) { loads_ = normal_accelerations(pull, normals()); }
+
+double ContactManifold::friction(const Vec3& pull, const ImpactAnswer& impact) const {
+    double friction = 0.0;
+    for (std::size_t k = 0; k < count_; ++k) friction += loads_[k] * impact.material_of(surfaces_[k]).friction;
+    const double all = length(pull - project_off(pull, normals()));
+    return all > 0.0 ? friction / all : 0.0;
+}
+
+void ContactManifold::record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const {
+    Vec3 left = velocity_change;
+    for (std::size_t k = 1; k < count_; ++k) {
+        if (loads_[k] == 0.0) continue;
+        const Vec3 part = (elapsed * loads_[k]) * normals_[k];
+        impact.push(surfaces_[k], part, false);
+        left -= part;
+    }
+    impact.push(surfaces_[0], left, false);
+}
+
+std::optional<Vec3> turned_along(const Vec3& velocity, std::span<const Vec3> normals) {
+    const Vec3 along = project_off(velocity, normals);
+    const double left = length(along);
+    if (left == 0.0) return std::nullopt;
+    return (length(velocity) / left) * along;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,97 @@
+/// \file
+/// Private to the responses: the contact manifold, which is what a particle touches at one time, and how hard each
+/// surface holds it.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+class ImpactAnswer;
+
+/// When a particle touches a surface.
+struct TouchRule {
+    /// Within kTouchingOffsets contact offsets of the surface.
+    [[nodiscard]] static TouchRule at(const Vec3& position);
+
+    double above = 0.0;       ///< m, largest distance of the sphere (or the point) from the surface
+    double overlap = 0.0;     ///< m, by how much a sphere may overlap the surface
+    double beyond_rim = 0.0;  ///< m, largest distance of a point from the rim of a flat surface that it is beside
+    double departure = std::numeric_limits<double>::infinity();  ///< m/s along the normal, above which it has left
+};
+
+/// The contact points of one particle, at most three: more do not matter to where a pressed particle can go. An edge
+/// that lies within reach beside a face is that face's own seam and no contact point of its own: on a flat surface it
+/// must not be felt.
+class ContactManifold {
+public:
+    /// Both must outlive it; positions and velocities are the particle's present ones.
+    ContactManifold(const SurfaceGeometry& geometry, const ForceInput& particle)
+        : geometry_(geometry), particle_(particle) {}
+
+    [[nodiscard]] std::size_t size() const { return count_; }
+    [[nodiscard]] bool empty() const { return count_ == 0; }
+    /// k < size().
+    [[nodiscard]] ContactSurface operator[](std::size_t k) const { return {surfaces_[k], normals_[k], flat_[k]}; }
+    [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
+    /// What the next step begins with.
+    [[nodiscard]] KeptContact kept() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
+    /// What the last step has kept, without normals yet: touch_again() has to follow.
+    void recall(const KeptContact& kept);
+
+    /// Adds a contact point, unless one with the same normal, or the face whose seam it is, is there already.
+    void add(const ContactSurface& surface);
+    void clear();
+    void remove(std::size_t k);
+
+    /// Notes surfaces that the particle meets: replace() tries them again.
+    void meet(std::span<const ContactSurface> surfaces);
+    /// The surfaces of an impact, then those met lately that are still touched, in place of what was touched before.
+    void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule);
+    /// Of the surfaces kept those that are still touched, as they are touched now, in place of what was touched before.
+    void touch_again(const KeptContact& kept, const TouchRule& rule);
+    /// The same of what was touched before.
+    void touch_again(const TouchRule& rule) { touch_again(kept(), rule); }
+
+    /// Distributes over the contact points what a pull, m/s^2, presses onto them.
+    void load(const Vec3& pull);
+    void unload() { loads_ = {}; }
+    /// By load(): the acceleration, m/s^2, with which each contact point holds the particle.
+    [[nodiscard]] const std::array<double, 3>& loads() const { return loads_; }
+    [[nodiscard]] bool is_loaded() const { return loads_[0] > 0.0 || loads_[1] > 0.0 || loads_[2] > 0.0; }
+    /// Coulomb coefficient of all contact points together under the pull that was given to load().
+    [[nodiscard]] double friction(const Vec3& pull, const ImpactAnswer& impact) const;
+    /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its normal part by its load,
+    /// what is left (friction) on the first.
+    void record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const;
+
+private:
+    static constexpr std::size_t kMostPoints = 3;
+    static constexpr std::size_t kMostRecent = 6;
+
+    void set(std::size_t k, const ContactSurface& surface);
+    void note_recent(SurfaceId surface);
+    [[nodiscard]] bool is_same_point(std::size_t k, const ContactSurface& surface) const;
+    [[nodiscard]] std::optional<ContactSurface> touched(SurfaceId surface, const TouchRule& rule) const;
+
+    const SurfaceGeometry& geometry_;
+    const ForceInput& particle_;
+    std::size_t count_ = 0;
+    std::array<SurfaceId, kMostPoints> surfaces_{};  // 0 beyond count_
+    std::array<Vec3, kMostPoints> normals_;
+    std::array<bool, kMostPoints> flat_{};
+    std::array<double, kMostPoints> loads_{};      // m/s^2
+    std::array<SurfaceId, kMostRecent> recent_{};  // the last surfaces met, a ring
+    std::size_t recent_count_ = 0;                 // ever met
+};
+
+/// The velocity turned along planes of the given normals, at the same speed; nothing where none of it is along them.
+[[nodiscard]] std::optional<Vec3> turned_along(const Vec3& velocity, std::span<const Vec3> normals);
+
+}  // namespace ricochet

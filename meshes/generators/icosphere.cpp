@@ -11,7 +11,7 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr double kIcosahedronEdge = 1.0514622242382672;  // edge of the icosahedron in the unit sphere
-constexpr int kMaxDivisions = 2300;                     // 106 million triangles
+constexpr int kMaxDivisions = 2300;                      // 106 million triangles
 
 std::array<Vec3, 12> icosahedron_corners() {
     const double golden = 0.5 * (1.0 + std::sqrt(5.0));

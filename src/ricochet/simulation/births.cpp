@@ -1,4 +1,4 @@
-// How particles come into a simulation: from emitters, and born of particles.
+// How particles come into a simulation: from emitters, and spawned by particles.
 #include <algorithm>
 #include <iterator>
 #include <utility>

@@ -79,7 +79,7 @@ struct Simulation::Impl {
     CollisionQueries queries;
     CoupledMotion coupled;
     std::vector<Emitter> emitters;
-    std::unique_ptr<Offspring> offspring;  ///< null where no particles are born of particles
+    std::unique_ptr<Offspring> offspring;  ///< null where no particles spawn others
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
     ParticleStore store;

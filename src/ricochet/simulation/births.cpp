@@ -51,7 +51,7 @@ void Simulation::Impl::reserve(std::size_t more) {
     free_flights.reserve(more);
 }
 
-void Simulation::Impl::add(Particle particle) {
+void Simulation::Impl::add(Particle&& particle) {
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++recorder.statistics().started_inside;
     schedule.append(particle.pinned);

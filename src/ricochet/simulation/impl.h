@@ -50,7 +50,7 @@ struct Simulation::Impl {
 
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
-    void add(Particle particle);
+    void add(Particle&& particle);
     [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
     void remove_leavers(double time);
     void compact(const std::vector<std::uint8_t>& keep);

@@ -65,7 +65,7 @@ struct ResponseSettings {
     ProjectSettings project = {};        ///< of the project response
     PenaltySettings penalty = {};        ///< of the penalty response
     /// Null pointer: forces move the particles. Otherwise this flow carries them (first-order motion, x' = g(x, t)):
-    /// with an integrator for flows (carries_along_flows()), the exact response and no forces, else an InputError.
+    /// with the exact response, no forces, and forward_euler, midpoint, rk4 or dormand_prince, else an InputError.
     FlowPointer flow = nullptr;
     WallRule walls = WallRule::slide;  ///< what walls do to particles that the flow carries into them
 };

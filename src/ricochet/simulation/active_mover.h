@@ -24,7 +24,7 @@ struct MoverParts {
     RunRecorder& recorder;
     const Response& response;
     const CoupledMotion& coupled;
-    const Offspring* offspring;  ///< null where no particles are born of particles
+    const Offspring* offspring;  ///< null where no particles spawn others
     RunCheck* check;             ///< null without options.verify
 };
 

@@ -1,4 +1,4 @@
-// How particles come into a simulation: from emitters, and born of particles.
+// How particles come into a simulation: from emitters, and spawned by particles.
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -51,7 +51,7 @@ void Simulation::Impl::reserve(std::size_t more) {
     free_flights.reserve(more);
 }
 
-void Simulation::Impl::add(Particle particle) {
+void Simulation::Impl::add(Particle&& particle) {
     world.prepare_radius(particle.radius);
     if (starts_in_overlap(particle)) ++recorder.statistics().started_inside;
     schedule.append(particle.pinned);

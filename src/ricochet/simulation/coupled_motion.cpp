@@ -44,7 +44,7 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     if (solver_) {
         all.resize(particles.size());
         std::iota(all.begin(), all.end(), 0U);
-        // Who is born inside the step joins with the next one.
+        // Particles spawned inside the step join with the next one.
         std::erase_if(all, [&](std::uint32_t i) { return particles.birth_time[i] > time || particles.frozen[i] != 0; });
     }
     system_.assign(particles, solver_ ? all : springs_.coupled(), time);

@@ -11,8 +11,8 @@
 
 namespace ricochet {
 
-/// Springs, or a solver of the user's own. Every step: plan() says where all members would go if nothing were in their
-/// way; then each member moves along its flight and bounces; settle() looks at what came out.
+/// Springs, or a solver of the user's own. Every step: plan() says where all members would go if no surface stopped
+/// them; then each member moves along its flight and bounces; settle() takes up what came out.
 class CoupledMotion {
 public:
     /// Throws InputError for springs that cannot be. forces must outlive it.
@@ -23,7 +23,7 @@ public:
     [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty(); }
     /// To be called whenever particles were added or removed.
     void bind(const Particles& particles);
-    /// Plans the members' way from a time on, for at most `duration` seconds. Returns the seconds planned. Throws
+    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. Throws
     /// DivergedError when what comes out is nonsense.
     double plan(const Particles& particles, double time, double duration);
 

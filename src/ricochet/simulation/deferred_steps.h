@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: steps that free_flight particles still have to make. A particle that makes many of them
-/// at once is fetched from memory once.
+/// Private to the simulation: steps of free flights, integrated together later. A particle that makes many of
+/// them at once is fetched from memory once.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ public:
     /// Nothing is deferred by any of `count` particles.
     explicit DeferredSteps(std::size_t count) : made_(count, 0) {}
 
-    /// The step that all free_flight particles owe from now on. Not when is_full().
+    /// One more step that all particles in free flight defer. Not when is_full().
     void add(const FreeFlight& step) {
         is_straight_ = (is_empty() || is_straight_) && step.is_straight() && step.duration() >= kShortestStraight;
         steps_.push_back(step);
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] bool is_full() const { return steps_.size() == kMost; }
     [[nodiscard]] bool is_empty() const { return steps_.empty(); }
 
-    /// A particle that is born within the step that is made now: it owes nothing.
+    /// A particle that is spawned within the step that is made now: it has deferred nothing.
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
     /// Makes room for `more` particles.
     void reserve(std::size_t more) { grow_capacity_by(made_, more); }
@@ -44,7 +44,7 @@ public:
         made_.resize(kept);
     }
 
-    /// Where a particle that owes steps is after them.
+    /// Where a particle is after its deferred steps.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
         std::size_t k = made_[i];
         if (k >= steps_.size()) return state;  // more than these, where the step that is made now has failed
@@ -62,8 +62,8 @@ public:
     }
 
 private:
-    // A step by nothing or by 2^-230 m and more along each axis never ends in a place that flush_tiny() changes: where
-    // the place nearly cancels the way, both are multiples of 2^-283 m.
+    // A step by nothing or by 2^-230 m and more along each axis never ends at a position that flush_tiny() changes:
+    // where the position nearly cancels the displacement, both are multiples of 2^-283 m.
     static constexpr double kShortestStraight = 0x1p-100;  ///< s
     static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
 

@@ -93,7 +93,7 @@ void FreeFlights::catch_up(std::size_t i) {
     particles.velocity[i] = state.velocity;
 }
 
-// Their deferred steps are made while the next ones are on their way from memory.
+// Their deferred steps are made while the next ones are being fetched from memory.
 void FreeFlights::catch_up_active(std::span<const std::uint32_t> active) {
     const Particles& particles = store_.particles();
     for (std::size_t k = 0; k < active.size(); ++k) {

@@ -50,7 +50,7 @@ struct Simulation::Impl {
 
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
-    void add(Particle particle);
+    void add(Particle&& particle);
     [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
     void remove_leavers(double time);
     void compact(const std::vector<std::uint8_t>& keep);
@@ -79,7 +79,7 @@ struct Simulation::Impl {
     CollisionQueries queries;
     CoupledMotion coupled;
     std::vector<Emitter> emitters;
-    std::unique_ptr<Offspring> offspring;  ///< null where no particles are born of particles
+    std::unique_ptr<Offspring> offspring;  ///< null where no particles spawn others
     std::optional<Box3> bounds;
     std::unique_ptr<Response> response;
     ParticleStore store;

@@ -28,7 +28,7 @@ bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& 
 }  // namespace
 
 /// What one particle did in one pass: flights between knots.
-struct Offspring::Way {
+struct Offspring::Trajectory {
     struct Knot {
         double time;
         Vec3 position;
@@ -47,7 +47,7 @@ struct Offspring::Way {
     [[nodiscard]] Particle at(double time, const CollisionWorld& world, ContactScratch& scratch) const;
 };
 
-Particle Offspring::Way::at(const Knot& knot, const Vec3& velocity) const {
+Particle Offspring::Trajectory::at(const Knot& knot, const Vec3& velocity) const {
     Particle parent = particle;
     parent.position = knot.position;
     parent.velocity = velocity;
@@ -55,7 +55,7 @@ Particle Offspring::Way::at(const Knot& knot, const Vec3& velocity) const {
 }
 
 // The cubic through both ends of the flight with their velocities: exact for a steady acceleration.
-Particle Offspring::Way::at(double time, const CollisionWorld& world, ContactScratch& scratch) const {
+Particle Offspring::Trajectory::at(double time, const CollisionWorld& world, ContactScratch& scratch) const {
     std::size_t k = 0;
     while (k + 2 < knots.size() && knots[k + 1].time <= time) ++k;
     const Knot& a = knots[k];
@@ -119,48 +119,50 @@ void Offspring::before_move(const Particles& particles, std::size_t first) {
     velocities_.assign(particles.velocity.begin() + begin, particles.velocity.end());
 }
 
-Offspring::Way Offspring::way_of(const Particles& particles, std::size_t i, double from, double to,
-                                 std::span<const ContactRecord> records) const {
-    Way way;
-    way.particle = particles.at(i);
-    way.records = records;
-    const double begin = std::max(from, way.particle.birth_time);
-    const double death = way.particle.birth_time + way.particle.lifetime;
-    way.knots.push_back({begin, positions_[i - first_], velocities_[i - first_], velocities_[i - first_]});
+Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::size_t i, double from, double to,
+                                               std::span<const ContactRecord> records) const {
+    Trajectory trajectory;
+    trajectory.particle = particles.at(i);
+    trajectory.records = records;
+    const double begin = std::max(from, trajectory.particle.birth_time);
+    const double death = trajectory.particle.birth_time + trajectory.particle.lifetime;
+    trajectory.knots.push_back({begin, positions_[i - first_], velocities_[i - first_], velocities_[i - first_]});
     for (const ContactRecord& record : records) {
-        way.knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
+        trajectory.knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
     }
     const bool absorbed = particles.absorbed[i] != 0;
-    way.shattered = particles.absorbed[i] == kShattered;
-    way.died = !way.shattered && (absorbed || death <= to);
+    trajectory.shattered = particles.absorbed[i] == kShattered;
+    trajectory.died = !trajectory.shattered && (absorbed || death <= to);
     if (!absorbed) {
         const double end = std::max(begin, std::min(to, death));
-        way.knots.push_back({end, way.particle.position, way.particle.velocity, way.particle.velocity});
+        trajectory.knots.push_back(
+            {end, trajectory.particle.position, trajectory.particle.velocity, trajectory.particle.velocity});
     }
-    return way;
+    return trajectory;
 }
 
-void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Way& way,
+void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
                          std::vector<SpawnBatch>& batches) const {
     thread_local ContactScratch scratch;
-    for (const LifeBirth& birth : births_in_life(emitter, way.particle, way.begin(), way.end())) {
-        batches.push_back({birth.time, emitter.number(), birth.ordinal, 1, false, way.at(birth.time, world, scratch)});
+    for (const LifeBirth& birth : births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end())) {
+        batches.push_back(
+            {birth.time, emitter.number(), birth.ordinal, 1, false, trajectory.at(birth.time, world, scratch)});
     }
 }
 
-void Offspring::add_impacts(const Emitter& emitter, const Way& way, Origin& origin,
+void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                             std::vector<SpawnBatch>& batches) const {
     const ParentRule& rule = *emitter.description().parent;
-    for (const ContactRecord& record : way.records) {
-        const bool is_last = &record == &way.records.back();
+    for (const ContactRecord& record : trajectory.records) {
+        const bool is_last = &record == &trajectory.records.back();
         const double impulse = record.mass * length(record.velocity_after - record.velocity_before);
-        const bool ends_here = rule.share && way.shattered && is_last;
+        const bool ends_here = rule.share && trajectory.shattered && is_last;
         // A shattering parent's only birth is at its end; one that is too deep to shatter is refused here and there.
         const bool refused = rule.share && origin.generation >= limits_.max_depth && impulse >= rule.threshold_impulse;
         if (!ends_here && !refused && (rule.share || impulse < rule.threshold_impulse)) continue;
-        std::uint32_t count = children_of_event(emitter, way.particle, origin.birth_impacts++);
+        std::uint32_t count = children_of_event(emitter, trajectory.particle, origin.birth_impacts++);
         if (rule.share) count = std::max(count, 1U);
-        Particle parent = way.particle;
+        Particle parent = trajectory.particle;
         parent.position = record.position;
         parent.velocity = record.velocity_after;
         batches.push_back({record.time, emitter.number(), origin.impact_children, count, rule.share, parent});
@@ -168,16 +170,17 @@ void Offspring::add_impacts(const Emitter& emitter, const Way& way, Origin& orig
     }
 }
 
-void Offspring::add_death(const Emitter& emitter, const Way& way, std::vector<SpawnBatch>& batches) const {
-    if (!way.died) return;
+void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
+                          std::vector<SpawnBatch>& batches) const {
+    if (!trajectory.died) return;
     const ParentRule& rule = *emitter.description().parent;
-    std::uint32_t count = children_of_event(emitter, way.particle, 0);
+    std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
     if (rule.share) count = std::max(count, 1U);
-    const Way::Knot& last = way.knots.back();
-    // What an absorbing surface has stopped is born with the velocity of arrival.
-    const bool absorbed = !way.records.empty() && last.time == way.records.back().time;
+    const Trajectory::Knot& last = trajectory.knots.back();
+    // What an absorbing surface has stopped spawns with the velocity of arrival.
+    const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
     batches.push_back(
-        {last.time, emitter.number(), 0, count, rule.share, way.at(last, absorbed ? last.before : last.after)});
+        {last.time, emitter.number(), 0, count, rule.share, trajectory.at(last, absorbed ? last.before : last.after)});
 }
 
 std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
@@ -199,13 +202,13 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
             Origin& origin = particles.origin[i];
             if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty())
                 continue;
-            const Way way = way_of(particles, i, from, to, records_of(particles.id[i]));
+            const Trajectory trajectory = trajectory_of(particles, i, from, to, records_of(particles.id[i]));
             for (const std::uint32_t child : children_of_[origin.emitter]) {
                 const Emitter& emitter = emitters_[child];
                 const BirthEvent on = emitter.description().parent->on;
-                if (on == BirthEvent::life) add_life(world, emitter, way, blocks[block]);
-                if (on == BirthEvent::impact) add_impacts(emitter, way, origin, blocks[block]);
-                if (on == BirthEvent::death) add_death(emitter, way, blocks[block]);
+                if (on == BirthEvent::life) add_life(world, emitter, trajectory, blocks[block]);
+                if (on == BirthEvent::impact) add_impacts(emitter, trajectory, origin, blocks[block]);
+                if (on == BirthEvent::death) add_death(emitter, trajectory, blocks[block]);
             }
         }
     });
@@ -213,11 +216,11 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     for (std::vector<SpawnBatch>& block : blocks) {
         batches.insert(batches.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
     }
-    return born(batches, particles.size(), counts);
+    return spawn(batches, particles.size(), counts);
 }
 
-std::vector<Particle> Offspring::born(std::vector<SpawnBatch>& batches, std::size_t living,
-                                      OffspringCounts& counts) const {
+std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+                                       OffspringCounts& counts) const {
     std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
         return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);

@@ -1,9 +1,10 @@
 /// \file
-/// Private to the simulation: particles that are born of particles, step by step.
+/// Private to the simulation: particles spawned by particles, step by step.
 ///
-/// A parent's children come only from places on its own way: where it is at an impact or at its end, or, in between, a
-/// place of the cubic through both ends of a flight that a straight line joins to one of these ends without meeting a
-/// surface (decided exactly); otherwise that end itself. So no child begins behind a wall that its parent is before.
+/// Children spawn only at positions of their parent's trajectory: where it is at an impact or at its end, or, in
+/// between, at a position on the cubic through both ends of a flight that a straight segment joins to one of these ends
+/// without meeting a surface (decided exactly); otherwise at that end itself. So no child begins behind a wall that its
+/// parent is in front of.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +25,14 @@ struct OffspringLimits {
     std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time
 };
 
-/// What a pass of births has done.
+/// What a pass has spawned and refused.
 struct OffspringCounts {
     std::uint64_t children = 0;
     std::uint64_t refused_by_depth = 0;
     std::uint64_t refused_by_population = 0;
 };
 
-/// The births of a simulation's particles.
+/// Spawns the children of a simulation's particles.
 class Offspring {
 public:
     /// emitters: all of the scene's; must outlive it. Throws InputError for a parent that is not there and for two
@@ -45,8 +46,8 @@ public:
 
     /// Keeps the states of the entries from `first` on, which are about to be moved.
     void before_move(const Particles& particles, std::size_t first);
-    /// The children that the entries kept have given birth to on their way in [from, to), in the order of (time,
-    /// parent, ordinal). records: of the impacts of these entries, those of one particle in the order of time.
+    /// The children that the entries kept have spawned in [from, to), in the order of (time, parent, ordinal). records:
+    /// of the impacts of these entries, those of one particle in the order of time.
     [[nodiscard]] std::vector<Particle> after_move(const CollisionWorld& world, Particles& particles, double from,
                                                    double to, std::vector<ContactRecord> records,
                                                    OffspringCounts& counts) const;
@@ -61,16 +62,17 @@ private:
         bool share = false;
         Particle parent;  ///< as it is at the birth
     };
-    struct Way;
+    struct Trajectory;
 
-    [[nodiscard]] Way way_of(const Particles& particles, std::size_t i, double from, double to,
-                             std::span<const ContactRecord> records) const;
-    void add_life(const CollisionWorld& world, const Emitter& emitter, const Way& way,
+    [[nodiscard]] Trajectory trajectory_of(const Particles& particles, std::size_t i, double from, double to,
+                                           std::span<const ContactRecord> records) const;
+    void add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
                   std::vector<SpawnBatch>& batches) const;
-    void add_impacts(const Emitter& emitter, const Way& way, Origin& origin, std::vector<SpawnBatch>& batches) const;
-    void add_death(const Emitter& emitter, const Way& way, std::vector<SpawnBatch>& batches) const;
-    [[nodiscard]] std::vector<Particle> born(std::vector<SpawnBatch>& batches, std::size_t living,
-                                             OffspringCounts& counts) const;
+    void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
+                     std::vector<SpawnBatch>& batches) const;
+    void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
+    [[nodiscard]] std::vector<Particle> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+                                              OffspringCounts& counts) const;
 
     const std::vector<Emitter>& emitters_;
     OffspringLimits limits_;

@@ -17,7 +17,7 @@ struct SimulationOptions : ResponseSettings {
     bool verify = false;
     bool triangle_totals = true;                 ///< keep hits and impulse per triangle (56 bytes each)
     double frame_rate = 24.0;                    ///< frames a second of emission rates per frame, > 0
-    std::uint32_t max_depth = 16;                ///< highest generation of particles born of particles; 0: none are
+    std::uint32_t max_depth = 16;                ///< highest generation of particles spawned by particles; 0: none are
     std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time, < 2^32; births beyond are refused and counted
 };
 

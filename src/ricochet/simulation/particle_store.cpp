@@ -23,7 +23,7 @@ ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool 
     particles_.keeps_origin = keeps_origin;
 }
 
-void ParticleStore::append(Particle particle) {
+void ParticleStore::append(Particle&& particle) {
     particle.id = next_id_++;
     particle.position = flush_tiny(particle.position);
     const auto size = particles_.attributes.find(kSizeAttribute);

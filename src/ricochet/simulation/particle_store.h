@@ -26,7 +26,7 @@ public:
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
 
     /// Gives the particle its id and takes it in. Its sides are not known yet.
-    void append(Particle particle);
+    void append(Particle&& particle);
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);

@@ -17,17 +17,6 @@ std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
 
 }  // namespace
 
-void BlockRecord::add(const MoveOutcome& outcome) {
-    contacts += outcome.bounces;
-    stayed += outcome.stayed;
-    frozen += outcome.frozen ? 1 : 0;
-    bounces_max = std::max(bounces_max, outcome.bounces);
-    trials += outcome.trials;
-    penetrations += outcome.depth > 0.0 ? 1 : 0;
-    penetration_sum += outcome.depth;
-    penetration_deepest = std::max(penetration_deepest, outcome.depth);
-}
-
 void BlockRecord::add_to(SimulationStatistics& statistics) const {
     statistics.contacts += contacts;
     statistics.stayed += stayed;

@@ -2,6 +2,7 @@
 /// Private to the simulation: statistics, contact records, totals per surface and violations of a run.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,6 +39,17 @@ struct BlockRecord {
     void note_runaway(std::size_t i) { runaway = runaway ? std::min(*runaway, i) : i; }
     void add_to(SimulationStatistics& statistics) const;
 };
+
+inline void BlockRecord::add(const MoveOutcome& outcome) {
+    contacts += outcome.bounces;
+    stayed += outcome.stayed;
+    frozen += outcome.frozen ? 1 : 0;
+    bounces_max = std::max(bounces_max, outcome.bounces);
+    trials += outcome.trials;
+    penetrations += outcome.depth > 0.0 ? 1 : 0;
+    penetration_sum += outcome.depth;
+    penetration_deepest = std::max(penetration_deepest, outcome.depth);
+}
 
 /// The first particle of all blocks that forces have brought beyond kMaxSpeed.
 [[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);

@@ -141,7 +141,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
     reserve(setup.particles.size());
-    for (const Particle& particle : setup.particles) add(particle);
+    for (Particle& particle : setup.particles) add(std::move(particle));
     if (coupled.is_active()) coupled.bind(particles());
 }
 

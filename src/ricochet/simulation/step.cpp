@@ -38,7 +38,7 @@ bool Simulation::Impl::may_defer() const {
            !coupled.is_active();
 }
 
-// Children are moved from their births to the end of the step, as a batch that may have children in turn.
+// Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
     emit_particles(step);

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "support/temporary_folder.h"
 #include "io/example_frames.h"
 #include "ricochet/core/error.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 

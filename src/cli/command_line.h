@@ -40,8 +40,8 @@ class Command {
 public:
     explicit Command(CLI::App* app) : app_(app) {}
 
-    /// An option (`--name`) or an argument (`name`). Value: std::string, std::vector<std::string>,
-    /// std::filesystem::path, double, int, std::uint32_t or std::uint64_t.
+    /// An option (`--name`) or an argument (`name`). Value: std::string, std::optional<std::string>,
+    /// std::vector<std::string>, std::filesystem::path, double, int, std::uint32_t or std::uint64_t.
     template <typename Value>
     Option add_option(const std::string& name, Value& value, const std::string& help);
     void add_flag(const std::string& name, bool& value, const std::string& help);

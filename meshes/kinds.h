@@ -7,11 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "generators/build_near.h"
-
-namespace CLI {
-class App;
-}
 
 namespace ricochet::meshes {
 
@@ -21,7 +18,7 @@ struct Kind {
     std::string summary;  ///< one line for `list` and help
     /// Adds the shape's options to its subcommand; the options' values live in the returned function, which makes the
     /// mesh with about the given number of triangles once the command line has been read.
-    std::function<std::function<TriangleMesh(std::size_t triangles)>(CLI::App& subcommand)> add_options;
+    std::function<std::function<TriangleMesh(std::size_t triangles)>(cli::Command command)> add_options;
 };
 
 /// All shapes, in the order in which they are listed.

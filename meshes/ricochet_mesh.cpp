@@ -9,8 +9,8 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
 #include "kinds.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_writer.h"
@@ -62,16 +62,14 @@ void make_mesh(const Request& request) {
     fmt::print("{}: {} triangles, {} vertices\n", request.output.string(), mesh.triangles.size(), mesh.vertices.size());
 }
 
-void add_kind(CLI::App& app, const meshes::Kind& kind, Request& request) {
-    CLI::App* subcommand = app.add_subcommand(kind.name, kind.summary);
-    subcommand->add_option("--triangles", request.triangles, "about how many triangles, 2 to 100 million")
-        ->capture_default_str();
-    subcommand->add_option("--output", request.output, "file to write: .obj, .ply, .stl or .off")->required();
-    subcommand
-        ->add_option("--decimals", request.decimals, "round coordinates to this many decimals (default: all digits)")
-        ->check(CLI::Range(0, 15));
-    auto build = kind.add_options(*subcommand);
-    subcommand->callback([&request, build] { request.build = build; });
+void add_kind(cli::Command program, const meshes::Kind& kind, Request& request) {
+    cli::Command command = program.add_command(kind.name, kind.summary);
+    command.add_option("--triangles", request.triangles, "about how many triangles, 2 to 100 million").show_default();
+    command.add_option("--output", request.output, "file to write: .obj, .ply, .stl or .off").required();
+    command.add_option("--decimals", request.decimals, "round coordinates to this many decimals (default: all digits)")
+        .range(0, 15);
+    auto build = kind.add_options(command);
+    command.on_call([&request, build] { request.build = build; });
 }
 
 void require_known_shape(const std::string& name) {
@@ -83,20 +81,13 @@ void require_known_shape(const std::string& name) {
 
 int run(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') require_known_shape(argv[1]);
-    CLI::App app{"Makes triangle meshes to collide with. Metres, z up; the same bits on every machine.",
-                 "ricochet-mesh"};
-    app.require_subcommand(1);
+    cli::CommandLine line("Makes triangle meshes to collide with. Metres, z up; the same bits on every machine.",
+                          "ricochet-mesh");
     Request request;
-    const CLI::App* list = app.add_subcommand("list", "the shapes there are");
-    for (const meshes::Kind& kind : meshes::kinds()) add_kind(app, kind, request);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp& help) {
-        return app.exit(help);
-    } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{} (try ricochet-mesh --help)", error.what()));
-    }
-    if (list->parsed()) {
+    const cli::Command list = line.program().add_command("list", "the shapes there are");
+    for (const meshes::Kind& kind : meshes::kinds()) add_kind(line.program(), kind, request);
+    if (const auto printed = line.parse(argc, argv, "try ricochet-mesh --help")) return *printed;
+    if (list.is_called()) {
         print_kinds();
     } else {
         make_mesh(request);

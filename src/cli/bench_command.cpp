@@ -1,4 +1,4 @@
-#include "cli/bench_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -222,39 +222,35 @@ int run_bench(const BenchArguments& arguments) {
     return outlets.compare(measured);
 }
 
-void add_options(CLI::App& command, BenchArguments& a) {
+void add_options(cli::Command command, BenchArguments& a) {
     command.add_option("--suite", a.suite, fmt::format("Which cases: {}", fmt::join(bench::suite_names(), ", ")))
-        ->type_name("NAME")
-        ->capture_default_str();
-    command.add_option("--json", a.json, "File for the numbers")->type_name("FILE");
+        .type_name("NAME")
+        .show_default();
+    command.add_option("--json", a.json, "File for the numbers").type_name("FILE");
     command.add_option("--results", a.results, "Folder of results: DIR/MACHINE/SUITE gets a table and a picture")
-        ->type_name("DIR");
-    CLI::Option* const compare =
-        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen")
-            ->type_name("FILE");
+        .type_name("DIR");
+    const cli::Option compare =
+        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen").type_name("FILE");
     command.add_option("--tolerance", a.tolerance, "Part of a ratio by which it may fall")
-        ->type_name("X")
-        ->capture_default_str()
-        ->needs(compare);
-    command.add_option("--write-ratios", a.write_ratios, "File for the ratios, for --compare")->type_name("FILE");
+        .type_name("X")
+        .show_default()
+        .needs(compare);
+    command.add_option("--write-ratios", a.write_ratios, "File for the ratios, for --compare").type_name("FILE");
     command
         .add_option("--threads", a.threads,
                     "Numbers of worker threads with commas, each measured (default: all processors; for the suite "
                     "threads 1, 2, 4 and so on)")
-        ->type_name("LIST");
-    command.add_option("--repeats", a.repeats, "Timed runs, of which the median counts")
-        ->type_name("N")
-        ->capture_default_str();
+        .type_name("LIST");
+    command.add_option("--repeats", a.repeats, "Timed runs, of which the median counts").type_name("N").show_default();
 }
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& exit_code) {
+void add_bench_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<BenchArguments>();
-    CLI::App* const command =
-        app.add_subcommand("bench", "What collisions cost, beside bare rays on the same stretches");
-    add_options(*command, *arguments);
-    command->callback([arguments, &exit_code] { exit_code = run_bench(*arguments); });
+    cli::Command command = program.add_command("bench", "What collisions cost, beside bare rays on the same stretches");
+    add_options(command, *arguments);
+    command.on_call([arguments, &exit_code] { exit_code = run_bench(*arguments); });
 }
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "cli/check_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
@@ -44,11 +44,11 @@ void run_check(const SceneArguments& arguments) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int& exit_code) {
+void add_check_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<SceneArguments>();
-    CLI::App* const command = app.add_subcommand("check", "Everything that is wrong with a scene, without running it");
-    add_scene_arguments(*command, *arguments);
-    command->callback([arguments, &exit_code] {
+    cli::Command command = program.add_command("check", "Everything that is wrong with a scene, without running it");
+    add_scene_arguments(command, *arguments);
+    command.on_call([arguments, &exit_code] {
         run_check(*arguments);
         exit_code = 0;
     });

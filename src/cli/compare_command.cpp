@@ -1,4 +1,4 @@
-#include "cli/compare_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
@@ -138,36 +138,36 @@ int run_compare(const CompareArguments& arguments) {
     return 0;
 }
 
-void add_options(CLI::App& command, CompareArguments& a) {
+void add_options(cli::Command command, CompareArguments& a) {
     add_scene_arguments(command, a.scene);
     command.add_option("--output", a.output, "Folder for the report: new, empty, or an earlier run's")
-        ->type_name("DIR")
-        ->required();
+        .type_name("DIR")
+        .required();
     command
         .add_option("--responses", a.request.responses,
                     "Names with commas: exact, rollback, rollback:global, project, penalty (default: the four)")
-        ->type_name("LIST");
+        .type_name("LIST");
     command
         .add_option("--time-steps", a.request.time_steps,
                     "Seconds with commas (default: the scene's step times 2, 1, 1/2 and 1/4)")
-        ->type_name("LIST");
+        .type_name("LIST");
     command
         .add_option("--reference-step", a.request.reference_step,
                     "Time step of the exact run that all are measured against (default: half of the smallest)")
-        ->type_name("S");
-    command.add_option("--repeats", a.request.repeats, "Timed runs of each row (default: 3)")->type_name("N");
-    command.add_option("--threads", a.threads, "Worker threads (default: all processors)")->type_name("N");
+        .type_name("S");
+    command.add_option("--repeats", a.request.repeats, "Timed runs of each row (default: 3)").type_name("N");
+    command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
     command.add_flag("--quiet", a.quiet, "No progress, no table");
 }
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& exit_code) {
+void add_compare_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<CompareArguments>();
-    CLI::App* const command =
-        app.add_subcommand("compare", "One scene with several answers to collisions: cost and errors");
-    add_options(*command, *arguments);
-    command->callback([arguments, &exit_code] { exit_code = run_compare(*arguments); });
+    cli::Command command =
+        program.add_command("compare", "One scene with several answers to collisions: cost and errors");
+    add_options(command, *arguments);
+    command.on_call([arguments, &exit_code] { exit_code = run_compare(*arguments); });
 }
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "cli/info_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
@@ -104,12 +104,12 @@ void run_info(const InfoOptions& options) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, int& exit_code) {
+void add_info_command(cli::Command program, int& exit_code) {
     const auto options = std::make_shared<InfoOptions>();
-    CLI::App* const command = app.add_subcommand("info", "Counts, topology and defects of a mesh file");
-    command->add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file")->required();
-    command->add_flag("--json", options->json, "Print one JSON object");
-    command->callback([options, &exit_code] {
+    cli::Command command = program.add_command("info", "Counts, topology and defects of a mesh file");
+    command.add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file").required();
+    command.add_flag("--json", options->json, "Print one JSON object");
+    command.on_call([options, &exit_code] {
         run_info(*options);
         exit_code = 0;
     });

@@ -2,7 +2,6 @@
 // Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh. Errors are one line on stderr.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -10,13 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/bench_command.h"
-#include "cli/check_command.h"
-#include "cli/compare_command.h"
-#include "cli/info_command.h"
-#include "cli/render_command.h"
-#include "cli/run_command.h"
-#include "cli/schema_command.h"
+#include "cli/command_line.h"
+#include "cli/commands.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
@@ -31,7 +25,7 @@ constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
 
 /// Adds one subcommand; its callback sets exit_code and throws InputError or RunError.
-using AddCommand = void (*)(CLI::App& app, int& exit_code);
+using AddCommand = void (*)(cli::Command program, int& exit_code);
 
 // One line a command.
 const std::vector<AddCommand>& commands() {
@@ -54,18 +48,11 @@ int report_error(std::string message, int exit_code) {
 }
 
 int parse_and_run(int argc, char** argv) {
-    CLI::App app("Particles against triangle meshes, exactly", "ricochet");
-    app.set_version_flag("--version", version_text, "Print the versions of ricochet and its libraries");
-    app.require_subcommand(1);
+    cli::CommandLine line("Particles against triangle meshes, exactly", "ricochet");
+    line.add_version(version_text);
     int exit_code = kDone;
-    for (const AddCommand add : commands()) add(app, exit_code);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help_or_version) {
-        return app.exit(help_or_version);
-    } catch (const CLI::ParseError& error) {
-        return report_error(fmt::format("{} (ricochet --help lists commands and options)", error.what()), kWrongInput);
-    }
+    for (const AddCommand add : commands()) add(line.program(), exit_code);
+    if (const auto printed = line.parse(argc, argv, "ricochet --help lists commands and options")) return *printed;
     return exit_code;
 }
 

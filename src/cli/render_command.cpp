@@ -1,8 +1,7 @@
-#include "cli/render_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -217,11 +216,11 @@ void render(const RenderArguments& arguments) {
     }
 }
 
-void add_options(CLI::App& command, RenderArguments& a) {
-    command.add_option("DIR", a.folder, "Output folder of a run")->required();
-    command.add_option("--output", a.output, "Picture (.png) or film (.mp4, needs ffmpeg)")->required();
-    command.add_option("--frame", a.frame, "Step number, last, or all (numbered pictures)")->capture_default_str();
-    command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+void add_options(cli::Command command, RenderArguments& a) {
+    command.add_option("DIR", a.folder, "Output folder of a run").required();
+    command.add_option("--output", a.output, "Picture (.png) or film (.mp4, needs ffmpeg)").required();
+    command.add_option("--frame", a.frame, "Step number, last, or all (numbered pictures)").show_default();
+    command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels").show_default();
     command.add_option("--camera", a.camera, "px,py,pz,tx,ty,tz[,fov]: position, target, vertical degrees");
     command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
     command.add_option("--color-by", a.color_by,
@@ -229,29 +228,28 @@ void add_options(CLI::App& command, RenderArguments& a) {
     command
         .add_option("--draw", a.drawing,
                     "Particles as spheres, soft discs by opacity, or glow that adds up (auto: soft with an opacity)")
-        ->capture_default_str();
+        .show_default();
     command.add_flag("--night", a.night, "A dark sky");
-    command.add_option("--color-map", a.color_map, "viridis, plasma or turbo")->capture_default_str();
+    command.add_option("--color-map", a.color_map, "viridis, plasma or turbo").show_default();
     command.add_option("--range", a.range, "low,high of the colours (default: from the frames)");
-    command.add_option("--collider-color", a.collider_color, "plain, or hits per triangle")->capture_default_str();
-    command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)")->allow_extra_args(false);
-    command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)")
-        ->allow_extra_args(false);
+    command.add_option("--collider-color", a.collider_color, "plain, or hits per triangle").show_default();
+    command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)").one_value_each();
+    command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)").one_value_each();
     command.add_option("--particle-radius", a.particle_radius, "Radius drawn, m (default: the particles' own)");
-    command.add_option("--samples", a.samples, "Rays a pixel")->capture_default_str();
-    command.add_option("--exposure", a.exposure, "Brightness factor")->capture_default_str();
-    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film")->capture_default_str();
+    command.add_option("--samples", a.samples, "Rays a pixel").show_default();
+    command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
+    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film").show_default();
     command.add_option("--threads", a.threads, "Worker threads (default: all)");
     command.add_flag("--quiet", a.quiet, "No progress, no report");
 }
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int& exit_code) {
-    CLI::App* command = app.add_subcommand("render", "Make a picture or a film of a run");
+void add_render_command(cli::Command program, int& exit_code) {
+    cli::Command command = program.add_command("render", "Make a picture or a film of a run");
     const auto arguments = std::make_shared<RenderArguments>();
-    add_options(*command, *arguments);
-    command->callback([arguments, &exit_code] {
+    add_options(command, *arguments);
+    command.on_call([arguments, &exit_code] {
         const InterruptGuard guard;
         try {
             render(*arguments);

@@ -1,4 +1,4 @@
-#include "cli/run_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -253,17 +253,17 @@ int run(const RunArguments& arguments) {
     return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
 }
 
-void add_options(CLI::App& command, RunArguments& a) {
+void add_options(cli::Command command, RunArguments& a) {
     add_scene_arguments(command, a.scene);
     command.add_option("--output", a.output, "Folder for frames and summary: new, empty, or an earlier run's")
-        ->type_name("DIR")
-        ->required();
+        .type_name("DIR")
+        .required();
     command
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
-        ->type_name("FILE.csv");
-    command.add_option("--threads", a.threads, "Worker threads (default: all processors)")->type_name("N");
+        .type_name("FILE.csv");
+    command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
     command.add_option("--response", a.response, "How impacts are answered, in place of what the scene says")
-        ->type_name("exact|rollback|project|penalty");
+        .type_name("exact|rollback|project|penalty");
     command.add_flag("--quiet", a.quiet, "No progress, no report");
     command.add_flag(
         "--verify", a.verify,
@@ -274,11 +274,11 @@ void add_options(CLI::App& command, RunArguments& a) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& exit_code) {
+void add_run_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<RunArguments>();
-    CLI::App* const command = app.add_subcommand("run", "Simulate a scene; write frames and a summary");
-    add_options(*command, *arguments);
-    command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+    cli::Command command = program.add_command("run", "Simulate a scene; write frames and a summary");
+    add_options(command, *arguments);
+    command.on_call([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace ricochet

@@ -2,10 +2,10 @@
 /// The arguments of every command that takes a scene.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
@@ -16,7 +16,7 @@ struct SceneArguments {
 };
 
 /// Adds the scene file and `--set PATH=VALUE`. The arguments must outlive the parser.
-void add_scene_arguments(CLI::App& command, SceneArguments& arguments);
+void add_scene_arguments(cli::Command command, SceneArguments& arguments);
 
 /// Reads the scene and prints its warnings on standard error. Throws SceneError.
 [[nodiscard]] SceneDescription load_scene(const SceneArguments& arguments);

@@ -1,4 +1,4 @@
-#include "cli/schema_command.h"
+#include "cli/commands.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 
 namespace ricochet {
 
-void add_schema_command(CLI::App& app, int& exit_code) {
+void add_schema_command(cli::Command program, int& exit_code) {
     const auto markdown = std::make_shared<bool>(false);
-    CLI::App* const command = app.add_subcommand("schema", "Prints the JSON Schema of scene files");
-    command->add_flag("--markdown", *markdown, "Print the reference page instead");
-    command->callback([markdown, &exit_code] {
+    cli::Command command = program.add_command("schema", "Prints the JSON Schema of scene files");
+    command.add_flag("--markdown", *markdown, "Print the reference page instead");
+    command.on_call([markdown, &exit_code] {
         fmt::print("{}", *markdown ? scene_reference() : scene_schema());
         exit_code = 0;
     });

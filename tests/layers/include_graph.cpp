@@ -61,7 +61,7 @@ constexpr std::array kDoors = {
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|cli)/.*\\.cpp|tests/.*"},
-    Door{"CLI/", "src/cli/.*|meshes/[^/]*\\.cpp"},
+    Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp"},
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},

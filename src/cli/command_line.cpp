@@ -1,0 +1,96 @@
+#include "cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet::cli {
+
+Option& Option::type_name(const std::string& name) {
+    option_->type_name(name);
+    return *this;
+}
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+
+Option& Option::show_default() {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option& Option::one_value_each() {
+    option_->allow_extra_args(false);
+    return *this;
+}
+
+Option& Option::needs(const Option& other) {
+    option_->needs(other.option_);
+    return *this;
+}
+
+Option& Option::range(int low, int high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+
+template <typename Value>
+Option Command::add_option(const std::string& name, Value& value, const std::string& help) {
+    return Option(app_->add_option(name, value, help));
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template Option Command::add_option(const std::string&, double&, const std::string&);
+template Option Command::add_option(const std::string&, int&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint32_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+
+void Command::add_flag(const std::string& name, bool& value, const std::string& help) {
+    app_->add_flag(name, value, help);
+}
+
+Command Command::add_command(const std::string& name, const std::string& help) {
+    return Command(app_->add_subcommand(name, help));
+}
+
+void Command::on_call(std::function<void()> action) { app_->callback(std::move(action)); }
+
+bool Command::is_called() const { return app_->parsed(); }
+
+CommandLine::CommandLine(const std::string& help, const std::string& program)
+    : app_(std::make_unique<CLI::App>(help, program)) {
+    app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::program() { return Command(app_.get()); }
+
+void CommandLine::add_version(std::function<std::string()> text) {
+    app_->set_version_flag("--version", std::move(text), "Print the versions of ricochet and its libraries");
+}
+
+std::optional<int> CommandLine::parse(int argc, char** argv, const std::string& hint) {
+    try {
+        app_->parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+        return app_->exit(help_or_version);
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} ({})", error.what(), hint));
+    }
+    return std::nullopt;
+}
+
+}  // namespace ricochet::cli

@@ -1,0 +1,32 @@
+/// \file
+/// The commands of the program. Each function adds its command, whose action sets exit_code and throws InputError and
+/// RunError; runs and pictures that a signal interrupts set it to 128 + signal.
+#pragma once
+
+#include "cli/command_line.h"
+
+namespace ricochet {
+
+/// `bench`: what collisions cost, beside what the ray library does by itself on the same stretches.
+void add_bench_command(cli::Command program, int& exit_code);
+
+/// `check SCENE [--set PATH=VALUE ...]`: all that is wrong with a scene, without running it.
+void add_check_command(cli::Command program, int& exit_code);
+
+/// `compare SCENE --output DIR`: one scene with several responses at several time steps, what each costs and gets
+/// wrong. docs/compare.md describes what it writes.
+void add_compare_command(cli::Command program, int& exit_code);
+
+/// `info MESH [--json]`: what a mesh file holds and what its defects mean.
+void add_info_command(cli::Command program, int& exit_code);
+
+/// `render DIR --output FILE.png|.mp4`: pictures and films of a run.
+void add_render_command(cli::Command program, int& exit_code);
+
+/// `run SCENE --output DIR`: simulates a scene and writes frames and a summary.
+void add_run_command(cli::Command program, int& exit_code);
+
+/// `schema [--markdown]`: the scene format for editors and for people.
+void add_schema_command(cli::Command program, int& exit_code);
+
+}  // namespace ricochet

@@ -106,7 +106,7 @@ TEST(Advect, DormandPrinceMeetsItsToleranceWithAWallInTheWay) {
     EXPECT_NEAR(simulation.particles().position[0].y, 1.0, 1e-8);
 }
 
-// On the floor z = 0 the flow (-y, x, -1) is the rotation: a circle on the floor from the landing place on.
+// On the floor z = 0 the flow (-y, x, -1) is the rotation: a circle on the floor from where it lands on.
 TEST(Advect, SlidesAlongAPlaneAndAFineMeshAsTheTangentialFlowGoes) {
     const FlowPointer flow = make_flow_sum({make_rotation({}, {0, 0, 1}), make_wind({0, 0, -1})});
     for (const double radius : {0.0, 0.05}) {

@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Sliding,
                          ::testing::Values(IntegratorKind::ballistic, IntegratorKind::symplectic_euler),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-/// A slope through the origin, and a place just off it.
+/// A slope through the origin, and a point just off it.
 struct Slope {
     explicit Slope(double angle)
         : normal{std::sin(angle), 0, std::cos(angle)}, downhill{std::cos(angle), 0, -std::sin(angle)} {}
@@ -371,7 +371,7 @@ TEST(ExactResponse, AParticleLeftOnASurfaceWithoutForcesStaysThere) {
     EXPECT_NEAR(state.position.z, 0.0, 1e-14);
 }
 
-// The safe_position gap depends on the contact point alone, so the mesh's resolution changes no bit.
+// The contact offset depends on the contact point alone, so the mesh's resolution changes no bit.
 TEST(ExactResponse, BouncesAlikeOnTwoTrianglesManyTrianglesAndAPlane) {
     for (const double restitution : {1.0, 0.8}) {
         for (const IntegratorKind kind : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {

@@ -151,14 +151,14 @@ TEST(Rollback, HopsDownASlopeAsTheClosedFormSaysToWithinItsTolerances) {
                 const double time = (2 * n + 1) * t0;
                 const double speed = kG * std::sin(theta) * time;
                 // 1 + 8 (1 + 2 + ... + n) times h sin(theta) below the start.
-                const double way = (1.0 + 4.0 * n * (n + 1)) * std::sin(theta);
-                EXPECT_NEAR(dot(record.position, downhill) - start, way, (2 * n + 1) * tolerance * speed + 1e-10);
+                const double distance = (1.0 + 4.0 * n * (n + 1)) * std::sin(theta);
+                EXPECT_NEAR(dot(record.position, downhill) - start, distance, (2 * n + 1) * tolerance * speed + 1e-10);
             }
         }
     }
 }
 
-// Documented: only the way's chord is looked at.
+// Documented: only the path's chord is tested.
 TEST(Rollback, MissesAnArcThatDipsThroughAPlaneAndIsBackAtTheEndOfTheStep) {
     const double v = 2.0;
     const double back = 2.0 * v / kG;
@@ -176,7 +176,7 @@ TEST(Rollback, MissesAnArcThatDipsThroughAPlaneAndIsBackAtTheEndOfTheStep) {
     }
 }
 
-/// Random places inside a random rock: a sphere's mesh, every vertex moved in and out.
+/// Random points inside a random rock: a sphere's mesh, every vertex moved in and out.
 TriangleMesh rock(std::uint64_t seed) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     RandomSequence random(seed, 0, 0);
@@ -370,13 +370,14 @@ TEST(RollbackContact, ComesToRestAndStaysPut) {
             Course course = course_of(mesh_collider(floor_mesh(1.0, 4)), {"", 0.5, 0.4}, tolerance);
             MovingParticle ball{{{0.1, 0.2, 0.2 + radius}, {}, 1.0, radius, 0.0}, {}, 0, 0};
             for (int k = 0; k < 120; ++k) (void)course.move(ball, 1.0 / 60.0);
-            const Vec3 place = ball.state.position;
-            EXPECT_GT(place.z, radius - 1e-12);
-            // It lands one tolerance's way off at the latest, at the speed that ends in rest or what one step adds.
-            EXPECT_LT(place.z, radius + tolerance * (kG / 60.0 + 1e-3));
+            const Vec3 position = ball.state.position;
+            EXPECT_GT(position.z, radius - 1e-12);
+            // It lands one tolerance's distance off at the latest, at the speed that ends in rest or what one step
+            // adds.
+            EXPECT_LT(position.z, radius + tolerance * (kG / 60.0 + 1e-3));
             for (int k = 0; k < 1000; ++k) {
                 ASSERT_TRUE(course.move(ball, 1.0 / 60.0).resting) << k;
-                ASSERT_EQ(ball.state.position, place) << k;
+                ASSERT_EQ(ball.state.position, position) << k;
             }
         }
     }

@@ -1,4 +1,4 @@
-#include "ricochet/response/impact.h"
+#include "ricochet/response/impact_answer.h"
 
 #include <array>
 #include <cmath>

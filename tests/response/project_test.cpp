@@ -148,7 +148,7 @@ TEST_P(ProjectOnASlope, CreepsByTheFreeWayOfAStepWhereFrictionHolds) {
                                   kOffset, GetParam());
         MovingParticle block = particle_at(kOffset * kNormal);
         for (int k = 1; k <= 200; ++k) {
-            EXPECT_TRUE(course.move(block, step).resting) << k;
+            EXPECT_TRUE(course.move(block, step).is_resting()) << k;
             EXPECT_EQ(block.state.velocity, Vec3{});
         }
         const double crept = 200 * share * kG * std::sin(kAngle) * step * step;

@@ -76,7 +76,7 @@ MoveOutcome Advector::run() {
     manifold_.touch_again(particle_.contact, touch_rule());
     particle_.contact = {};
     const MoveOutcome& outcome = step_.outcome();
-    while (step_.remaining() > 0.0 && !outcome.frozen) {
+    while (step_.remaining() > 0.0 && !outcome.is_frozen()) {
         if (outcome.bounces + surface_segments_ >= rules_.settings.bounce_budget) {
             step_.stop();
             break;
@@ -87,7 +87,7 @@ MoveOutcome Advector::run() {
             advance();
         }
     }
-    if (!outcome.frozen) finish();
+    if (!outcome.is_frozen()) finish();
     return outcome;
 }
 
@@ -110,7 +110,7 @@ void Advector::advance() {
         }
     }
     const auto contact = step_.follow(path);
-    if (step_.outcome().frozen) return;
+    if (step_.outcome().is_frozen()) return;
     manifold_.touch_again(touch_rule());
     if (contact) answer(*contact);
 }
@@ -142,10 +142,12 @@ void Advector::finish() {
     state_.velocity = pressed && stops_at_walls()
                           ? Vec3{}
                           : FlowAlong(flow_, manifold_.normals()).velocity(state_.position, state_.time);
-    outcome.resting = pressed && state_.velocity == Vec3{};
+    if (!pressed) return;
+    particle_.contact = manifold_.kept();
+    if (state_.velocity != Vec3{}) return;
     // In a steady flow what does not move never will.
-    outcome.held = outcome.resting && flow_.is_steady() && outcome.unsimulated_time == 0.0;
-    if (pressed) particle_.contact = manifold_.kept();
+    const bool stays = flow_.is_steady() && outcome.unsimulated_time == 0.0;
+    outcome.end = stays ? MoveEnd::held : MoveEnd::resting;
 }
 
 bool Advector::is_pressed_at(double time) const {

@@ -242,8 +242,8 @@ void ContactPhase::rest(const Vec3& forces, bool held) {
     particle_.spin = Vec3{};
     wait(step_.remaining(), forces);
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
-    step_.outcome().resting = true;
-    step_.outcome().held = held && began_still_ && state_.position == start && began_ == manifold_.kept();
+    const bool stays = held && began_still_ && state_.position == start && began_ == manifold_.kept();
+    step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
     particle_.contact = manifold_.kept();
 }
 

@@ -38,10 +38,10 @@ MoveOutcome ParticleMover::run() {
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, is_first);
-        while (contact && !outcome.absorbed && outcome.bounces < rules_.settings.bounce_budget) {
+        while (contact && !outcome.is_absorbed() && outcome.bounces < rules_.settings.bounce_budget) {
             contact = answer(flight, *contact);
         }
-        if (outcome.absorbed) break;
+        if (outcome.is_absorbed()) break;
         if (contact) {
             step_.stop();
             break;
@@ -66,7 +66,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
     step_.impact().reflect(contact.all());
-    if (step_.outcome().absorbed) return std::nullopt;
+    if (step_.outcome().is_absorbed()) return std::nullopt;
     return contact_phase_.begin(flight, contact, arriving);
 }
 

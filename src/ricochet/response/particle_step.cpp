@@ -32,7 +32,7 @@ std::optional<Contact> ParticleStep::follow(const Path& path) {
 
 bool ParticleStep::can_follow(const Path& path) {
     if (can_be_followed(path)) return true;
-    outcome_.frozen = true;
+    outcome_.end = MoveEnd::frozen;
     remaining_ = 0.0;
     return false;
 }

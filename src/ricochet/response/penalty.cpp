@@ -99,12 +99,12 @@ MoveOutcome PenaltyMover::run(double duration) {
     if (rules_.settings.penalty.substeps > 1) survey(duration);
     for (std::uint32_t k = 0; k < rules_.settings.penalty.substeps; ++k) {
         if (!substep(h)) {
-            outcome_.frozen = true;
+            outcome_.end = MoveEnd::frozen;
             return outcome_;
         }
-        if (outcome_.absorbed) return outcome_;
+        if (outcome_.is_absorbed()) return outcome_;
     }
-    outcome_.resting = !seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed;
+    if (!seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed) outcome_.end = MoveEnd::resting;
     return outcome_;
 }
 
@@ -253,13 +253,13 @@ void PenaltyMover::begin_contacts() {
         const ContactSurface surface{view.surface, view.normal, true};
         if (impact_.material_of(view.surface).is_random()) {
             impact_.reflect({&surface, 1});
-            if (outcome_.absorbed) return;
+            if (outcome_.is_absorbed()) return;
         } else {
             impact_.push(view.surface, Vec3{}, true);
             impact_.record(surface, state_.velocity);
             // The contact's impulse is yet to come; what arrives along the normal stands for it.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
-            if (outcome_.absorbed) return;
+            if (outcome_.is_absorbed()) return;
         }
     }
 }

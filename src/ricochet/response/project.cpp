@@ -31,7 +31,7 @@ public:
     MoveOutcome run(double duration) {
         pull_ = rules_.forces.acceleration(state_);
         if (!fly(duration)) {
-            outcome_.frozen = true;
+            outcome_.end = MoveEnd::frozen;
             return outcome_;
         }
         state_.position = put_back(flush_tiny(state_.position));
@@ -98,7 +98,7 @@ private:
         if (!approaches) return;
         ++outcome_.bounces;
         is_slow(duration) ? impact_.land(contacts_) : impact_.reflect(contacts_);
-        outcome_.resting = state_.velocity == Vec3{} && !outcome_.absorbed;
+        if (state_.velocity == Vec3{} && !outcome_.is_absorbed()) outcome_.end = MoveEnd::resting;
     }
 
     /// True when what would rebound is slower than the resting speed. What the forces have added in this step is not

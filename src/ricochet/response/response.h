@@ -70,15 +70,25 @@ struct MovingParticle {
     ContactCandidates candidates = {};  ///< by this step (MoveOutcome::candidates of the last one)
 };
 
+/// How a particle ends a step.
+enum class MoveEnd : std::uint8_t {
+    moving,     ///< in flight, sliding or rolling
+    resting,    ///< at rest on what it touches
+    held,       ///< at rest because friction and its support hold it: it stays while the forces do
+    frozen,     ///< the state left the range of the arithmetic; the particle was not moved
+    absorbed,   ///< an impact removed it
+    shattered,  ///< an impact that reached its shatter_impulse removed it
+};
+
 /// What happened to one particle in one step.
 struct MoveOutcome {
+    [[nodiscard]] bool is_resting() const { return end == MoveEnd::resting || end == MoveEnd::held; }
+    [[nodiscard]] bool is_frozen() const { return end == MoveEnd::frozen; }
+    [[nodiscard]] bool is_absorbed() const { return end == MoveEnd::absorbed || end == MoveEnd::shattered; }
+
+    MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< impacts
     double unsimulated_time = 0.0;  ///< s that the budget cut off
-    bool resting = false;           ///< ended the step at rest on its support
-    bool held = false;              ///< at rest because friction and its support hold it: it stays while forces do
-    bool frozen = false;            ///< the state left the range of the arithmetic; the particle was not moved
-    bool absorbed = false;          ///< an impact removed it
-    bool shattered = false;         ///< it was absorbed because an impact reached its shatter_impulse
     std::uint32_t stayed = 0;       ///< impacts after which no certified position nearer to the surface was found
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
     double depth = 0.0;             ///< m, how deep it was seen behind a surface, before anything put it right

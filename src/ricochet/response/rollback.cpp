@@ -53,7 +53,7 @@ private:
     }
 
     [[nodiscard]] static bool is_out(const SystemParticle& p) {
-        return p.is_out || p.outcome.frozen || p.outcome.absorbed;
+        return p.is_out || p.outcome.is_frozen() || p.outcome.is_absorbed();
     }
 
     /// Where the particle stands in time: a tolerance ahead of the system after a collision.
@@ -92,7 +92,7 @@ private:
             } else if (found.blocked) {
                 mover.answer();
             }
-            if (p.outcome.absorbed) return;
+            if (p.outcome.is_absorbed()) return;
             rest_in_pit(p, mover, found.free, at);
             mover.keep_contact();
         }

@@ -71,7 +71,7 @@ void RollbackMover::run(double duration) {
             break;
         }
         if (found.blocked) answer();
-        if (outcome_.absorbed) return;
+        if (outcome_.is_absorbed()) return;
         idle = in_contact() && found.free < kLeastProgress * duration ? idle + 1 : 0;
         if (idle > kMaxSlowContacts) {
             rest(remaining);
@@ -88,18 +88,18 @@ void RollbackMover::rest(double duration) {
     manifold_.record_push(-state_.velocity - duration * pull_, duration, impact_);
     state_.velocity = particle_.spin = Vec3{};
     state_.time += duration;
-    outcome_.resting = true;
+    outcome_.end = MoveEnd::resting;
 }
 
 bool RollbackMover::begin(double duration) {
     interval_.reset();
     from_ = state_.position;
-    outcome_.resting = false;
+    outcome_.end = MoveEnd::moving;
     manifold_.touch_again(touch_rule());
     if (in_contact()) plan_contact(duration);
     if (!interval_) flight_ = flight_for(duration);
     if (can_be_followed(flight_.path)) return true;
-    outcome_.frozen = true;
+    outcome_.end = MoveEnd::frozen;
     return false;
 }
 
@@ -176,7 +176,7 @@ void RollbackMover::follow_interval(double elapsed) {
     state_.velocity = motion.velocity;
     particle_.spin = rests ? Vec3{} : motion.spin;
     manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
-    outcome_.resting = rests;
+    outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
 }
@@ -184,7 +184,7 @@ void RollbackMover::follow_interval(double elapsed) {
 /// Bounces, or stays on what it has met when all rebounds are slow and something presses it on.
 void RollbackMover::answer() {
     ++outcome_.bounces;
-    outcome_.resting = false;
+    outcome_.end = MoveEnd::moving;
     Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, met_);
     const bool on_surface = std::any_of(met_.begin(), met_.end(), [&](const ContactSurface& met) {
         return rules_.world.point_on(met.surface, state_.position);

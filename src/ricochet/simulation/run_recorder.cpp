@@ -20,7 +20,7 @@ std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
 void BlockRecord::add(const MoveOutcome& outcome) {
     contacts += outcome.bounces;
     stayed += outcome.stayed;
-    frozen += outcome.frozen ? 1 : 0;
+    frozen += outcome.is_frozen() ? 1 : 0;
     bounces_max = std::max(bounces_max, outcome.bounces);
     trials += outcome.trials;
     penetrations += outcome.depth > 0.0 ? 1 : 0;

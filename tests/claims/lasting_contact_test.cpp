@@ -106,7 +106,7 @@ TEST(TurningFriction, StopsASlideAtTheSamePlaceForAnyTimeStep) {
         Course course({plane_collider({0, 0, 0}, {0, 0, 1})}, {"", 0.0, 0.3}, {2, 0, -10});
         MovingParticle point = particle_at({0, 0, 1e-15}, {0.3, 1, 0});
         bool resting = false;
-        for (int k = 0; k * time_step < 1.999; ++k) resting = course.move(point, time_step).resting;
+        for (int k = 0; k * time_step < 1.999; ++k) resting = course.move(point, time_step).is_resting();
         EXPECT_TRUE(resting) << time_step;
         EXPECT_EQ(point.state.velocity, Vec3{});
         return point.state.position;
@@ -141,7 +141,7 @@ TEST(SlowBounces, EndInRestAlsoWhereOnlyTheThresholdOrThePartlyMirroringWallTake
         for (int k = 0; k < 400; ++k) {
             const MoveOutcome outcome = course.move(point, 0.01);
             ASSERT_EQ(outcome.unsimulated_time, 0.0) << k;
-            resting = outcome.resting;
+            resting = outcome.is_resting();
         }
         EXPECT_TRUE(resting);
     }

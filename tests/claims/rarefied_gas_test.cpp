@@ -10,7 +10,7 @@
 #include "collision/worlds.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
-#include "ricochet/response/bounce.h"
+#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/exact.h"
 #include "support/counts.h"
 #include "support/statistics.h"

@@ -126,7 +126,7 @@ TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
     for (int k = 0; k < 600; ++k) {
         const MoveOutcome outcome = course.move(sphere, 0.01);
         EXPECT_EQ(outcome.unsimulated_time, 0.0);
-        resting = outcome.resting;
+        resting = outcome.is_resting();
         for (const auto& [plane, surface] : course.world.planes()) {
             ASSERT_GE(signed_distance(sphere.state.position, plane), 0.3 - sphere_tolerance(0.3, 2.0));
         }

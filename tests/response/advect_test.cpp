@@ -54,7 +54,7 @@ Particle at(const Vec3& position, double radius = 0.0) {
 void run(Simulation& simulation) {
     while (!simulation.finished()) simulation.step();
     EXPECT_EQ(simulation.statistics().violations, 0U);
-    EXPECT_EQ(simulation.statistics().frozen, 0U);
+    EXPECT_EQ(simulation.statistics().is_frozen(), 0U);
 }
 
 TEST(Advect, CarriesRoundACircleAndStoresTheFlowsVelocity) {
@@ -106,7 +106,7 @@ TEST(Advect, DormandPrinceMeetsItsToleranceWithAWallInTheWay) {
     EXPECT_NEAR(simulation.particles().position[0].y, 1.0, 1e-8);
 }
 
-// On the floor z = 0 the flow (-y, x, -1) is the rotation: a circle on the floor from the landing place on.
+// On the floor z = 0 the flow (-y, x, -1) is the rotation: a circle on the floor from where it lands on.
 TEST(Advect, SlidesAlongAPlaneAndAFineMeshAsTheTangentialFlowGoes) {
     const FlowPointer flow = make_flow_sum({make_rotation({}, {0, 0, 1}), make_wind({0, 0, -1})});
     for (const double radius : {0.0, 0.05}) {
@@ -145,7 +145,7 @@ TEST(Advect, SlidesIntoAnEdgeAndAlongItAndStaysInACorner) {
     EXPECT_LT(length(corner.particles().position[0] - Vec3(1, 0.75, 0)), 1e-12);
     EXPECT_LT(length(corner.particles().position[1] - Vec3(0.875, 0.625, 0.125)), 1e-12);
     EXPECT_EQ(corner.particles().velocity[0], Vec3());
-    EXPECT_EQ(corner.statistics().resting, 2U);
+    EXPECT_EQ(corner.statistics().is_resting(), 2U);
     EXPECT_EQ(corner.statistics().asleep, 2U);
 }
 

@@ -1,4 +1,4 @@
-#include "ricochet/response/bounce.h"
+#include "ricochet/response/contact_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/response/contact_mode.h"
+#include "ricochet/response/contact_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -14,19 +14,19 @@ const std::array<Vec3, 1> kFloor{Vec3{0, 0, 1}};
 
 std::array<Vec3, 1> slope(double angle) { return {Vec3{std::sin(angle), 0, std::cos(angle)}}; }
 
-Stretch plan_slide(const Vec3& velocity, const Vec3& a, std::span<const Vec3> normals, double friction,
-                   double duration) {
-    return plan_stretch({velocity, {}}, 0.0, a, normals, {friction, 0.0, 1.0}, duration);
+ContactInterval plan_slide(const Vec3& velocity, const Vec3& a, std::span<const Vec3> normals, double friction,
+                           double duration) {
+    return plan_interval({velocity, {}}, 0.0, a, normals, {friction, 0.0, 1.0}, duration);
 }
 
 TEST(ContactMode, RestsOnAFloorWithoutPull) {
-    const Stretch slide = plan_slide({}, {0, 0, -kG}, kFloor, 0.0, 2.0);
+    const ContactInterval slide = plan_slide({}, {0, 0, -kG}, kFloor, 0.0, 2.0);
     EXPECT_TRUE(slide.at_rest);
     EXPECT_EQ(slide.duration, 2.0);
 }
 
 TEST(ContactMode, SlidesFreelyWithoutFriction) {
-    const Stretch slide = plan_slide({3, 0, -1}, {0, 0, -kG}, kFloor, 0.0, 2.0);
+    const ContactInterval slide = plan_slide({3, 0, -1}, {0, 0, -kG}, kFloor, 0.0, 2.0);
     EXPECT_FALSE(slide.at_rest);
     EXPECT_FALSE(slide.stops);
     EXPECT_EQ(slide.motion.velocity, (Vec3{3, 0, 0}));
@@ -34,12 +34,12 @@ TEST(ContactMode, SlidesFreelyWithoutFriction) {
 }
 
 TEST(ContactMode, FrictionStopsASlideAfterTheClosedFormTime) {
-    const Stretch slide = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 10.0);
+    const ContactInterval slide = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 10.0);
     EXPECT_TRUE(slide.stops);
     EXPECT_NEAR(slide.duration, 5.0 / (0.5 * kG), 1e-15);
     EXPECT_NEAR(slide.acceleration.x, -0.5 * kG * 0.6, 1e-15);
     EXPECT_NEAR(slide.acceleration.y, -0.5 * kG * 0.8, 1e-15);
-    const Stretch shorter = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 0.1);
+    const ContactInterval shorter = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 0.1);
     EXPECT_FALSE(shorter.stops);
     EXPECT_EQ(shorter.duration, 0.1);
 }
@@ -47,7 +47,7 @@ TEST(ContactMode, FrictionStopsASlideAfterTheClosedFormTime) {
 TEST(ContactMode, StaticFrictionHoldsUpToItsLimit) {
     const double angle = 0.4;
     EXPECT_TRUE(plan_slide({}, {0, 0, -kG}, slope(angle), std::tan(angle) * 1.001, 1.0).at_rest);
-    const Stretch slips = plan_slide({}, {0, 0, -kG}, slope(angle), std::tan(angle) * 0.5, 1.0);
+    const ContactInterval slips = plan_slide({}, {0, 0, -kG}, slope(angle), std::tan(angle) * 0.5, 1.0);
     EXPECT_FALSE(slips.at_rest);
     EXPECT_NEAR(length(slips.acceleration), 0.5 * kG * std::sin(angle), 1e-14);
     EXPECT_GT(slips.acceleration.x, 0.0);
@@ -57,7 +57,7 @@ TEST(ContactMode, StaticFrictionHoldsUpToItsLimit) {
 TEST(ContactMode, SpeedsUpDownhillAgainstFriction) {
     const double angle = 0.6;
     const Vec3 downhill{std::cos(angle), 0, -std::sin(angle)};
-    const Stretch slide = plan_slide(2.0 * downhill, {0, 0, -kG}, slope(angle), 0.2, 1.0);
+    const ContactInterval slide = plan_slide(2.0 * downhill, {0, 0, -kG}, slope(angle), 0.2, 1.0);
     EXPECT_NEAR(dot(slide.acceleration, downhill), kG * (std::sin(angle) - 0.2 * std::cos(angle)), 1e-14);
     EXPECT_FALSE(slide.stops);
 }
@@ -70,7 +70,7 @@ TEST(ContactMode, AValleyOfThreeWallsHoldsWithoutFriction) {
 
 TEST(ContactMode, AValleyOfTwoWallsLeavesTheWayAlongIt) {
     const std::array<Vec3, 2> valley{normalized(Vec3{1, 0, 1}), normalized(Vec3{-1, 0, 1})};
-    const Stretch slide = plan_slide({0, 2, -3}, {0, 0, -kG}, valley, 0.0, 1.0);
+    const ContactInterval slide = plan_slide({0, 2, -3}, {0, 0, -kG}, valley, 0.0, 1.0);
     EXPECT_FALSE(slide.at_rest);
     EXPECT_NEAR(length(slide.motion.velocity - Vec3{0, 2, 0}), 0.0, 1e-15);
     EXPECT_NEAR(length(slide.acceleration), 0.0, 1e-14);

@@ -58,14 +58,14 @@ TEST_P(BouncingBall, RestsAfterTheClosedFormTime) {
     const double total = std::sqrt(2.0 / kG) * (1.0 + e) / (1.0 - e);
     Course course({ground()}, {"", e, 0.0}, {0, 0, -kG});
     ForceInput state = at({0, 0, 1});
-    EXPECT_FALSE(course.move(state, 0.9 * total).resting);
+    EXPECT_FALSE(course.move(state, 0.9 * total).is_resting());
     const MoveOutcome outcome = course.move(state, 0.2 * total);
-    EXPECT_TRUE(outcome.resting);
+    EXPECT_TRUE(outcome.is_resting());
     EXPECT_EQ(state.velocity, Vec3{});
     EXPECT_GT(state.position.z, 0.0);
     EXPECT_LT(state.position.z, 1e-12);
     const Vec3 before = state.position;
-    EXPECT_TRUE(course.move(state, 1.0).resting);
+    EXPECT_TRUE(course.move(state, 1.0).is_resting());
     EXPECT_EQ(state.position, before);
 }
 
@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Sliding,
                          ::testing::Values(IntegratorKind::ballistic, IntegratorKind::symplectic_euler),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-/// A slope through the origin, and a place just off it.
+/// A slope through the origin, and a point just off it.
 struct Slope {
     explicit Slope(double angle)
         : normal{std::sin(angle), 0, std::cos(angle)}, downhill{std::cos(angle), 0, -std::sin(angle)} {}
@@ -223,7 +223,7 @@ TEST_P(Sliding, StaticFrictionHolds) {
     ForceInput state = at(1e-15 * slope.normal);
     (void)course.move(state, 0.01);
     const Vec3 settled = state.position;
-    for (int k = 0; k < 1000; ++k) EXPECT_TRUE(course.move(state, 0.01).resting);
+    for (int k = 0; k < 1000; ++k) EXPECT_TRUE(course.move(state, 0.01).is_resting());
     EXPECT_EQ(state.velocity, Vec3{});
     EXPECT_EQ(state.position, settled);
 }
@@ -233,7 +233,7 @@ TEST_P(Sliding, FrictionStopsItAfterTheClosedFormDistance) {
     ForceInput state = at({0, 0, 1e-15}, {2, 0, 0});
     bool resting = false;
     const double dt = 1.0 / 512;
-    for (int k = 0; k < 512; ++k) resting = course.move(state, dt).resting;
+    for (int k = 0; k < 512; ++k) resting = course.move(state, dt).is_resting();
     EXPECT_TRUE(resting);
     EXPECT_EQ(state.velocity, Vec3{});
     const double distance = 4.0 / (2.0 * 0.5 * kG);
@@ -290,7 +290,7 @@ bool settles_in(Course& course, ForceInput& state, int steps) {
     for (int k = 0; k < steps; ++k) {
         const MoveOutcome outcome = course.move(state, 0.01);
         EXPECT_EQ(outcome.unsimulated_time, 0.0) << k;
-        resting = outcome.resting;
+        resting = outcome.is_resting();
     }
     return resting;
 }
@@ -327,7 +327,7 @@ TEST(PitOfFourFaces, EndsCirclingInRestInsteadOfSpendingTheBudget) {
         EXPECT_LT(outcome.bounces, 500U) << "step " << step;
         for (const Vec3& normal : normals) EXPECT_GT(dot(state.position, normal), 0.0) << "step " << step;
     }
-    EXPECT_TRUE(outcome.resting);
+    EXPECT_TRUE(outcome.is_resting());
     EXPECT_LT(length(state.position), 1e-4);
 }
 
@@ -351,7 +351,7 @@ TEST(ExactResponse, AParticleExactlyOnASurfaceIsOnTheSideOfTheNormal) {
             const MoveOutcome outcome = course.move(rests, 0.1);
             EXPECT_LE(outcome.bounces, 2U);
             EXPECT_GT(rests.position.z, 0.0);
-            EXPECT_TRUE(outcome.resting);
+            EXPECT_TRUE(outcome.is_resting());
             ForceInput rises = at({0.1, 0.2, 0}, {0, 0, 5});
             EXPECT_EQ(course.move(rises, 0.1).bounces, 0U);
             EXPECT_GT(rises.position.z, 0.4);
@@ -371,7 +371,7 @@ TEST(ExactResponse, AParticleLeftOnASurfaceWithoutForcesStaysThere) {
     EXPECT_NEAR(state.position.z, 0.0, 1e-14);
 }
 
-// The safe_position gap depends on the contact point alone, so the mesh's resolution changes no bit.
+// The contact offset depends on the contact point alone, so the mesh's resolution changes no bit.
 TEST(ExactResponse, BouncesAlikeOnTwoTrianglesManyTrianglesAndAPlane) {
     for (const double restitution : {1.0, 0.8}) {
         for (const IntegratorKind kind : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {
@@ -422,7 +422,7 @@ TEST(ExactResponse, MomentumIsBookedInEveryKindOfContact) {
             Vec3 given;
             bool resting = false;
             for (int k = 0; k < 400; ++k) {
-                resting = course.move(particle, 0.01).resting;
+                resting = course.move(particle, 0.01).is_resting();
                 for (const SurfaceHit& hit : course.scratch.hits) given += hit.impulse;
                 const double time = 0.01 * (k + 1);
                 const Vec3 expected = 2.0 * (time * Vec3{0, 0, -kG} - (particle.state.velocity - start));
@@ -447,18 +447,18 @@ TEST(ExactResponse, RefusesToMoveStatesBeyondTheArithmetic) {
     for (const Vec3& v : {Vec3{1e300, 0, 0}, Vec3{0, std::nan(""), 0}, Vec3{0, 0, -INFINITY}}) {
         ForceInput state = at({0, 0, 1}, v);
         const MoveOutcome outcome = course.move(state, 1.0);
-        EXPECT_TRUE(outcome.frozen);
+        EXPECT_TRUE(outcome.is_frozen());
         EXPECT_EQ(state.position, (Vec3{0, 0, 1}));
     }
     ForceInput lost = at({0, 0, std::nan("")});
-    EXPECT_TRUE(course.move(lost, 1.0).frozen);
+    EXPECT_TRUE(course.move(lost, 1.0).is_frozen());
 }
 
 TEST(ExactResponse, NeverRestsWhereNothingIsLost) {
     Course course({ground()}, {"", 1.0, 0.0}, {0, 0, -kG});
     ForceInput state = at({0, 0, 1e-9});
     const MoveOutcome outcome = course.move(state, 0.01);
-    EXPECT_FALSE(outcome.resting);
+    EXPECT_FALSE(outcome.is_resting());
     EXPECT_GT(outcome.bounces, 100U);
 }
 

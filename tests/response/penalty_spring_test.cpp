@@ -8,7 +8,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/penalty.h"
-#include "ricochet/response/penalty_contact.h"
 
 namespace ricochet {
 namespace {
@@ -59,9 +58,9 @@ TEST(PenaltySpring, RestitutionOfDampingIsThatOfAContactThatEndsWhenItWouldPull)
 TEST(PenaltySpring, RestitutionHasTheKnownLimits) {
     EXPECT_EQ(restitution_of_damping(0.0), 1.0);
     EXPECT_DOUBLE_EQ(restitution_of_damping(1.0), std::exp(-2.0));
-    for (const double gap : {1e-4, 1e-8, 1e-12, 1e-15}) {  // smooth through critical damping
-        EXPECT_NEAR(restitution_of_damping(1.0 - gap), std::exp(-2.0), gap + 1e-15);
-        EXPECT_NEAR(restitution_of_damping(1.0 + gap), std::exp(-2.0), gap + 1e-15);
+    for (const double offset : {1e-4, 1e-8, 1e-12, 1e-15}) {  // smooth through critical damping
+        EXPECT_NEAR(restitution_of_damping(1.0 - offset), std::exp(-2.0), offset + 1e-15);
+        EXPECT_NEAR(restitution_of_damping(1.0 + offset), std::exp(-2.0), offset + 1e-15);
     }
     EXPECT_EQ(damping_ratio(1.0), 0.0);
     EXPECT_NEAR(damping_ratio(std::exp(-2.0)), 1.0, 1e-12);

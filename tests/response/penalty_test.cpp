@@ -352,7 +352,7 @@ TEST(PenaltyAtWallsOfChance, AbsorbsAtTheBeginningOfAContact) {
         molecule.id = static_cast<std::uint64_t>(i);
         MoveOutcome outcome;
         while (molecule.state.position.z > 0.0) outcome = course.move(molecule, substep);
-        EXPECT_TRUE(outcome.absorbed);
+        EXPECT_TRUE(outcome.is_absorbed());
         EXPECT_EQ(outcome.bounces, 1U);
     }
     Course some = course_of(random_wall(0.3, 0.0), {}, settings_with(IntegratorKind::ballistic, substep));
@@ -362,7 +362,7 @@ TEST(PenaltyAtWallsOfChance, AbsorbsAtTheBeginningOfAContact) {
         MovingParticle molecule = particle_at({0, 0, 0.01}, {1, 0, -3});
         molecule.id = static_cast<std::uint64_t>(i);
         for (int k = 0; k < 10 && molecule.state.position.z > 0.0; ++k) {
-            absorbed += some.move(molecule, substep).absorbed ? 1 : 0;
+            absorbed += some.move(molecule, substep).is_absorbed() ? 1 : 0;
         }
     }
     EXPECT_NEAR(absorbed, 0.3 * count, 5.0 * std::sqrt(0.21 * count) + 1.0);
@@ -394,7 +394,7 @@ TEST(PenaltyRest, ComesToRestWithinAResponsesMeaningOfIt) {
     Course course({mesh_collider(floor_mesh(1.0, 2))}, {"", 0.3, 0.5}, kGravity, ResponseKind::penalty, settings);
     MovingParticle ball = particle_at({0.1, 0.2, 0.5}, {}, 0.05);
     bool resting = false;
-    for (int k = 0; k < 240; ++k) resting = course.move(ball, settings.time_step).resting;
+    for (int k = 0; k < 240; ++k) resting = course.move(ball, settings.time_step).is_resting();
     EXPECT_TRUE(resting);
     EXPECT_EQ(ball.state.position.x, 0.1);
     EXPECT_EQ(ball.state.position.y, 0.2);

@@ -139,19 +139,19 @@ constexpr double kAngle = 0.5;
 const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 
-// A step's way from rest is g sin(theta) dt^2 / 2 of the parabola; symplectic Euler's is twice that.
+// A step's distance from rest is g sin(theta) dt^2 / 2 of the parabola; symplectic Euler's is twice that.
 TEST_P(ProjectOnASlope, CreepsByTheFreeWayOfAStepWhereFrictionHolds) {
-    const double way = GetParam() == IntegratorKind::symplectic_euler ? 1.0 : 0.5;
+    const double share = GetParam() == IntegratorKind::symplectic_euler ? 1.0 : 0.5;
     for (const double step : {0.02, 0.01, 0.001}) {
         SCOPED_TRACE(step);
         Course course = course_of({plane_collider({0, 0, 0}, kNormal)}, {"", 0.4, 1.1 * std::tan(kAngle)}, kGravity,
                                   kOffset, GetParam());
         MovingParticle block = particle_at(kOffset * kNormal);
         for (int k = 1; k <= 200; ++k) {
-            EXPECT_TRUE(course.move(block, step).resting) << k;
+            EXPECT_TRUE(course.move(block, step).is_resting()) << k;
             EXPECT_EQ(block.state.velocity, Vec3{});
         }
-        const double crept = 200 * way * kG * std::sin(kAngle) * step * step;
+        const double crept = 200 * share * kG * std::sin(kAngle) * step * step;
         EXPECT_NEAR(dot(block.state.position, kDownhill) / crept, 1.0, 1e-9);
         EXPECT_GE(dot(block.state.position, kNormal), 0.0);
         EXPECT_LE(dot(block.state.position, kNormal), kOffset * (1.0 + 1e-9));
@@ -168,7 +168,7 @@ TEST_P(ProjectOnASlope, SlidesAboveTheAngleOfFrictionAsCoulombSays) {
         for (int k = 0; k < 100; ++k) (void)course.move(block, kStep);
         const double expected = kG * (std::sin(kAngle) - friction * std::cos(kAngle));
         EXPECT_NEAR(dot(block.state.velocity, kDownhill), expected, 1e-9 * expected);
-        // Braked at the ends of steps only: ahead by up to a step's worth of friction and way.
+        // Braked at the ends of steps only: ahead by up to a step's worth of friction and distance.
         EXPECT_NEAR(dot(block.state.position, kDownhill), 0.5 * expected, kG * kStep);
         EXPECT_NEAR(dot(block.state.position, kNormal), 0.0, 2.0 * kOffset);
     }
@@ -207,9 +207,9 @@ TEST_P(ProjectAtSolids, WhatIsInsideStaysInsideAtModerateSpeed) {
         RandomSequence random(7, 0, 0);
         Flock flock;
         while (flock.particles.size() < 20) {
-            const Vec3 place = 1.2 * random.uniform() * random.unit_vector();
-            if (!oracle.inside(place)) continue;
-            flock.particles.push_back(particle_at(place, (0.5 + random.uniform()) * random.unit_vector(), radius));
+            const Vec3 position = 1.2 * random.uniform() * random.unit_vector();
+            if (!oracle.inside(position)) continue;
+            flock.particles.push_back(particle_at(position, (0.5 + random.uniform()) * random.unit_vector(), radius));
         }
         EXPECT_EQ(flock.fly(course, 400, 0.02, [&](const Vec3& p) { return oracle.inside(p); }), 0);
         EXPECT_GT(flock.bounces, 20U);
@@ -227,9 +227,10 @@ TEST_P(ProjectAtSolids, WhatIsOutsideStaysOutsideAtModerateSpeed) {
         RandomSequence random(8, 0, 0);
         Flock flock;
         while (flock.particles.size() < 20) {
-            const Vec3 place = 1.4 * (Vec3{random.uniform(), random.uniform(), random.uniform()} * 2.0 - Vec3{1, 1, 1});
-            if (oracle.side(place) != Side::outside) continue;
-            flock.particles.push_back(particle_at(place, (0.5 + random.uniform()) * random.unit_vector(), radius));
+            const Vec3 position =
+                1.4 * (Vec3{random.uniform(), random.uniform(), random.uniform()} * 2.0 - Vec3{1, 1, 1});
+            if (oracle.side(position) != Side::outside) continue;
+            flock.particles.push_back(particle_at(position, (0.5 + random.uniform()) * random.unit_vector(), radius));
         }
         EXPECT_EQ(flock.fly(course, 400, 0.02, is_right), 0);
         EXPECT_GT(flock.bounces, 20U);
@@ -305,8 +306,8 @@ TEST(ProjectInACorner, IsPutInFrontOfAllItsWalls) {
         MovingParticle particle = particle_at({0.5, 0.5, 0.5}, v);
         EXPECT_EQ(course.move(particle, 1.0).stayed, 0U);
         EXPECT_EQ(particle.state.velocity, -v);
-        for (const double gap : {particle.state.position.x, particle.state.position.y, particle.state.position.z}) {
-            EXPECT_NEAR(gap, kOffset, 1e-15);
+        for (const double offset : {particle.state.position.x, particle.state.position.y, particle.state.position.z}) {
+            EXPECT_NEAR(offset, kOffset, 1e-15);
         }
     }
 }

@@ -20,22 +20,22 @@ using testing::world_of;
 /// A particle that is watched.
 struct Watched {
     Watched(const SignedDistance& distance, std::size_t colliders, const Vec3& at, double radius = 0.0)
-        : sides(colliders), place(at), watch(distance, sides, radius, lists) {
+        : sides(colliders), position(at), watch(distance, sides, radius, lists) {
         set_first_sides(distance, at, sides);
     }
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
-    /// Goes to a place and stays there.
+    /// Goes to a position and stays there.
     std::vector<Proximity> go(const Vec3& to, double margin = 0.01) {
         std::vector<Proximity> seen;
-        watch.look(to, place, margin, seen);
+        watch.find_near(to, position, margin, seen);
         watch.settle(seen);
-        place = to;
+        position = to;
         return seen;
     }
 
     std::vector<SideMemory> sides;
-    Vec3 place;
+    Vec3 position;
     SideScratch lists;
     SideWatch watch;
 };
@@ -54,7 +54,7 @@ TEST(SideWatch, ABirthOnASurfaceIsOnTheSideOfItsNormal) {
 }
 
 TEST(SideWatch, TellsBehindByTheNumberOfSurfacesOnTheWay) {
-    // Two sheets of one mesh, both facing up, and a ball: between the sheets the nearest place says "above" or "below".
+    // Two sheets of one mesh, both facing up, and a ball: between the sheets the nearest point says "above" or "below".
     TriangleMesh sheets = floor_mesh(4.0, 1);
     const auto count = static_cast<std::uint32_t>(sheets.vertices.size());
     const std::size_t triangles = sheets.triangles.size();
@@ -90,7 +90,7 @@ TEST(SideWatch, SeesHowDeepWhatHasCrossedAPlaneIsAndWhereItCameFrom) {
                 const auto seen = watched.go({0.1, 0, -depth * side});
                 ASSERT_EQ(seen.size(), 1U);
                 EXPECT_TRUE(seen[0].behind);
-                EXPECT_DOUBLE_EQ(seen[0].gap, -depth - radius);
+                EXPECT_DOUBLE_EQ(seen[0].distance, -depth - radius);
                 EXPECT_EQ(seen[0].normal, (Vec3{0, 0, side}));
                 EXPECT_TRUE(watched.watch.in_contact());
             }
@@ -107,7 +107,7 @@ TEST(SideWatch, SeesWithinItsMarginOnly) {
     EXPECT_TRUE(watched.go({0, 0, 0.1101}).empty());
     const auto seen = watched.go({0, 0, 0.1099});
     ASSERT_EQ(seen.size(), 1U);
-    EXPECT_NEAR(seen[0].gap, 0.0099, 1e-15);
+    EXPECT_NEAR(seen[0].distance, 0.0099, 1e-15);
     EXPECT_FALSE(seen[0].behind);
     EXPECT_FALSE(watched.watch.in_contact());
 }
@@ -116,15 +116,15 @@ TEST(SideWatch, ChangesSidesRoundAnOpenRimOnly) {
     const CollisionWorld world = world_of(mesh_collider(floor_mesh(1.0, 4)));
     const SignedDistance distance(world);
     Watched around(distance, 1, {0.5, 0.1, 0.2});
-    for (const Vec3& place : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}})
-        EXPECT_TRUE(around.go(place, 0.4).empty() || !around.watch.in_contact());
+    for (const Vec3& position : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}})
+        EXPECT_TRUE(around.go(position, 0.4).empty() || !around.watch.in_contact());
     (void)around.go({0.5, 0.1, -0.2}, 0.4);
     EXPECT_FALSE(around.watch.in_contact());
     EXPECT_EQ(around.sides[0].side, -1);
     // Unseen since the rim, it belongs to where it comes from.
     Watched unseen(distance, 1, {0.5, 0.1, 0.2});
-    for (const Vec3& place : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}, Vec3{0.5, 0.1, -0.2}}) {
-        EXPECT_TRUE(unseen.go(place).empty());
+    for (const Vec3& position : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}, Vec3{0.5, 0.1, -0.2}}) {
+        EXPECT_TRUE(unseen.go(position).empty());
     }
     const auto seen = unseen.go({0.5, 0.1, 0.3});
     ASSERT_EQ(seen.size(), 1U);
@@ -157,7 +157,7 @@ TEST(SideWatch, SeesTheSameAfterASurvey) {
             ASSERT_EQ(a.size(), b.size()) << i;
             for (std::size_t j = 0; j < a.size(); ++j) {
                 EXPECT_EQ(a[j].collider, b[j].collider);
-                EXPECT_EQ(a[j].gap, b[j].gap);
+                EXPECT_EQ(a[j].distance, b[j].distance);
                 EXPECT_EQ(a[j].normal, b[j].normal);
             }
             seen_any += a.empty() ? 0 : 1;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_mode.h"
-#include "ricochet/response/impact.h"
+#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/impact_answer.h"
 
 namespace ricochet {
 namespace {
@@ -58,11 +58,11 @@ void ContactManifold::set(std::size_t k, const ContactSurface& surface) {
     flat_[k] = surface.flat;
 }
 
-void ContactManifold::meet(std::span<const ContactSurface> surfaces) {
-    for (const ContactSurface& surface : surfaces) note_recent(surface.surface);
+void ContactManifold::remember(std::span<const ContactSurface> surfaces) {
+    for (const ContactSurface& surface : surfaces) remember(surface.surface);
 }
 
-void ContactManifold::note_recent(SurfaceId surface) {
+void ContactManifold::remember(SurfaceId surface) {
     const auto known = recent_.begin() + static_cast<std::ptrdiff_t>(std::min(recent_count_, kMostRecent));
     if (std::find(recent_.begin(), known, surface) == known) recent_[recent_count_++ % kMostRecent] = surface;
 }
@@ -78,7 +78,7 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
 void ContactManifold::touch_again(const KeptContact& kept, const TouchRule& rule) {
     clear();
     for (std::size_t k = 0; k < kept.count; ++k) {
-        note_recent(kept.surfaces[k]);
+        remember(kept.surfaces[k]);
         if (const auto surface = touched(kept.surfaces[k], rule)) add(*surface);
     }
 }

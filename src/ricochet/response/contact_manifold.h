@@ -50,11 +50,12 @@ public:
     void clear();
     void remove(std::size_t k);
 
-    /// Notes surfaces that the particle meets: replace() tries them again.
-    void meet(std::span<const ContactSurface> surfaces);
-    /// The surfaces of an impact, then those met lately that are still touched, in place of what was touched before.
+    /// Keeps surfaces that the particle collides with in mind: replace() tries them again.
+    void remember(std::span<const ContactSurface> surfaces);
+    /// The surfaces of an impact, then the latest others that are still touched. They replace what was touched before.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule);
-    /// Of the surfaces kept those that are still touched, as they are touched now, in place of what was touched before.
+    /// Of the surfaces kept those that are still touched, as they are touched now. They replace what was touched
+    /// before.
     void touch_again(const KeptContact& kept, const TouchRule& rule);
     /// The same of what was touched before.
     void touch_again(const TouchRule& rule) { touch_again(kept(), rule); }
@@ -76,7 +77,7 @@ private:
     static constexpr std::size_t kMostRecent = 6;
 
     void set(std::size_t k, const ContactSurface& surface);
-    void note_recent(SurfaceId surface);
+    void remember(SurfaceId surface);
     [[nodiscard]] bool is_same_point(std::size_t k, const ContactSurface& surface) const;
     [[nodiscard]] std::optional<ContactSurface> touched(SurfaceId surface, const TouchRule& rule) const;
 
@@ -87,8 +88,8 @@ private:
     std::array<Vec3, kMostPoints> normals_;
     std::array<bool, kMostPoints> flat_{};
     std::array<double, kMostPoints> loads_{};      // m/s^2
-    std::array<SurfaceId, kMostRecent> recent_{};  // the last surfaces met, a ring
-    std::size_t recent_count_ = 0;                 // ever met
+    std::array<SurfaceId, kMostRecent> recent_{};  // a ring of the latest surfaces touched
+    std::size_t recent_count_ = 0;                 // ever touched
 };
 
 /// The velocity turned along planes of the given normals, at the same speed; nothing where none of it is along them.

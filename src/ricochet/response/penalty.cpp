@@ -2,14 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/impact.h"
-#include "ricochet/response/penalty_contact.h"
+#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/side_watch.h"
 
 namespace ricochet {
 namespace {
+
+/// Halvings of the bracket of a damping ratio: below the rounding of a double.
+constexpr int kHalvings = 64;
+
+/// A damping ratio beyond that of every restitution that is asked for.
+constexpr double kLargestRatio = 16.0;
+
+/// Mass that a slip at a sphere's contact feels: 1 / (1 + 5 / 2) of its own, since the slip is half spin.
+constexpr double kSlipShare = 2.0 / 7.0;
+
+/// Moment of inertia of a solid sphere over m r^2.
+constexpr double kSphereInertia = 0.4;
+
+/// The brake on a motion v: `most` against it, growing linearly up to the speed, and never more than `stopping` times
+/// v.
+Vec3 brake(const Vec3& v, double most, double speed, double stopping) {
+    return -std::min(most / std::max(length(v), speed), stopping) * v;
+}
+
+/// What contacts do to a particle.
+struct ContactPush {
+    Vec3 acceleration;       ///< m/s^2
+    Vec3 spin_acceleration;  ///< rad/s^2
+};
 
 /// Position and motion.
 struct BodyState {
@@ -47,7 +72,7 @@ private:
     std::optional<BodyState> verlet(const BodyState& now, double h);
     std::optional<BodyState> midpoint(const BodyState& now, double h);
     std::optional<BodyState> rk4(const BodyState& now, double h);
-    bool look(const Vec3& place, std::vector<Proximity>& out);
+    bool find_contacts(const Vec3& position, std::vector<Proximity>& out);
     ContactPush push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts, double weight);
     [[nodiscard]] PenaltyContact contact_of(const Proximity& view) const;
     void begin_contacts();
@@ -65,31 +90,31 @@ private:
     std::vector<Proximity>& stage_;  // contacts where the integrator tries
 };
 
-/// The loop that moves one particle: sub-step after sub-step with whatever pushes it.
+/// Sub-step after sub-step with whatever pushes it.
 MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
     substep_ = h;
     seen_.clear();
-    if (watch_.in_contact()) watch_.look(state_.position, state_.position, 0.0, seen_);
+    if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
     if (rules_.settings.penalty.substeps > 1) survey(duration);
     for (std::uint32_t k = 0; k < rules_.settings.penalty.substeps; ++k) {
         if (!substep(h)) {
-            outcome_.frozen = true;
+            outcome_.end = MoveEnd::frozen;
             return outcome_;
         }
-        if (outcome_.absorbed) return outcome_;
+        if (outcome_.is_absorbed()) return outcome_;
     }
-    outcome_.resting = !seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed;
+    if (!seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed) outcome_.end = MoveEnd::resting;
     return outcome_;
 }
 
-/// One wide look in place of one a sub-step, as long as nothing is near.
+/// One wide query instead of one a sub-step, as long as nothing is near.
 void PenaltyMover::survey(double duration) {
     const double pull = length(rules_.forces.acceleration(state_));
-    const double way = duration * (length(state_.velocity) + duration * pull);
-    const double substep_way = 2.0 * way / rules_.settings.penalty.substeps;
-    if (is_finite(state_.position) && std::isfinite(way))
-        watch_.survey(state_.position, way + substep_way + state_.radius);
+    const double distance = duration * (length(state_.velocity) + duration * pull);
+    const double substep_distance = 2.0 * distance / rules_.settings.penalty.substeps;
+    if (is_finite(state_.position) && std::isfinite(distance))
+        watch_.survey(state_.position, distance + substep_distance + state_.radius);
 }
 
 /// False when the state leaves what can be followed; it is left as it was then.
@@ -98,7 +123,7 @@ bool PenaltyMover::substep(double h) {
     auto next = stepped({from, {state_.velocity, particle_.spin}}, h);
     if (!next || !is_finite(next->motion.velocity)) return false;
     next->position = flush_tiny(next->position);
-    if (!look(next->position, seen_)) return false;
+    if (!find_contacts(next->position, seen_)) return false;
     state_.position = next->position;
     state_.velocity = next->motion.velocity;
     particle_.spin = next->motion.spin;
@@ -106,7 +131,7 @@ bool PenaltyMover::substep(double h) {
     state_.time += h;
     begin_contacts();
     watch_.settle(seen_);
-    for (const Proximity& view : seen_) outcome_.depth = std::max(outcome_.depth, -view.gap);
+    for (const Proximity& view : seen_) outcome_.depth = std::max(outcome_.depth, -view.distance);
     return true;
 }
 
@@ -138,7 +163,7 @@ std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
     BodyState next;
     next.position = flush_tiny(now.position + h * now.motion.velocity + (0.5 * h * h) * k0.acceleration);
     next.motion = {now.motion.velocity + h * k0.acceleration, now.motion.spin + h * k0.spin_acceleration};
-    if (!look(next.position, stage_)) return std::nullopt;
+    if (!find_contacts(next.position, stage_)) return std::nullopt;
     const ContactPush k1 = push_at(next, state_.time + h, stage_, 0.5 * h);
     next.motion = {now.motion.velocity + (0.5 * h) * (k0.acceleration + k1.acceleration),
                    now.motion.spin + (0.5 * h) * (k0.spin_acceleration + k1.spin_acceleration)};
@@ -151,7 +176,7 @@ std::optional<BodyState> PenaltyMover::midpoint(const BodyState& now, double h) 
     const BodyState middle{
         now.position + half * now.motion.velocity,
         {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
-    if (!look(middle.position, stage_)) return std::nullopt;
+    if (!find_contacts(middle.position, stage_)) return std::nullopt;
     const ContactPush k = push_at(middle, state_.time + half, stage_, h);
     return BodyState{now.position + h * middle.motion.velocity,
                      {now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration}};
@@ -167,7 +192,7 @@ std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
         const double s = kAt[i] * h;
         const BodyState stage{now.position + s * velocity,
                               {now.motion.velocity + s * k.acceleration, now.motion.spin + s * k.spin_acceleration}};
-        if (i > 0 && !look(stage.position, stage_)) return std::nullopt;
+        if (i > 0 && !find_contacts(stage.position, stage_)) return std::nullopt;
         k = push_at(stage, state_.time + s, i > 0 ? stage_ : seen_, kWeights[i] * h);
         velocity = stage.motion.velocity;
         sum.position += (kWeights[i] * h) * velocity;
@@ -177,10 +202,10 @@ std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
     return sum;
 }
 
-bool PenaltyMover::look(const Vec3& place, std::vector<Proximity>& out) {
-    if (!is_finite(place) || max_abs(place) > kLargestCoordinate) return false;
+bool PenaltyMover::find_contacts(const Vec3& position, std::vector<Proximity>& out) {
+    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
     ++outcome_.trials;
-    watch_.look(place, state_.position, 0.0, out);
+    watch_.find_near(position, state_.position, 0.0, out);
     return true;
 }
 
@@ -190,7 +215,7 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
     const double mass = state_.mass;
     const double stiffness = contact_stiffness(rules_.settings, mass);
     PenaltyContact contact;
-    contact.depth = -view.gap;
+    contact.depth = -view.distance;
     contact.normal = view.normal;
     contact.stiffness = stiffness;
     contact.damping = 2.0 * damping_ratios_[index] * std::sqrt(stiffness * mass);
@@ -228,18 +253,76 @@ void PenaltyMover::begin_contacts() {
         const ContactSurface surface{view.surface, view.normal, true};
         if (impact_.material_of(view.surface).is_random()) {
             impact_.reflect({&surface, 1});
-            if (outcome_.absorbed) return;
+            if (outcome_.is_absorbed()) return;
         } else {
             impact_.push(view.surface, Vec3{}, true);
             impact_.record(surface, state_.velocity);
             // The contact's impulse is yet to come; what arrives along the normal stands for it.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
-            if (outcome_.absorbed) return;
+            if (outcome_.is_absorbed()) return;
         }
     }
 }
 
 }  // namespace
+
+// With zeta = sin(phi) the published formula's cases, below and above critical damping, are one analytic function:
+// ln e = -2 zeta arccos(zeta) / sqrt(1 - zeta^2).
+double restitution_of_damping(double ratio) {
+    const double rest = 1.0 - ratio * ratio;
+    double quotient = 1.0;
+    if (rest > 0.0) quotient = std::acos(ratio) / std::sqrt(rest);
+    if (rest < 0.0) quotient = std::acosh(ratio) / std::sqrt(-rest);
+    return std::exp(-2.0 * ratio * quotient);
+}
+
+double damping_ratio(double restitution) {
+    if (restitution >= 1.0) return 0.0;
+    const double wanted = std::max(restitution, kMinPenaltyRestitution);
+    double low = 0.0;
+    double high = kLargestRatio;
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (restitution_of_damping(middle) > wanted ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+double contact_stiffness(const ResponseSettings& settings, double mass) {
+    const PenaltySettings& penalty = settings.penalty;
+    const double substep = settings.time_step / penalty.substeps;
+    const double frequency = std::numbers::pi / (penalty.contact_steps * substep);
+    return penalty.stiffness.value_or(mass * frequency * frequency);
+}
+
+ContactSpring contact_spring(const ResponseSettings& settings, double mass, double restitution) {
+    const double stiffness = contact_stiffness(settings, mass);
+    return {stiffness, 2.0 * damping_ratio(restitution) * std::sqrt(stiffness * mass)};
+}
+
+double longest_stable_step(const ContactSpring& spring, double mass) {
+    const double frequency = std::sqrt(spring.stiffness / mass);
+    const double ratio = spring.damping / (2.0 * std::sqrt(spring.stiffness * mass));
+    return 2.0 / frequency * (std::sqrt(1.0 + ratio * ratio) - ratio);
+}
+
+ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius, const ContactLimits& limits) {
+    const Vec3& n = contact.normal;
+    const double inertial = contact.mass / limits.step;  // kg/s
+    const double damping = std::min(contact.damping, inertial);
+    const double normal_force = std::max(0.0, contact.stiffness * contact.depth - damping * dot(motion.velocity, n));
+    const Vec3 slip = slip_velocity(motion, radius, n);
+    const double stopping = radius > 0.0 ? kSlipShare * inertial : inertial;
+    const Vec3 friction = brake(slip, contact.friction * normal_force, limits.friction_speed, stopping);
+    ContactForce result;
+    result.force = normal_force * n + friction;
+    if (radius == 0.0) return result;
+    const Vec3 rolling = radius * (motion.spin - dot(motion.spin, n) * n);  // m/s
+    const Vec3 resistance =
+        brake(rolling, contact.rolling_friction * normal_force, limits.friction_speed, kSphereInertia * inertial);
+    result.torque = cross(-radius * n, friction) + radius * resistance;
+    return result;
+}
 
 PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {
     for (const Material& material : rules.materials) damping_ratios_.push_back(damping_ratio(material.restitution));

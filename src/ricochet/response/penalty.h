@@ -21,10 +21,11 @@
 /// grow as steps shrink; stability beyond longest_stable_step(), for `midpoint`, which feeds springs without damping,
 /// none at all; rest without creep on slopes (friction needs slip, and shakes where a sub-step's friction, mu g h,
 /// exceeds 2 friction_speed); restitution below kMinPenaltyRestitution; that walls of one collider are felt together
-/// (each collider pushes from its nearest place only).
+/// (each collider pushes from its nearest point only).
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"
+#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -48,6 +49,35 @@ struct ContactSpring {
 
 /// Longest stable sub-step, s, of a spring and damper on mass m: 2 / omega (sqrt(1 + zeta^2) - zeta).
 [[nodiscard]] double longest_stable_step(const ContactSpring& spring, double mass);
+
+/// A contact as a force sees it.
+struct PenaltyContact {
+    double depth = 0.0;  ///< m, > 0
+    Vec3 normal;         ///< unit, outwards
+    double stiffness = 0.0;
+    double damping = 0.0;
+    double friction = 0.0;
+    double rolling_friction = 0.0;
+    double mass = 1.0;  ///< kg, of the particle
+};
+
+/// Force of one contact, N, on the particle.
+struct ContactForce {
+    Vec3 force;
+    Vec3 torque;  ///< N m
+};
+
+/// Where the laws are cut off.
+struct ContactLimits {
+    double friction_speed = 1e-3;  ///< m/s, up to which friction grows linearly
+    double step = 0.0;             ///< s that the integrator takes the force for
+};
+
+/// max(0, k d + c d') along the normal, friction against the slip, a moment against rolling. What brakes (the damper,
+/// friction, the moment) is at most what stops its motion within the step: an explicit step would turn it round, and
+/// make energy.
+[[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
+                                    const ContactLimits& limits);
 
 /// See the top of this file.
 class PenaltyResponse final : public Response {

@@ -5,7 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/impact.h"
+#include "ricochet/response/impact_answer.h"
 #include "ricochet/response/side_watch.h"
 
 namespace ricochet {
@@ -31,7 +31,7 @@ public:
     MoveOutcome run(double duration) {
         pull_ = rules_.forces.acceleration(state_);
         if (!fly(duration)) {
-            outcome_.frozen = true;
+            outcome_.end = MoveEnd::frozen;
             return outcome_;
         }
         state_.position = put_back(flush_tiny(state_.position));
@@ -64,20 +64,21 @@ private:
         return std::max(rules_.settings.project.offset, contact_offset(state_.position));
     }
 
-    /// Out of what the place is behind, the deepest first, again and again; where that does not end, back to the start.
-    Vec3 put_back(Vec3 place) {
+    /// Out of what the position is behind, the deepest first, again and again; where that does not end, back to the
+    /// start.
+    Vec3 put_back(Vec3 position) {
         for (int pass = 0; pass < kMaxProjections; ++pass) {
-            watch_.look(place, from_, offset(), seen_);
+            watch_.find_near(position, from_, offset(), seen_);
             ++outcome_.trials;
             for (const Proximity& view : seen_) touch(view);
             const auto deepest = std::min_element(seen_.begin(), seen_.end(),
-                                                  [](const auto& a, const auto& b) { return a.gap < b.gap; });
-            if (deepest == seen_.end() || (deepest->gap >= 0.0 && !deepest->behind)) {
+                                                  [](const auto& a, const auto& b) { return a.distance < b.distance; });
+            if (deepest == seen_.end() || (deepest->distance >= 0.0 && !deepest->behind)) {
                 watch_.settle(seen_);
-                return place;
+                return position;
             }
-            if (pass == 0) outcome_.depth = -deepest->gap;
-            place = flush_tiny(deepest->point + (state_.radius + offset()) * deepest->normal);
+            if (pass == 0) outcome_.depth = -deepest->distance;
+            position = flush_tiny(deepest->point + (state_.radius + offset()) * deepest->normal);
         }
         ++outcome_.stayed;
         return from_;
@@ -97,7 +98,7 @@ private:
         if (!approaches) return;
         ++outcome_.bounces;
         is_slow(duration) ? impact_.land(contacts_) : impact_.reflect(contacts_);
-        outcome_.resting = state_.velocity == Vec3{} && !outcome_.absorbed;
+        if (state_.velocity == Vec3{} && !outcome_.is_absorbed()) outcome_.end = MoveEnd::resting;
     }
 
     /// True when what would rebound is slower than the resting speed. What the forces have added in this step is not

@@ -1,5 +1,5 @@
 /// \file
-/// The project response: take the whole step, look where it has led to, put a particle that is behind a surface back
+/// The project response: take the whole step, test where it has led to, put a particle that is behind a surface back
 /// onto it and turn its velocity ("pretend that we are in contact now").
 ///
 /// Source: A. Witkin, D. Baraff, "Physically Based Modeling", SIGGRAPH 2001 course notes, part C (a particle within an
@@ -7,7 +7,7 @@
 /// Jakobsen, "Advanced character physics", GDC 2001. Sides of meshes: angle-weighted pseudonormals (signed_distance.h).
 ///
 /// A particle within ProjectSettings::offset of a surface, or behind it, is in contact. One that has come behind (a
-/// sphere: that overlaps) is moved along the shortest way to the offset above the surface. If it moves towards the
+/// sphere: that overlaps) is moved along the shortest path to the offset above the surface. If it moves towards the
 /// surface its velocity is reflected with the material's restitution and friction. A rebound slower than the resting
 /// speed, not counting what the forces have added in this step, is none.
 ///

@@ -11,9 +11,9 @@
 
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/core/segment.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/dynamics/flight.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/settings.h"
@@ -24,7 +24,7 @@ namespace ricochet {
 struct SurfaceHit {
     SurfaceId surface = 0;
     Vec3 impulse;        ///< N s, given to the surface
-    bool impact = true;  ///< false: the push of a stretch of lasting contact
+    bool impact = true;  ///< false: the push of a contact interval
 };
 
 /// Scratch memory of one thread. The lists are appended to in the order of events and cleared by the caller.
@@ -46,10 +46,10 @@ struct KeptContact {
     friend bool operator==(const KeptContact&, const KeptContact&) = default;
 };
 
-/// What the responses that look at the end of a step only remember of a particle and a collider.
+/// What the responses that test only the end of a step remember of a particle and a collider.
 struct SideMemory {
     std::int8_t side = 0;      ///< the sign of the side that it belongs to (SurfacePoint::side); 0: not seen yet
-    bool penetrating = false;  ///< it was behind the surface when it was last looked at
+    bool penetrating = false;  ///< it was behind the surface when it was last tested
     bool touching = false;     ///< it was in contact then
     float depth = 0.0F;        ///< m, at least how far behind it was, if it was
 };
@@ -62,7 +62,7 @@ struct MovingParticle {
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
     KeptContact contact{};             ///< what it is in contact with; contact goes on in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
-    /// N s: an impact that changes its momentum by as much ends its way there, as if it were absorbed.
+    /// N s: an impact that changes its momentum by as much removes it there, as if it were absorbed.
     double shatter_impulse = std::numeric_limits<double>::infinity();
     /// The flight of the whole step, where particles act on each other and are stepped together; null: the particle's
     /// own integrator says it. It must outlive the move.
@@ -70,22 +70,32 @@ struct MovingParticle {
     ContactCandidates candidates = {};  ///< by this step (MoveOutcome::candidates of the last one)
 };
 
+/// How a particle ends a step.
+enum class MoveEnd : std::uint8_t {
+    moving,     ///< in flight, sliding or rolling
+    resting,    ///< at rest on what it touches
+    held,       ///< at rest because friction and its support hold it: it stays while the forces do
+    frozen,     ///< the state left the range of the arithmetic; the particle was not moved
+    absorbed,   ///< an impact removed it
+    shattered,  ///< an impact that reached its shatter_impulse removed it
+};
+
 /// What happened to one particle in one step.
 struct MoveOutcome {
+    [[nodiscard]] bool is_resting() const { return end == MoveEnd::resting || end == MoveEnd::held; }
+    [[nodiscard]] bool is_frozen() const { return end == MoveEnd::frozen; }
+    [[nodiscard]] bool is_absorbed() const { return end == MoveEnd::absorbed || end == MoveEnd::shattered; }
+
+    MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< impacts
     double unsimulated_time = 0.0;  ///< s that the budget cut off
-    bool resting = false;           ///< ended the step at rest on its support
-    bool held = false;              ///< at rest because friction and its support hold it: it stays while forces do
-    bool frozen = false;            ///< the state left the range of the arithmetic; the particle was not moved
-    bool absorbed = false;          ///< an impact removed it
-    bool shattered = false;         ///< it was absorbed because an impact reached its shatter_impulse
-    std::uint32_t stayed = 0;       ///< impacts after which no certified place nearer to the surface was found
+    std::uint32_t stayed = 0;       ///< impacts after which no certified position nearer to the surface was found
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
     double depth = 0.0;             ///< m, how deep it was seen behind a surface, before anything put it right
-    /// s after the end of the move for which the particle, stepped on by coast() in steps of the run, certainly meets
+    /// s after the end of the move for which the particle, in free flight by steps of the run, certainly touches
     /// nothing; 0 where that was not found out.
     double free_for = 0.0;
-    /// s after the end of the move until which no triangles but `candidates` come near its way.
+    /// s after the end of the move until which no triangles but `candidates` come near its path.
     double candidates_for = 0.0;
     ContactCandidates candidates = {};
 };
@@ -123,7 +133,7 @@ public:
 
     /// True when MovingParticle::sides must be there, and be set by first_sides() at birth.
     [[nodiscard]] virtual bool keeps_sides() const { return false; }
-    /// The sides of all colliders that a newborn particle is on. sides.size() == number of colliders.
+    /// The sides of all colliders that a new particle is on. sides.size() == number of colliders.
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
 
     [[nodiscard]] const ResponseRules& rules() const { return rules_; }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// What a particle would do if the system were not in its way.
+/// What a particle would do without the system.
 struct Event {
     double elapsed = 0.0;  ///< s it can go
     double time = kNever;  ///< s, when it collides or its contact changes; kNever: not in this step
@@ -28,7 +28,8 @@ public:
 
     void run(double from, double to) {
         for (double now = from; now < to;) {
-            for_each([&](SystemParticle& p, Event& event, MoveScratch& scratch) { event = look(p, now, scratch); });
+            for_each(
+                [&](SystemParticle& p, Event& event, MoveScratch& scratch) { event = next_event(p, now, scratch); });
             double next = to;
             for (const Event& event : events_) next = std::min(next, event.time);
             for_each(
@@ -52,16 +53,16 @@ private:
     }
 
     [[nodiscard]] static bool is_out(const SystemParticle& p) {
-        return p.is_out || p.outcome.frozen || p.outcome.absorbed;
+        return p.is_out || p.outcome.is_frozen() || p.outcome.is_absorbed();
     }
 
-    /// Where the particle stands in time: a tolerance ahead of the system when it has met something.
+    /// Where the particle stands in time: a tolerance ahead of the system after a collision.
     [[nodiscard]] static double begin_of(const SystemParticle& p, double now) {
         return std::max({now, p.start, p.particle.state.time});
     }
 
     /// How far the particle can go on from `now`, tried out on a copy.
-    [[nodiscard]] Event look(SystemParticle& p, double now, MoveScratch& scratch) const {
+    [[nodiscard]] Event next_event(SystemParticle& p, double now, MoveScratch& scratch) const {
         const double begin = begin_of(p, now);
         const double duration = p.stop - begin;
         if (is_out(p) || !(duration > 0.0)) return {};
@@ -73,8 +74,8 @@ private:
         return {found.free, changes ? begin + found.free : kNever, found.blocked};
     }
 
-    /// Goes with the system to `next`, and answers what it has met by then. A shorter step may be blocked, or a stretch
-    /// of contact may end, where the longer one did not: then it goes on in pieces.
+    /// Goes with the system to `next`, and answers what it has met by then. A shorter step may be blocked, or a
+    /// interval of contact may end, where the longer one did not: then it goes on in pieces.
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double end = std::min(next, p.stop);
         // What is due is done again as it was tried out, also when it takes less time than the clock can tell.
@@ -91,7 +92,7 @@ private:
             } else if (found.blocked) {
                 mover.answer();
             }
-            if (p.outcome.absorbed) return;
+            if (p.outcome.is_absorbed()) return;
             rest_in_pit(p, mover, found.free, at);
             mover.keep_contact();
         }

@@ -1,12 +1,46 @@
 #include "ricochet/response/rollback_mover.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
-#include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/response/particle_step.h"
 
 namespace ricochet {
+namespace {
+
+/// How long an interval stays over its face, s; on curved surfaces as long as it takes to turn by a small angle.
+double time_on(const ContactSurface& support, const ContactInterval& interval, const CollisionWorld& world,
+               const ForceInput& state) {
+    const Vec3& v = interval.motion.velocity;
+    const Vec3& a = interval.acceleration;
+    const double duration = interval.duration;
+    if (support.flat) {
+        const Path path = parabola_path(state.position - state.radius * support.normal, v, a, duration);
+        const double slack = kTouchingOffsets * contact_offset(state.position);
+        return is_finite(path.end) ? world.time_over(support.surface, path, slack) : duration;
+    }
+    const double longest = kMaxChordAngle * 0.25 * world.size_of(support.surface);
+    const double speed = length(v);
+    const double pull = 2.0 * length(a);
+    return std::min(
+        {duration, speed > 0.0 ? longest / speed : duration, pull > 0.0 ? std::sqrt(2.0 * longest / pull) : duration});
+}
+
+/// By how much the end of a path along a curved surface must be lifted to be as far off as its start; zero where the
+/// surface does not bend towards the particle.
+Vec3 lift_to_surface(const ContactSurface& support, const Path& path, const CollisionWorld& world) {
+    if (!is_finite(path.end)) return {};
+    const CollisionWorld::Nearest here = world.nearest(support.surface, path.c[0]);
+    const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
+    const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
+    const double lift = here.distance - side * there.distance;
+    return lift > 0.0 ? (side * lift) * there.normal : Vec3{};
+}
+
+}  // namespace
 
 RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch,
                              MoveOutcome& outcome, Trial trial)
@@ -23,7 +57,7 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
     particle.contact = {};
 }
 
-/// The loop that moves one particle: take all the time that is left, go back to what was in the way, answer, go on.
+/// Takes all the time that is left, goes back to what was in the way, answers, and goes on.
 void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
@@ -37,7 +71,7 @@ void RollbackMover::run(double duration) {
             break;
         }
         if (found.blocked) answer();
-        if (outcome_.absorbed) return;
+        if (outcome_.is_absorbed()) return;
         idle = in_contact() && found.free < kLeastProgress * duration ? idle + 1 : 0;
         if (idle > kMaxSlowContacts) {
             rest(remaining);
@@ -47,25 +81,25 @@ void RollbackMover::run(double duration) {
     keep_contact();
 }
 
-/// Rests for the time given: what circles into a pit gets there in infinitely many ever shorter stretches.
+/// Rests for the time given: what circles into a pit gets there in infinitely many ever shorter intervals.
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
     manifold_.record_push(-state_.velocity - duration * pull_, duration, impact_);
     state_.velocity = particle_.spin = Vec3{};
     state_.time += duration;
-    outcome_.resting = true;
+    outcome_.end = MoveEnd::resting;
 }
 
 bool RollbackMover::begin(double duration) {
-    stretch_.reset();
+    interval_.reset();
     from_ = state_.position;
-    outcome_.resting = false;
+    outcome_.end = MoveEnd::moving;
     manifold_.touch_again(touch_rule());
     if (in_contact()) plan_contact(duration);
-    if (!stretch_) flight_ = flight_for(duration);
+    if (!interval_) flight_ = flight_for(duration);
     if (can_be_followed(flight_.path)) return true;
-    outcome_.frozen = true;
+    outcome_.end = MoveEnd::frozen;
     return false;
 }
 
@@ -78,7 +112,7 @@ Flight RollbackMover::flight_for(double duration) const {
 }
 
 PhaseState RollbackMover::state_at(double elapsed) const {
-    if (!stretch_ && trial_ == Trial::own_step) {
+    if (!interval_ && trial_ == Trial::own_step) {
         const Flight flight = flight_for(elapsed);
         return {flight.path.end, flight.end_velocity};
     }
@@ -88,23 +122,23 @@ PhaseState RollbackMover::state_at(double elapsed) const {
 /// Bisection: free at one end, blocked at the other, until the bracket is as small as asked for.
 CollisionBracket RollbackMover::bracket() {
     const double whole = flight_.path.duration;
-    if (stretch_ && stretch_->at_rest) return {whole, false};
+    if (interval_ && interval_->at_rest) return {whole, false};
     const Obstacles obstacles(rules_.world, from_, state_.radius);
-    const auto is_blocked = [&](const Vec3& place) {
+    const auto is_blocked = [&](const Vec3& position) {
         ++outcome_.trials;
-        return !is_finite(place) || obstacles.block(place);
+        return !is_finite(position) || obstacles.block(position);
     };
-    blocked_place_ = flush_tiny(flight_.path.end);
-    if (!is_blocked(blocked_place_)) return {whole, false};
+    blocked_position_ = flush_tiny(flight_.path.end);
+    if (!is_blocked(blocked_position_)) return {whole, false};
     double free = 0.0;
     double blocked = whole;
     while (blocked - free > rules_.settings.rollback.time_tolerance) {
         const double middle = 0.5 * (free + blocked);
         if (middle <= free || middle >= blocked) break;
-        const Vec3 place = flush_tiny(state_at(middle).position);
-        if (is_blocked(place)) {
+        const Vec3 position = flush_tiny(state_at(middle).position);
+        if (is_blocked(position)) {
             blocked = middle;
-            blocked_place_ = place;
+            blocked_position_ = position;
         } else {
             free = middle;
         }
@@ -113,7 +147,7 @@ CollisionBracket RollbackMover::bracket() {
 }
 
 void RollbackMover::advance(double elapsed) {
-    stretch_ ? follow_stretch(elapsed) : fly(elapsed);
+    interval_ ? follow_interval(elapsed) : fly(elapsed);
     if (scratch_.record_segments && state_.position != from_) {
         scratch_.segments.push_back({from_, state_.position, state_.time});
     }
@@ -133,16 +167,16 @@ void RollbackMover::fly(double elapsed) {
     if (!own_step) flown_ = flight_;
 }
 
-void RollbackMover::follow_stretch(double elapsed) {
+void RollbackMover::follow_interval(double elapsed) {
     const Vec3 before = state_.velocity;
-    const bool rests = stretch_->at_rest;
+    const bool rests = interval_->at_rest;
     if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
     const Motion arriving{rests ? Vec3{} : flight_.path.velocity(elapsed), particle_.spin};
-    const Motion motion = end_of_stretch(*stretch_, elapsed, arriving, state_.radius, manifold_.normals().front());
+    const Motion motion = end_of_interval(*interval_, elapsed, arriving, state_.radius, manifold_.normals().front());
     state_.velocity = motion.velocity;
     particle_.spin = rests ? Vec3{} : motion.spin;
     manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
-    outcome_.resting = rests;
+    outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
 }
@@ -150,8 +184,8 @@ void RollbackMover::follow_stretch(double elapsed) {
 /// Bounces, or stays on what it has met when all rebounds are slow and something presses it on.
 void RollbackMover::answer() {
     ++outcome_.bounces;
-    outcome_.resting = false;
-    Obstacles(rules_.world, from_, state_.radius).gather(blocked_place_, state_.position, state_.velocity, met_);
+    outcome_.end = MoveEnd::moving;
+    Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, met_);
     const bool on_surface = std::any_of(met_.begin(), met_.end(), [&](const ContactSurface& met) {
         return rules_.world.point_on(met.surface, state_.position);
     });
@@ -172,13 +206,7 @@ void RollbackMover::answer() {
 void RollbackMover::leave_surface() {
     const Path path = line_path(state_.position, state_.velocity, flight_.path.duration);
     const ContactQueryResult found = find_first_contact(geometry_, {path, state_.radius}, scratch_.contacts);
-    const auto place = step_off(found.near, state_.position);
-    if (!place) {
-        ++outcome_.stayed;
-        return;
-    }
-    if (scratch_.record_segments) scratch_.segments.push_back({state_.position, *place, state_.time});
-    state_.position = *place;
+    if (!step_off_surface(found.near, state_, scratch_)) ++outcome_.stayed;
 }
 
 /// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
@@ -197,6 +225,73 @@ bool RollbackMover::will_stay() const {
         pressed = pressed || (can_rest && std::min(dot(a, met.normal), dot(pull, met.normal)) < 0.0);
     }
     return pressed;
+}
+
+/// Touched is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
+/// faster than the resting speed.
+TouchRule RollbackMover::touch_rule() const {
+    const double resting_speed = rules_.settings.resting_speed;
+    double speed = std::max(length(state_.velocity), resting_speed);
+    // What rests under symplectic Euler has come down at the speed of a step's kick.
+    if (kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight) {
+        speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
+    }
+    const double reach = kTouchingOffsets * contact_offset(state_.position) +
+                         kTouchBrackets * rules_.settings.rollback.time_tolerance * speed;
+    return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
+}
+
+/// Plans an interval on what is touched; none when nothing presses the particle on, or the surface ends here.
+void RollbackMover::plan_contact(double duration) {
+    const bool kicked = is_kicked();
+    pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
+    manifold_.load(pull_);
+    if (!(kicked || manifold_.is_loaded()) || !is_finite(pull_)) {
+        manifold_.clear();
+        return;
+    }
+    Grip grip;
+    grip.friction = manifold_.friction(pull_, impact_);
+    grip.rolling_friction = impact_.material_of(manifold_[0].surface).rolling_friction;
+    grip.pressure = kicked ? 0.0 : 1.0;
+    grip.shortest = duration / kShortestIntervals;
+    grip.negligible_path = kTouchingOffsets * contact_offset(state_.position);
+    interval_ =
+        plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_, manifold_.normals(), grip, duration);
+    limit_interval();
+}
+
+/// An interval ends where its face does. One that is too short for the clock would be planned again for ever.
+void RollbackMover::limit_interval() {
+    const ContactSurface support = manifold_[0];
+    const double duration =
+        interval_->at_rest ? interval_->duration : time_on(support, *interval_, rules_.world, state_);
+    turns_ = false;
+    if (!(state_.time + duration > state_.time)) {
+        interval_.reset();
+        manifold_.clear();
+        return;
+    }
+    const Vec3& v = interval_->motion.velocity;
+    const Vec3& a = interval_->acceleration;
+    flight_ = {parabola_path(state_.position, v, a, duration), a, 0.0, state_, v + duration * a};
+    if (interval_->at_rest || support.flat) return;
+    const Vec3 lift = lift_to_surface(support, flight_.path, rules_.world);
+    turns_ = lift != Vec3{};
+    if (!turns_) return;
+    // A chord, at whose end the velocity is turned along the surface.
+    const Vec3 end = flight_.path.end + lift;
+    flight_.path = parabola_path(state_.position, v + (end - flight_.path.end) / duration, a, duration);
+    flight_.path.end = end;
+}
+
+/// After a chord the velocity is turned along the surface. Its speed is kept.
+void RollbackMover::turn_along() {
+    manifold_.touch_again(touch_rule());
+    const auto turned = turned_along(state_.velocity, manifold_.normals());
+    if (manifold_.empty() || !turned) return;
+    impact_.push(manifold_[0].surface, *turned - state_.velocity, false);
+    state_.velocity = *turned;
 }
 
 }  // namespace ricochet

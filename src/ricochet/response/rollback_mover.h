@@ -8,8 +8,8 @@
 
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/response/contact_manifold.h"
-#include "ricochet/response/contact_mode.h"
-#include "ricochet/response/impact.h"
+#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/impact_answer.h"
 
 namespace ricochet {
 
@@ -22,9 +22,10 @@ struct CollisionBracket {
 /// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
 inline constexpr double kLeastProgress = 0x1p-20;
 
+/// See above. It goes in pieces, each a flight or a contact interval.
 class RollbackMover {
 public:
-    /// What a trial of a shorter time is: the same flight looked at earlier, or a step of its own.
+    /// What a trial of a shorter time is: a point of the same flight, or a step of its own.
     enum class Trial { same_flight, own_step };
 
     RollbackMover(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome,
@@ -33,10 +34,10 @@ public:
     /// The whole step of one particle on its own.
     void run(double duration);
 
-    /// Begins the next piece of way, of at most `duration` seconds: a flight, or a stretch of contact. False when the
+    /// Begins the next piece, of at most `duration` seconds: a flight or a contact interval. False when the
     /// state cannot be followed: the particle is frozen then.
     bool begin(double duration);
-    /// How far the piece goes; a stretch of contact may end before the duration asked for.
+    /// How far the piece goes; a contact interval may end before the duration asked for.
     [[nodiscard]] CollisionBracket bracket();
     /// Goes along the piece for a time that the bracket has found free.
     void advance(double elapsed);
@@ -54,18 +55,15 @@ private:
     [[nodiscard]] Flight flight_for(double duration) const;
     [[nodiscard]] PhaseState state_at(double elapsed) const;
     void fly(double elapsed);
-    void follow_stretch(double elapsed);
+    void follow_interval(double elapsed);
     void leave_surface();
     /// This step's force has acted already (symplectic Euler).
     [[nodiscard]] bool is_kicked() const { return flown_ && flown_->kick_duration > 0.0; }
     [[nodiscard]] bool will_stay() const;
 
-    // Contact (rollback_contact.cpp).
     [[nodiscard]] TouchRule touch_rule() const;
     void plan_contact(double duration);
-    void limit_stretch();
-    [[nodiscard]] double time_on_support() const;
-    void bend_stretch(double duration);
+    void limit_interval();
     void turn_along();
 
     const ResponseRules& rules_;
@@ -77,14 +75,14 @@ private:
     ContactManifold manifold_;
     ImpactAnswer impact_;
     Trial trial_;
-    Vec3 from_;           // where the piece began
-    Vec3 blocked_place_;  // the bracket's blocked end
+    Vec3 from_;              // where the piece began
+    Vec3 blocked_position_;  // the bracket's blocked end
     Flight flight_;
     std::optional<Flight> flown_;  // the last flight of this step
     Vec3 kick_velocity_;           // what kicks have put into the velocity since the last piece began, m/s
-    std::optional<Stretch> stretch_;
-    bool turns_ = false;  // the stretch is a chord of a surface that bends towards the particle
-    Vec3 pull_;           // the forces' acceleration at the stretch's start
+    std::optional<ContactInterval> interval_;
+    bool turns_ = false;  // the interval is a chord of a surface that bends towards the particle
+    Vec3 pull_;           // the forces' acceleration at the interval's start
     std::vector<ContactSurface> met_;
 };
 

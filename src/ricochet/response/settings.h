@@ -12,9 +12,9 @@
 
 namespace ricochet {
 
-/// The answers to "a surface is in the way", by their names in scenes.
+/// What happens when a particle reaches a surface, by the names in scenes.
 enum class ResponseKind {
-    exact,     ///< predicts the time of impact and reflects inside the step, see exact.h
+    exact,     ///< finds the time of impact and reflects inside the step, see exact.h
     rollback,  ///< takes the step, finds that it collided, goes back to the contact, see rollback.h
     project,   ///< tests at the end of the step and puts the particle back on the surface, see project.h
     penalty,   ///< a spring and damper on the penetration, see penalty.h

@@ -18,50 +18,50 @@ void set_first_sides(const SignedDistance& distance, const Vec3& position, std::
     for (const SurfacePoint& point : on) sides[point.collider].side = 1;
 }
 
-bool SideWatch::is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
+bool SideWatch::is_behind(const SurfacePoint& point, const Vec3& position, const Vec3& from) const {
     if (point.on_rim || point.side == 0) return false;
     const SideMemory& memory = sides_[point.collider];
     if (memory.penetrating) return memory.side == -point.side;
-    const std::size_t met = distance_.count_met(point.collider, from, place);
-    if (met == 0) return false;
-    const auto before = distance_.closest(point.collider, from, length(place - from));
+    const std::size_t crossings = distance_.count_met(point.collider, from, position);
+    if (crossings == 0) return false;
+    const auto before = distance_.closest(point.collider, from, length(position - from));
     const bool starts_on_it = before && before->distance == 0.0;
     if (starts_on_it) return memory.side == -point.side;
-    if (met % 2 == 1) return true;
+    if (crossings % 2 == 1) return true;
     return before && !before->on_rim && before->side == -point.side;
 }
 
-Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const {
+Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& position, const Vec3& from) const {
     const SideMemory& memory = sides_[point.collider];
     Proximity seen{point.collider, point.surface, point.point, point.direction, 0.0, false, point.side};
-    seen.behind = is_behind(point, place, from);
+    seen.behind = is_behind(point, position, from);
     if (point.on_rim) seen.side = 0;
     if (seen.behind) seen.normal = -point.direction;
     // On the surface itself the direction is the surface's normal, not the particle's.
     if (point.side == 0 && memory.side < 0) seen.normal = -point.direction;
-    seen.gap = (seen.behind ? -point.distance : point.distance) - radius_;
+    seen.distance = (seen.behind ? -point.distance : point.distance) - radius_;
     return seen;
 }
 
-void SideWatch::survey(const Vec3& place, double reach) {
+void SideWatch::survey(const Vec3& position, double reach) {
     points_.clear();
-    distance_.near(place, reach, points_);
-    clear_center_ = place;
+    distance_.near(position, reach, points_);
+    clear_center_ = position;
     clear_radius_ = reach;
     for (const SurfacePoint& point : points_) clear_radius_ = std::min(clear_radius_, point.distance);
 }
 
-void SideWatch::look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out) {
+void SideWatch::find_near(const Vec3& position, const Vec3& from, double margin, std::vector<Proximity>& out) {
     out.clear();
     points_.clear();
     // Distances are rounded: what is as far off as it may be must not be lost for that.
-    const double within = (1.0 + kDistanceRounding) * (std::max(radius_ + margin, deepest()) + length(place - from));
-    const bool clear = length(place - clear_center_) + within < (1.0 - kDistanceRounding) * clear_radius_;
-    if (!clear) distance_.near(place, within, points_);
+    const double within = (1.0 + kDistanceRounding) * (std::max(radius_ + margin, deepest()) + length(position - from));
+    const bool clear = length(position - clear_center_) + within < (1.0 - kDistanceRounding) * clear_radius_;
+    if (!clear) distance_.near(position, within, points_);
     for (const SurfacePoint& point : points_) {
-        const Proximity seen = proximity(point, place, from);
+        const Proximity seen = proximity(point, position, from);
         // Just behind, the distance may be rounded to 0.
-        if (seen.behind || seen.gap < margin) out.push_back(seen);
+        if (seen.behind || seen.distance < margin) out.push_back(seen);
     }
 }
 
@@ -70,8 +70,8 @@ void SideWatch::settle(std::span<const Proximity> seen) {
     for (const Proximity& view : seen) {
         SideMemory& memory = sides_[view.collider];
         memory.penetrating = view.behind;
-        memory.touching = view.behind || view.gap < 0.0;
-        memory.depth = view.behind ? std::nextafter(static_cast<float>(-view.gap), INFINITY) : 0.0F;
+        memory.touching = view.behind || view.distance < 0.0;
+        memory.depth = view.behind ? std::nextafter(static_cast<float>(-view.distance), INFINITY) : 0.0F;
         if (view.side != 0) memory.side = static_cast<std::int8_t>(view.behind ? -view.side : view.side);
     }
 }

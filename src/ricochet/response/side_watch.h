@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses that look at a particle at the end of a step: is it behind a surface, how deep, and which
-/// is the nearest way out?
+/// Private to the responses that test a particle at the end of a step: is it behind a surface, how deep, and which is
+/// the shortest path out?
 #pragma once
 
 #include <span>
@@ -15,11 +15,11 @@ namespace ricochet {
 struct Proximity {
     std::uint32_t collider = 0;
     SurfaceId surface = 0;
-    Vec3 point;           ///< the collider's place nearest to the centre
-    Vec3 normal;          ///< unit, from there to the particle's own side
-    double gap = 0.0;     ///< m from the sphere to the surface; negative: the particle penetrates
-    bool behind = false;  ///< the centre itself is on the wrong side
-    int side = 0;         ///< the side that the centre is on now; 0 where that has no meaning
+    Vec3 point;             ///< the collider's point nearest to the centre
+    Vec3 normal;            ///< unit, from there to the particle's own side
+    double distance = 0.0;  ///< m from the sphere to the surface; negative: the particle penetrates
+    bool behind = false;    ///< the centre itself is on the wrong side
+    int side = 0;           ///< the side that the centre is on now; 0 where that has no meaning
 };
 
 /// Lists of one thread, kept between particles so that the loop over them allocates nothing.
@@ -29,11 +29,11 @@ struct SideScratch {
     std::vector<ContactSurface> contacts;
 };
 
-/// The sides of a newborn particle. It has none yet (they are those that it comes from when it meets a surface), unless
+/// The sides of a new particle. It has none yet (they are those that it comes from when it reaches a surface), unless
 /// it is put exactly on a surface: then it is where the surface's normal points to.
 void set_first_sides(const SignedDistance& distance, const Vec3& position, std::span<SideMemory> sides);
 
-/// Keeps the sides of one particle. It is behind a surface when its way there meets the collider an odd number of
+/// Keeps the sides of one particle. It is behind a surface when its path there crosses the collider an odd number of
 /// times; when an even number (it may have gone through an edge, or right through), when its side is another than where
 /// it comes from. Behind it stays until it is seen on its own side again.
 class SideWatch {
@@ -41,13 +41,13 @@ public:
     SideWatch(const SignedDistance& distance, std::span<SideMemory> sides, double radius, SideScratch& lists)
         : distance_(distance), sides_(sides), radius_(radius), points_(lists.points) {}
 
-    /// Every collider whose gap at `place` is below the margin, m, in ascending order. from: where the particle was
-    /// when its sides were settled last.
-    void look(const Vec3& place, const Vec3& from, double margin, std::vector<Proximity>& out);
-    /// Looks as far as the particle may get in what comes, m: while it stays within, no look is needed where nothing
-    /// is.
-    void survey(const Vec3& place, double reach);
-    /// Takes what was seen at a place that the particle stays at.
+    /// Every collider whose distance at a position is below the margin, m, in ascending order. from: where the particle
+    /// was when its sides were settled last.
+    void find_near(const Vec3& position, const Vec3& from, double margin, std::vector<Proximity>& out);
+    /// Queries as far as the particle may get in what comes, m: while it stays within, no query is needed where
+    /// nothing is.
+    void survey(const Vec3& position, double reach);
+    /// Takes over what was found at a position where the particle stays.
     void settle(std::span<const Proximity> seen);
     /// True when the particle was in contact with something when its sides were settled last.
     [[nodiscard]] bool in_contact() const;
@@ -55,8 +55,8 @@ public:
 
 private:
     [[nodiscard]] double deepest() const;
-    [[nodiscard]] bool is_behind(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
-    [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& place, const Vec3& from) const;
+    [[nodiscard]] bool is_behind(const SurfacePoint& point, const Vec3& position, const Vec3& from) const;
+    [[nodiscard]] Proximity proximity(const SurfacePoint& point, const Vec3& position, const Vec3& from) const;
 
     const SignedDistance& distance_;
     std::span<SideMemory> sides_;

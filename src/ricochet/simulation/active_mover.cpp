@@ -16,8 +16,7 @@ constexpr std::size_t kVertexPrefetchDistance = 2;
 
 /// It flies on, in contact with nothing.
 bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
-    return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && !outcome.resting && !outcome.frozen &&
-           !outcome.absorbed;
+    return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const Mo
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
     parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i));
     if (!was_fast && is_fast()) record.note_runaway(i);
-    if (outcome.held) particles.accounted_until[i] = until;
+    if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
     if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
     schedule_query(i, moved, outcome, until);
     record.add(outcome);

@@ -87,10 +87,10 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
 
 void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                   bool may_be_held) {
-    particles_.resting[i] = outcome.resting ? 1 : 0;
-    particles_.held[i] = outcome.held && may_be_held ? 1 : 0;
-    particles_.frozen[i] = outcome.frozen ? 1 : 0;
-    particles_.absorbed[i] = outcome.shattered ? kShattered : outcome.absorbed ? 1 : 0;
+    particles_.resting[i] = outcome.is_resting() ? 1 : 0;
+    particles_.held[i] = outcome.end == MoveEnd::held && may_be_held ? 1 : 0;
+    particles_.frozen[i] = outcome.is_frozen() ? 1 : 0;
+    particles_.absorbed[i] = outcome.end == MoveEnd::shattered ? kShattered : outcome.is_absorbed() ? 1 : 0;
     particles_.support[i].fill(kNoSupport);
     std::copy_n(moved.contact.surfaces.begin(), moved.contact.count, particles_.support[i].begin());
     particles_.cascade_left[i] = moved.contact.cascade_left;

@@ -1,10 +1,11 @@
 /// \file
-/// Private to the responses: how one particle answers an impact, with its surfaces' materials, and how that is booked.
+/// Private to the responses: how one particle answers an impact, with its surfaces' materials, and how that is
+/// recorded.
 #pragma once
 
 #include <span>
 
-#include "ricochet/response/bounce.h"
+#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -23,9 +24,9 @@ public:
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
 
-    /// Books an impulse, as the change of velocity that it made.
+    /// Records an impulse, as the change of velocity that it made.
     void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
-    /// Ends the particle's way when an impact that changes its momentum by mass times this velocity breaks it.
+    /// Removes the particle when an impact that changes its momentum by mass times this velocity shatters it.
     void shatter_by(const Vec3& velocity_change);
     /// Keeps an impact for the contact log; the velocity after it is the present one.
     void record(const ContactSurface& surface, const Vec3& velocity_before);

@@ -1,4 +1,4 @@
-#include "ricochet/response/impact.h"
+#include "ricochet/response/impact_answer.h"
 
 #include <array>
 #include <cmath>
@@ -40,8 +40,8 @@ void ImpactAnswer::land(std::span<const ContactSurface> surfaces) {
 }
 
 void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
-    if (outcome_.absorbed || particle_.state.mass * length(velocity_change) < particle_.shatter_impulse) return;
-    outcome_.absorbed = outcome_.shattered = true;
+    if (outcome_.is_absorbed() || particle_.state.mass * length(velocity_change) < particle_.shatter_impulse) return;
+    outcome_.end = MoveEnd::shattered;
 }
 
 void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
@@ -68,7 +68,7 @@ void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebo
             reflect_off(surface, material_of(surface.surface), rebound);
             push(surface.surface, particle_.state.velocity - before, pass == 0);
             record(surface, before);
-            if (outcome_.absorbed) return;
+            if (outcome_.is_absorbed()) return;
         }
         if (approached) continue;
         if (!any_push) {  // a touch without approach still is an impact
@@ -97,7 +97,7 @@ Motion ImpactAnswer::random_reflection(const ContactSurface& surface, const Mate
     RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
     Motion motion{particle_.state.velocity, particle_.spin};
     if (material.absorption > 0.0 && random.uniform() < material.absorption) {
-        outcome_.absorbed = true;
+        outcome_.end = MoveEnd::absorbed;
         motion = {};
     } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
         motion.velocity =

@@ -1,0 +1,295 @@
+#include "ricochet/response/contact_motion.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "ricochet/core/double_double.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+DoubleDouble squared_length(const Vec3& v) {
+    return two_product(v.x, v.x) + two_product(v.y, v.y) + two_product(v.z, v.z);
+}
+
+bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale) {
+    return std::all_of(normals.begin(), normals.end(),
+                       [&](const Vec3& n) { return dot(w, n) >= -kProjectionRounding * scale; });
+}
+
+/// Solid sphere: the tangential impulse that stops the slip is 2/7 of the slip momentum; spin changes by 5/2 of the
+/// velocity change over the radius.
+constexpr double kSphereStick = 2.0 / 7.0;
+constexpr double kSphereSpinUp = 5.0 / 2.0;
+
+/// Exponential variate of mean 1.
+double exponential(RandomSequence& random) {
+    for (double whole = 0.0;; whole += 1.0) {
+        const double first = random.uniform();
+        double last = first;
+        int run = 1;
+        for (;; ++run) {
+            const double next = random.uniform();
+            if (next >= last) break;
+            last = next;
+        }
+        if (run % 2 == 1) return whole + first;
+    }
+}
+
+/// Share of the force on a solid sphere's centre that accelerates it while it rolls.
+constexpr double kRollingShare = 5.0 / 7.0;
+
+/// Ends a braked interval where the speed along the heading reaches zero.
+void brake(ContactInterval& interval, double speed, double braking) {
+    if (braking <= 0.0 || speed >= braking * interval.duration) return;
+    interval.duration = speed / braking;
+    interval.stops = true;
+}
+
+/// Time until what points along a unit `heading` at `speed`, and is pulled by `along`, has turned by kMaxHeadingTurn.
+double time_to_turn(const Vec3& along, const Vec3& heading, double speed, const Grip& grip, double duration) {
+    const double across = length(along - dot(along, heading) * heading);
+    if (across * duration <= kMaxHeadingTurn * speed) return duration;
+    return std::min(duration, std::max(grip.shortest, kMaxHeadingTurn * speed / across));
+}
+
+/// With constant pull and friction f > |pull| a point stops after (f v + pull . v) / (f^2 - pull^2): the derivative of
+/// f |v| + pull . v is pull^2 - f^2 whatever the direction.
+bool stops_at_once(const Vec3& velocity, const Vec3& along, double most_friction, double negligible_path) {
+    const double surplus = most_friction * most_friction - length_squared(along);
+    if (!(surplus > 0.0)) return false;
+    const double speed = length(velocity);
+    return speed * (most_friction * speed + dot(along, velocity)) <= surplus * negligible_path;
+}
+
+ContactInterval slide_of_point(const Motion& motion, const Vec3& along, double most_friction, const Grip& grip,
+                               double duration) {
+    ContactInterval interval{motion, along, {}, duration, false, false, false};
+    const double speed = length(motion.velocity);
+    if (speed == 0.0 || stops_at_once(motion.velocity, along, most_friction, grip.negligible_path)) {
+        const double pull = length(along);
+        interval.at_rest = pull <= most_friction;
+        interval.acceleration = interval.at_rest ? Vec3{} : along * (1.0 - most_friction / pull);
+        return interval;
+    }
+    const Vec3 heading = motion.velocity / speed;
+    interval.acceleration = along - most_friction * heading;
+    if (most_friction > 0.0) {
+        interval.duration = time_to_turn(along, heading, speed, grip, duration);
+        brake(interval, speed, -dot(interval.acceleration, heading));
+    }
+    return interval;
+}
+
+/// Kinetic friction on a slipping sphere: brakes the centre and turns the sphere until the slip is gone.
+ContactInterval slide_of_sphere(const Motion& motion, double radius, const Vec3& n, const Vec3& along,
+                                const Vec3& slip_heading, double slip, double most_friction, const Grip& grip,
+                                double duration) {
+    const Vec3 force = -most_friction * slip_heading;
+    ContactInterval interval{motion, along + force, (-2.5 / radius) * cross(n, force), duration, false, false, false};
+    if (slip > 0.0) interval.duration = time_to_turn(along, slip_heading, slip, grip, duration);
+    const double braking = 3.5 * most_friction - dot(along, slip_heading);
+    if (slip > 0.0 && braking > 0.0 && slip < braking * interval.duration) {
+        interval.duration = slip / braking;
+        interval.rolls = true;
+    }
+    return interval;
+}
+
+/// Rolling without slip, braked by rolling friction.
+ContactInterval roll(const Motion& motion, double radius, const Vec3& n, const Vec3& along, double most_rolling,
+                     const Grip& grip, double duration) {
+    ContactInterval interval = slide_of_point(motion, along, most_rolling, grip, duration);
+    if (interval.at_rest) return interval;
+    interval.acceleration *= kRollingShare;
+    interval.duration = length(motion.velocity) > 0.0 && most_rolling > 0.0
+                            ? time_to_turn(along, normalized(motion.velocity), length(motion.velocity), grip, duration)
+                            : duration;
+    interval.stops = false;
+    const double speed = length(motion.velocity);
+    if (speed > 0.0 && most_rolling > 0.0) brake(interval, speed, -dot(interval.acceleration, motion.velocity / speed));
+    interval.rolls = true;
+    interval.spin_acceleration = cross(n, interval.acceleration) / radius;
+    return interval;
+}
+
+/// Does friction keep a sphere rolling? It gives 2/7 of what the centre is pulled by; at rest all of the pull.
+bool grips(double speed, double pull, double most_rolling, double most_friction) {
+    if (speed == 0.0 && pull <= most_rolling) return pull <= most_friction;
+    return (1.0 - kRollingShare) * pull <= most_friction;
+}
+
+/// The weights of the vectors whose bits in `chosen` are set, whose sum is nearest to r (at most three, not parallel).
+std::array<double, 3> weights_of(const Vec3& r, std::span<const Vec3> n, unsigned chosen) {
+    std::array<std::size_t, 3> at{};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < n.size(); ++k) {
+        if ((chosen >> k & 1U) != 0) at[count++] = k;
+    }
+    std::array<double, 3> weights{};
+    const auto g = [&](std::size_t i, std::size_t j) { return dot(n[at[i]], n[at[j]]); };
+    const auto b = [&](std::size_t i) { return dot(r, n[at[i]]); };
+    if (count == 1) weights[at[0]] = b(0);
+    if (count == 2) {
+        const double c = g(0, 1);
+        const double det = 1.0 - c * c;
+        weights[at[0]] = (b(0) - c * b(1)) / det;
+        weights[at[1]] = (b(1) - c * b(0)) / det;
+    }
+    if (count == 3) {
+        const Vec3& u = n[at[0]];
+        const Vec3& v = n[at[1]];
+        const Vec3& w = n[at[2]];
+        const double volume = dot(u, cross(v, w));
+        weights = {dot(r, cross(v, w)) / volume, dot(r, cross(w, u)) / volume, dot(r, cross(u, v)) / volume};
+    }
+    return weights;
+}
+
+}  // namespace
+
+Vec3 slip_velocity(const Motion& motion, double radius, const Vec3& n) {
+    const Vec3 tangential = motion.velocity - dot(motion.velocity, n) * n;
+    return radius > 0.0 ? tangential - radius * cross(motion.spin, n) : tangential;
+}
+
+Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction) {
+    const double approach = -dot(motion.velocity, n);
+    if (!(approach > 0.0)) return motion;
+    Motion after = motion;
+    after.velocity += ((1.0 + restitution) * approach) * n;
+    if (friction > 0.0) {
+        const Vec3 slip = slip_velocity(motion, radius, n);
+        const double speed = length(slip);
+        const double most = friction * (1.0 + restitution) * approach;
+        const double sticking = radius > 0.0 ? kSphereStick * speed : speed;
+        if (speed > 0.0) {
+            const Vec3 change = slip * (-std::min(most, sticking) / speed);
+            after.velocity += change;
+            if (radius > 0.0) after.spin -= (kSphereSpinUp / radius) * cross(n, change);
+        }
+    } else if (restitution == 1.0) {
+        // The rounded normal is not exactly of unit length; without this its error would add up over many bounces. The
+        // correction itself must not lean to one side, hence the exact products.
+        const DoubleDouble gained = squared_length(motion.velocity) - squared_length(after.velocity);
+        after.velocity += (0.5 * gained.hi / length_squared(after.velocity)) * after.velocity;
+    }
+    return after;
+}
+
+Vec3 cosine_direction(const Vec3& n, RandomSequence& random) {
+    // Uniform on the disk, projected up to the hemisphere (Malley's method, e.g. Pharr, Jakob, Humphreys, "Physically
+    // Based Rendering").
+    const Vec3 disk = random.in_unit_disk();
+    const auto [t, b] = tangent_frame(n);
+    const double height = std::sqrt(std::max(0.0, 1.0 - disk.x * disk.x - disk.y * disk.y));
+    return disk.x * t + disk.y * b + height * n;
+}
+
+Vec3 thermal_velocity(const Vec3& n, double thermal_speed, RandomSequence& random) {
+    const double normal = std::sqrt(2.0 * exponential(random));
+    const double tangential = std::sqrt(2.0 * exponential(random));
+    Vec3 direction;
+    do direction = random.in_unit_disk();
+    while (direction == Vec3{});
+    direction = normalized(direction);
+    const auto [t, b] = tangent_frame(n);
+    return thermal_speed * (normal * n + tangential * (direction.x * t + direction.y * b));
+}
+
+// The closest point of a cone of up to three half spaces lies on one of its faces: in space, on a plane, on the line of
+// two planes, or at the apex. Each is tried, the closest feasible one wins.
+Vec3 project_off(const Vec3& v, std::span<const Vec3> normals) {
+    normals = normals.first(std::min<std::size_t>(normals.size(), 3));
+    const double scale = length(v);
+    if (approaches_none(v, normals, scale)) return v;
+    Vec3 best;
+    double best_distance = length_squared(v);
+    const auto consider = [&](const Vec3& w) {
+        const double distance = length_squared(v - w);
+        if (distance < best_distance && approaches_none(w, normals, scale)) {
+            best = w;
+            best_distance = distance;
+        }
+    };
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        consider(v - dot(v, normals[i]) * normals[i]);
+        for (std::size_t j = i + 1; j < normals.size(); ++j) {
+            const Vec3 line = cross(normals[i], normals[j]);
+            const double size = length_squared(line);
+            if (size > std::numeric_limits<double>::min()) consider((dot(v, line) / size) * line);
+        }
+    }
+    return best;
+}
+
+// r lies in the cone of the normals; of the faces of the cone that hold it, to rounding, the one with fewest normals.
+std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> normals) {
+    normals = normals.first(std::min<std::size_t>(normals.size(), 3));
+    const Vec3 r = project_off(a, normals) - a;
+    std::array<double, 3> best{};
+    double best_error = length(r);
+    for (const unsigned chosen : {1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
+        if (chosen >= 1U << normals.size()) continue;
+        const std::array<double, 3> weights = weights_of(r, normals, chosen);
+        Vec3 rest = r;
+        bool pushes = true;
+        for (std::size_t k = 0; k < normals.size(); ++k) {
+            rest -= weights[k] * normals[k];
+            pushes = pushes && weights[k] >= 0.0;
+        }
+        if (!pushes || !(length(rest) < 0.5 * best_error)) continue;
+        best = weights;
+        best_error = length(rest);
+    }
+    return best;
+}
+
+ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a, std::span<const Vec3> normals,
+                              const Grip& grip, double duration) {
+    const Motion start{project_off(motion.velocity, normals), motion.spin};
+    const Vec3 along = project_off(a, normals);
+    const double pressing = grip.pressure * length(a - along);
+    const double most_friction = grip.friction * pressing;
+    if (radius == 0.0 || normals.size() != 1) return slide_of_point(start, along, most_friction, grip, duration);
+    const Vec3& n = normals.front();
+    const Vec3 slip = slip_velocity(start, radius, n);
+    const double slip_speed = length(slip);
+    if (slip_speed > kSlipRounding * (length(start.velocity) + radius * length(start.spin))) {
+        return slide_of_sphere(start, radius, n, along, slip / slip_speed, slip_speed, most_friction, grip, duration);
+    }
+    // Resistance to rolling brakes the centre by friction too: by no more than friction can give.
+    const double most_rolling = std::min(grip.rolling_friction * pressing, most_friction / kRollingShare);
+    const double pull = length(along);
+    if (grips(length(start.velocity), pull, most_rolling, most_friction)) {
+        return roll(start, radius, n, along, most_rolling, grip, duration);
+    }
+    return slide_of_sphere(start, radius, n, along, along / pull, 0.0, most_friction, grip, duration);
+}
+
+Motion end_of_interval(const ContactInterval& interval, double elapsed, Motion motion, double radius, const Vec3& n) {
+    motion.spin = interval.motion.spin + elapsed * interval.spin_acceleration;
+    const bool whole = elapsed >= interval.duration;
+    if (whole && interval.stops) {
+        // After braking to a stop only rounding is left along the heading.
+        const Vec3 heading = normalized(interval.motion.velocity);
+        motion.velocity -= dot(motion.velocity, heading) * heading;
+        if (length(motion.velocity) <= kStopRounding * length(interval.motion.velocity)) motion.velocity = Vec3{};
+    }
+    if (interval.rolls && radius > 0.0 && (whole || interval.motion.spin == Vec3{})) {
+        motion.spin = rolling_spin(motion, radius, n);
+    }
+    return motion;
+}
+
+Vec3 rolling_spin(const Motion& motion, double radius, const Vec3& n) {
+    return cross(n, motion.velocity) / radius + dot(motion.spin, n) * n;
+}
+
+double cascade_duration(double rebound_speed, double pressing, double restitution) {
+    return 2.0 * rebound_speed / ((1.0 - restitution) * pressing);
+}
+
+}  // namespace ricochet

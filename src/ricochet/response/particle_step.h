@@ -1,0 +1,78 @@
+/// \file
+/// Private to the responses that find the first contact of a path: one particle in one step.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/collision/contact_query.h"
+#include "ricochet/response/impact_answer.h"
+
+namespace ricochet {
+
+/// A particle's state within a step, the time that is left of it, and the outcome so far. It moves the particle along
+/// paths in certified segments, and nothing else does.
+class ParticleStep {
+public:
+    ParticleStep(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
+        : rules_(rules),
+          particle_(particle),
+          scratch_(scratch),
+          geometry_(rules.world, scratch.contacts.plane_cache),
+          impact_(rules, particle, scratch, outcome_),
+          start_(particle.state.position),
+          first_segment_(scratch.segments.size()),
+          remaining_(duration) {}
+    ParticleStep(const ParticleStep&) = delete;
+    ParticleStep& operator=(const ParticleStep&) = delete;
+
+    /// Moves the particle along the flight: to its end, or to a safe position at the contact that is returned. It is
+    /// frozen where it cannot be followed. With a look-ahead the outcome tells how long it remains free.
+    std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead = nullptr,
+                                  const ContactCandidates& candidates = {});
+    /// The same for a path whose velocity is the particle's.
+    std::optional<Contact> follow(const Path& path);
+    /// Lets time pass where the particle is, s.
+    void wait(double duration);
+    /// Gives up the time that is left.
+    void stop();
+    /// Back along its own segments to where the step began.
+    void return_to_start();
+
+    [[nodiscard]] const ResponseRules& rules() const { return rules_; }
+    [[nodiscard]] MovingParticle& particle() { return particle_; }
+    [[nodiscard]] ForceInput& state() { return particle_.state; }
+    [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
+    [[nodiscard]] ImpactAnswer& impact() { return impact_; }
+    [[nodiscard]] MoveOutcome& outcome() { return outcome_; }
+    [[nodiscard]] double remaining() const { return remaining_; }  ///< s
+    /// Where the step began: off the surface that the particle was put on, if it was.
+    [[nodiscard]] const Vec3& start() const { return start_; }
+
+private:
+    /// How far a particle has come along a path.
+    struct Travel {
+        ContactQueryResult found;  ///< `contact`: what it has come to
+        double elapsed = 0.0;      ///< s
+    };
+
+    [[nodiscard]] bool can_follow(const Path& path);
+    [[nodiscard]] Travel travel(const ContactQuery& query);
+    void leave_surface(const NearSurfaces& near);
+    void record_chain();
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    MoveScratch& scratch_;
+    SurfaceGeometry geometry_;
+    MoveOutcome outcome_;
+    ImpactAnswer impact_;
+    Vec3 start_;
+    std::size_t first_segment_;  // of this step among those recorded
+    double remaining_;
+};
+
+/// Puts a particle whose centre lies exactly on a surface, and so has no side yet, on the side that the normal points
+/// to. near: of a path that starts there. False when no certified position was found; the particle stays then.
+bool step_off_surface(const NearSurfaces& near, ForceInput& state, MoveScratch& scratch);
+
+}  // namespace ricochet

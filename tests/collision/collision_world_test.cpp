@@ -128,9 +128,9 @@ TEST(CollisionWorld, AnswersAboutASurfaceAlikeForAPlaneAndATriangleInIt) {
         EXPECT_EQ(world.side_of_surface(surface, above), 1);
         EXPECT_EQ(world.side_of_surface(surface, below), -1);
         EXPECT_EQ(world.side_of_surface(surface, on), 0);
-        EXPECT_TRUE(world.segment_meets(surface, above, below));
-        EXPECT_TRUE(world.segment_meets(surface, above, on));
-        EXPECT_FALSE(world.segment_meets(surface, above, above));
+        EXPECT_TRUE(world.segment_intersects(surface, above, below));
+        EXPECT_TRUE(world.segment_intersects(surface, above, on));
+        EXPECT_FALSE(world.segment_intersects(surface, above, above));
         EXPECT_TRUE(world.point_on(surface, on));
     }
     const Path along = line_path(on, {1, 0, 0}, 10.0);
@@ -159,10 +159,10 @@ TEST(CollisionWorld, LeavesDegenerateTrianglesOutOfCollisionsButKeepsTheirNumber
     const auto world = world_of(mesh_collider(mesh));
     EXPECT_EQ(world.degenerate_triangles(), 2U);
     EXPECT_EQ(world.surface_count(), 4U);
-    EXPECT_FALSE(world.is_left_out(0));
-    EXPECT_TRUE(world.is_left_out(1));
-    EXPECT_FALSE(world.is_left_out(2));
-    EXPECT_TRUE(world.is_left_out(3));
+    EXPECT_FALSE(world.is_degenerate(0));
+    EXPECT_TRUE(world.is_degenerate(1));
+    EXPECT_FALSE(world.is_degenerate(2));
+    EXPECT_TRUE(world.is_degenerate(3));
     EXPECT_EQ(world.mesh_of(0)->triangles.size(), 4U);
 }
 

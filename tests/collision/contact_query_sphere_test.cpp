@@ -34,7 +34,7 @@ struct TiltedFloor {
         mesh = testing::floor_mesh(1.0, 16);
         for (Vec3& v : mesh.vertices) v = Vec3{7, -3, 2} + v.x * along + v.y * across;
     }
-    [[nodiscard]] Vec3 place(double x, double y, double height) const {
+    [[nodiscard]] Vec3 position(double x, double y, double height) const {
         return Vec3{7, -3, 2} + x * along + y * across + height * normal;
     }
     Vec3 normal;
@@ -43,7 +43,7 @@ struct TiltedFloor {
     TriangleMesh mesh;
 };
 
-/// Every triangle by itself, nothing narrowed: the first contact time.
+/// The first time of impact by a test of every triangle on its own.
 std::optional<double> first_of_all(const CollisionWorld& world, const Path& path, double radius) {
     const SphereSweep sweep(path, radius);
     std::optional<double> first;
@@ -56,7 +56,7 @@ std::optional<double> first_of_all(const CollisionWorld& world, const Path& path
 }
 
 // Whatever the order in which triangles are proposed, and whatever is left out after the first contact that is found.
-TEST(SphereAmongTriangles, MeetsFirstWhatItMeetsFirstOfAll) {
+TEST(SphereAmongTriangles, HitsFirstWhatATestOfEveryTriangleHitsFirst) {
     constexpr std::uint64_t kSeed = 4711;
     RandomSequence random(kSeed, 0, 0);
     TriangleMesh rough = testing::sphere_mesh({}, 1.0, 3);
@@ -97,7 +97,7 @@ TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneEvenOverSeamsAndVerti
         const double approach = std::pow(10.0, -3.0 * random.uniform());
         const Vec3 v = std::cos(static_cast<double>(i)) * floor.along +
                        std::sin(static_cast<double>(i)) * floor.across - approach * floor.normal;
-        MovingParticle sphere{{floor.place(x, y, kRadius) - 0.05 * v, v, 1.0, kRadius, 0.0}, {}, 0, 0};
+        MovingParticle sphere{{floor.position(x, y, kRadius) - 0.05 * v, v, 1.0, kRadius, 0.0}, {}, 0, 0};
         ASSERT_EQ(course.move(sphere, 0.1).bounces, 1U) << i;
         const Vec3 expected = v + (2.0 * approach) * floor.normal;
         ASSERT_LT(length(sphere.state.velocity - expected), 1e-13) << i;
@@ -109,10 +109,10 @@ TEST(SphereOnAFlatFloorOfManyTriangles, RollsOverSeamsWithoutLosingSpeed) {
     Course course({testing::mesh_collider(floor.mesh)}, {"", 0.5, 0.4}, -9.81 * floor.normal);
     const Vec3 v = 0.8 * floor.along + 0.31 * floor.across;
     MovingParticle sphere{
-        {floor.place(-0.9, -0.4, kRadius + 1e-14), v, 1.0, kRadius, 0.0}, cross(floor.normal, v) / kRadius, 0, 0};
+        {floor.position(-0.9, -0.4, kRadius + 1e-14), v, 1.0, kRadius, 0.0}, cross(floor.normal, v) / kRadius, 0, 0};
     for (int k = 0; k < 200; ++k) (void)course.move(sphere, 0.01);
     EXPECT_LT(length(sphere.state.velocity - v), 1e-11);
-    EXPECT_LT(length(sphere.state.position - floor.place(-0.9 + 1.6, -0.4 + 0.62, kRadius)), 1e-10);
+    EXPECT_LT(length(sphere.state.position - floor.position(-0.9 + 1.6, -0.4 + 0.62, kRadius)), 1e-10);
 }
 
 TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
@@ -134,7 +134,7 @@ TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
     EXPECT_TRUE(resting);
 }
 
-// Two plates with barely room: bouncing between them goes on for ever and never gets out.
+// Two plates hardly farther apart than the sphere is wide: it bounces between them and never gets out.
 TEST(SphereBetweenPlatesANanometreWiderThanItself, NeitherLeaksNorSticks) {
     const double gap = 2.0 * kRadius + 1e-9;
     Course course(
@@ -149,7 +149,7 @@ TEST(SphereBetweenPlatesANanometreWiderThanItself, NeitherLeaksNorSticks) {
         ASSERT_NEAR(sphere.state.position.z, 0.5 * gap, 0.5e-9 + sphere_tolerance(kRadius, 4.0));
     }
     EXPECT_NEAR(sphere.state.position.x, 2.5, 1e-9);
-    // One bounce for every nanometre of way across.
+    // One bounce for every nanometre that it moves across.
     EXPECT_NEAR(static_cast<double>(bounces), 6.0 * 1e-5 / 1e-9, 600.0);
 }
 

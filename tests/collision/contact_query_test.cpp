@@ -51,7 +51,7 @@ std::optional<Reference> brute_force(const CollisionWorld& world, const Path& pa
         if (const auto crossing = first_crossing(path, plane)) found.emplace_back(crossing->time, surface);
     }
     for (std::uint32_t t = 0; t < world.triangles().size(); ++t) {
-        if (world.is_left_out(t)) continue;
+        if (world.is_degenerate(t)) continue;
         const auto [a, b, c] = world.corners_of_triangle(t);
         if (const auto crossing = first_crossing(path, a, b, c)) {
             found.emplace_back(crossing->time, world.surface_of_triangle(t));
@@ -159,7 +159,7 @@ TEST(ContactQuery, ReportsAllSurfacesOfACornerAndTheirFacingNormals) {
     EXPECT_EQ(contact->surfaces[2].normal, (Vec3{0, 0, 1}));
 }
 
-TEST(ContactQuery, MeetsARimHeadOnWithANormalAgainstTheMotion) {
+TEST(ContactQuery, HitsARimHeadOnWithANormalAgainstTheMotion) {
     const auto world = world_of(mesh_collider(testing::floor_mesh(1.0, 1)));
     ContactScratch scratch;
     const auto contact = query(world, scratch, line_path({-3, 0.25, 0}, {2, 0, 0}, 2.0), 0.0).contact;
@@ -201,7 +201,7 @@ TEST(ContactQuery, EndsForPathsThatCurveEnormously) {
     EXPECT_FALSE(query(world, scratch, parabola_path({5, 0, 0}, {0, 1e30, 0}, {1e30, 0, 0}, 1.0), 0.0).contact);
 }
 
-TEST(ContactQuery, LooksAtABentPathThatEndsWhereItBegins) {
+TEST(ContactQuery, CoversACurvedPathThatEndsWhereItBegins) {
     const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     ContactScratch scratch;
     const auto found = query(world, scratch, parabola_path({1, 0.25, 0.125}, {1, 0, 0}, {0, 0, -9.81}, 0.0), 0.0);
@@ -211,7 +211,7 @@ TEST(ContactQuery, LooksAtABentPathThatEndsWhereItBegins) {
     EXPECT_TRUE(found.near.starts_in_overlap());
 }
 
-TEST(ContactQuery, MissesNothingAlongAPathThatBendsByLessThanAnyNumberTells) {
+TEST(ContactQuery, MissesNothingAlongAPathWhoseCurvatureUnderflows) {
     const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     ContactScratch scratch;
     const Vec3 hardly{0, 0, -1e-170};

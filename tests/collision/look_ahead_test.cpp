@@ -91,7 +91,7 @@ CollisionWorld rough_world(const TriangleMesh& mesh) {
     return CollisionWorld(std::move(colliders));
 }
 
-TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
+TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheFreeTimeFound) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
     RandomSequence random(2, 0, 0);
     for (Vec3& v : mesh.vertices) v *= 1.0 + 0.1 * random.uniform();
@@ -99,10 +99,10 @@ TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
     world.prepare_radius(0.03);
     ContactScratch scratch;
     struct Sum {
-        double looked = 0.0;
+        double told = 0.0;
         double possible = 0.0;
     };
-    Sum points, bent_points, spheres, bent_spheres;
+    Sum points, curved_points, spheres, curved_spheres;
     for (int i = 0; i < test::scaled(600); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
         const double radius = i % 3 == 0 ? 0.03 : 0.0;
@@ -129,14 +129,14 @@ TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheTimeThatTheSearchFinds) {
         }
         const auto found_hit = query(world, scratch, look_ahead.path, radius);
         const auto& hit = found_hit.contact;
-        Sum& sum = radius == 0.0 ? (is_straight ? points : bent_points) : (is_straight ? spheres : bent_spheres);
-        sum.looked += until;
+        Sum& sum = radius == 0.0 ? (is_straight ? points : curved_points) : (is_straight ? spheres : curved_spheres);
+        sum.told += until;
         sum.possible += hit ? hit->time : 1.0;
     }
-    EXPECT_GT(points.looked, 0.95 * points.possible);
-    EXPECT_GT(bent_points.looked, 0.9 * bent_points.possible);
-    EXPECT_GT(spheres.looked, 0.995 * spheres.possible) << spheres.looked / spheres.possible;
-    EXPECT_GT(bent_spheres.looked, 0.8 * bent_spheres.possible) << bent_spheres.looked / bent_spheres.possible;
+    EXPECT_GT(points.told, 0.95 * points.possible);
+    EXPECT_GT(curved_points.told, 0.9 * curved_points.possible);
+    EXPECT_GT(spheres.told, 0.995 * spheres.possible) << spheres.told / spheres.possible;
+    EXPECT_GT(curved_spheres.told, 0.8 * curved_spheres.possible) << curved_spheres.told / curved_spheres.possible;
 }
 
 /// A rough ball of fine triangles, with some things inside.
@@ -146,7 +146,7 @@ TriangleMesh furnished_ball(RandomSequence& random) {
     return testing::merged(std::move(mesh), testing::sphere_mesh({0.2, 0.1, 0.3}, 0.15, 3));
 }
 
-TEST(TimeClearOf, IsBeforeAnyTriangleIsNearAndMostOfTheWayToTheFirst) {
+TEST(TimeClearOfField, IsBeforeAnyTriangleIsNearAndMostOfTheTimeToTheFirst) {
     RandomSequence random(3, 0, 0);
     const TriangleMesh mesh = furnished_ball(random);
     const CollisionWorld world = rough_world(mesh);
@@ -174,9 +174,9 @@ TEST(TimeClearOf, IsBeforeAnyTriangleIsNearAndMostOfTheWayToTheFirst) {
     EXPECT_EQ(time_clear_of_field(line_path({}, {1, 0, 0}, 1.0), DistanceField(), 0.0, 0.25), 0.25);
 }
 
-/// Chains of steps of one particle: where it is free the search of every step must say so, and what it awaits must lead
-/// to the contact that a search without it finds.
-TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
+/// Steps of one particle: the contact candidates that a look-ahead finds must lead the query of a later step to the
+/// contact that the broad phase finds.
+TEST(LookAhead, CandidatesLeadALaterQueryToTheContactOfTheBroadPhase) {
     RandomSequence random(4, 0, 0);
     const TriangleMesh mesh = furnished_ball(random);
     CollisionWorld world = rough_world(mesh);
@@ -184,7 +184,7 @@ TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
     ContactScratch scratch;
     ContactScratch other;
     int candidates = 0;
-    int met = 0;
+    int contacts = 0;
     for (int i = 0; i < test::scaled(1500); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
         const double radius = i % 4 == 0 ? 0.01 : 0.0;
@@ -209,7 +209,7 @@ TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
         ASSERT_EQ(by_candidates.has_value(), by_broad_phase.has_value());
         ++candidates;
         if (!by_broad_phase) continue;
-        ++met;
+        ++contacts;
         ASSERT_EQ(by_candidates->time, by_broad_phase->time);
         ASSERT_EQ(by_candidates->count, by_broad_phase->count);
         for (int k = 0; k < by_broad_phase->count; ++k) {
@@ -220,7 +220,7 @@ TEST(LookAhead, WhatASearchAwaitsLeadsTheNextOneToTheSameContact) {
         }
     }
     EXPECT_GT(candidates, test::scaled(1500) / 3);
-    EXPECT_GT(met, test::scaled(1500) / 6);
+    EXPECT_GT(contacts, test::scaled(1500) / 6);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using testing::mesh_collider;
 using testing::plane_collider;
 using testing::world_of;
 
-bool meets_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
+bool intersects_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
     for (std::uint32_t t = 0; t < world.triangles().size(); ++t) {
         const auto [a, b, c] = world.corners_of_triangle(t);
         if (testing::exact_segment_intersects_triangle(p, q, a, b, c)) return true;
@@ -30,10 +30,10 @@ bool meets_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
     return false;
 }
 
-/// True when the path can be followed to the place in segments that meet nothing, by the exact oracle.
+/// True when the path can be followed to the position in segments that intersect nothing, by the exact oracle.
 bool can_be_walked(const CollisionWorld& world, const Path& path, double from, const Vec3& p, double to, const Vec3& q,
                    int depth) {
-    if (!meets_any(world, p, q)) return true;
+    if (!intersects_any(world, p, q)) return true;
     if (depth == 0) return false;
     const double middle = 0.5 * (from + to);
     const Vec3 m = path.position(middle);
@@ -41,7 +41,7 @@ bool can_be_walked(const CollisionWorld& world, const Path& path, double from, c
            can_be_walked(world, path, middle, m, to, q, depth - 1);
 }
 
-class ParkingAt : public ::testing::TestWithParam<double> {
+class SafePositionFarOut : public ::testing::TestWithParam<double> {
 protected:
     /// A turned box, moved by some of its sizes.
     CollisionWorld world_{{mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1}),
@@ -49,9 +49,9 @@ protected:
     Vec3 center_ = GetParam() * Vec3{1, 2, -3};
 };
 
-INSTANTIATE_TEST_SUITE_P(Offsets, ParkingAt, ::testing::Values(0.0, 1e3, 1e6));
+INSTANTIATE_TEST_SUITE_P(Offsets, SafePositionFarOut, ::testing::Values(0.0, 1e3, 1e6));
 
-TEST_P(ParkingAt, StandsOneGapBeforeTheSurfaceReachedInFreeLegs) {
+TEST_P(SafePositionFarOut, IsOneContactOffsetBeforeTheSurfaceAlongCertifiedSegments) {
     RandomSequence random(1, 0, 0);
     ContactScratch scratch;
     for (int i = 0; i < test::scaled(400); ++i) {
@@ -67,16 +67,16 @@ TEST_P(ParkingAt, StandsOneGapBeforeTheSurfaceReachedInFreeLegs) {
         ASSERT_FALSE(safe_position.stayed);
         ASSERT_TRUE(can_be_walked(world_, path, 0.0, start, contact->time, safe_position.position, 12));
         const double height = std::fabs(world_.signed_distance_from(contact->first().surface, safe_position.position));
-        const double gap = contact_offset(safe_position.position);
-        EXPECT_GE(height, 0.5 * gap);
-        EXPECT_LE(height, 64.0 * gap);
-        // Off the true contact by no more than the gap and the rounding of the path.
+        const double offset = contact_offset(safe_position.position);
+        EXPECT_GE(height, 0.5 * offset);
+        EXPECT_LE(height, 64.0 * offset);
+        // Off the true contact by no more than the contact offset and the rounding of the path.
         const double rounding = 64.0 * ulp(max_abs(center_) + 8.0);
-        EXPECT_LE(length(safe_position.position - path.position(contact->time)), 256.0 * gap + rounding);
+        EXPECT_LE(length(safe_position.position - path.position(contact->time)), 256.0 * offset + rounding);
     }
 }
 
-TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
+TEST_P(SafePositionFarOut, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
     RandomSequence random(2, 0, 0);
     ContactScratch scratch;
     for (int i = 0; i < test::scaled(4000); ++i) {
@@ -88,15 +88,15 @@ TEST_P(ParkingAt, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         ASSERT_TRUE(contact);
         const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         ASSERT_FALSE(safe_position.stayed);
-        const ContactSurface& met = contact->first();
+        const ContactSurface& hit = contact->first();
         Vec3 away = random.unit_vector();
         // From straight away to grazing.
         const double lift = std::pow(10.0, -12.0 * random.uniform());
-        away += (lift - dot(away, met.normal)) * met.normal;
+        away += (lift - dot(away, hit.normal)) * hit.normal;
         const auto found_next = query(world_, scratch, line_path(safe_position.position, 3.0 * away, 1.0), 0.0);
         const auto& next = found_next.contact;
         if (!next) continue;
-        for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, met.surface);
+        for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, hit.surface);
     }
 }
 
@@ -139,7 +139,7 @@ TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
     EXPECT_GT(moved, count / 2);
 }
 
-TEST(Travel, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
+TEST(FollowPath, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     // A ridge of height 1 along y; the arc passes 0.25 above it, its chord runs through it.
     TriangleMesh ridge{{{-0.5, -5, 0}, {0, -5, 1}, {0.5, -5, 0}, {-0.5, 5, 0}, {0, 5, 1}, {0.5, 5, 0}},
                        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
@@ -148,27 +148,28 @@ TEST(Travel, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     const Path over = parabola_path({-1, 0, 0.25}, {1, 0, 2}, {0, 0, -2}, 2.0);
     const auto found = query(world, scratch, over, 0.0);
     ASSERT_FALSE(found.contact);
-    EXPECT_TRUE(meets_any(world, over.c[0], over.end));
+    EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
     const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
     EXPECT_FALSE(followed.blocker);
     EXPECT_EQ(followed.reached, over.end);
 }
 
-// The ridge is made of triangles so small that the chord's middle lies far off every piece that the search looks at.
-TEST(Travel, DoesNotTrustAChordThatTheSearchHasNotLookedAt) {
+// The ridge is made of triangles so small that the chord's middle lies far off every piece that the broad phase is
+// queried for.
+TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({0, 0, 0.5}, 0.05, 3)));
     ContactScratch scratch;
     const Path over = parabola_path({-1, 0, 0.5}, {1, 0, 2}, {0, 0, -2}, 2.0);
     const auto found = query(world, scratch, over, 0.0);
     ASSERT_FALSE(found.contact);
-    EXPECT_TRUE(meets_any(world, over.c[0], over.end));
+    EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
     EXPECT_FALSE(found.near.covers_chord(over, 0.0, over.duration));
     const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
     EXPECT_EQ(followed.reached, over.end);
     EXPECT_FALSE(followed.blocker);
 }
 
-TEST(Travel, StopsWhereTheWayIsBlocked) {
+TEST(FollowPath, StopsWhereAChordIsBlocked) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
     const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
@@ -186,13 +187,13 @@ TEST(Travel, StopsWhereTheWayIsBlocked) {
 TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
     const auto world = world_of(mesh_collider(testing::box_mesh({0, 0, 0}, {1, 1, 1})));
     ContactScratch scratch;
-    for (const Vec3& place : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {
-        const auto found = query(world, scratch, line_path(place, {0, 0, 0}, 1.0), 0.0);
-        const auto off = step_off(found.near, place);
+    for (const Vec3& position : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {
+        const auto found = query(world, scratch, line_path(position, {0, 0, 0}, 1.0), 0.0);
+        const auto off = step_off(found.near, position);
         ASSERT_TRUE(off);
         EXPECT_FALSE(world.bounds().contains(*off));
-        EXPECT_LE(length(*off - place), 64.0 * contact_offset(place));
-        EXPECT_FALSE(meets_any(world, *off, *off));
+        EXPECT_LE(length(*off - position), 64.0 * contact_offset(position));
+        EXPECT_FALSE(intersects_any(world, *off, *off));
     }
     const Vec3 beside{0.5, 0.5, 1.5};
     const auto found = query(world, scratch, line_path(beside, {0, 0, 0}, 1.0), 0.0);

@@ -49,8 +49,8 @@ std::vector<SurfacePoint> all_near(const SignedDistance& distance, const Vec3& p
     return found;
 }
 
-/// A closed surface full of spikes and pits around the origin, that every ray from there meets once: radii between 0.35
-/// and 1. Vertices are repeated for every triangle, as in files.
+/// A closed surface full of spikes and pits around the origin, that every ray from there intersects once: radii between
+/// 0.35 and 1. Vertices are repeated for every triangle, as in files.
 TriangleMesh star(std::uint64_t seed, double size = 1.0, int levels = 2) {
     TriangleMesh mesh = sphere_mesh({}, 1.0, levels);
     RandomSequence random(seed, 0, 0);
@@ -93,13 +93,13 @@ Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSeque
 void expect_sides_of_parity(const TriangleMesh& mesh, int count, std::uint64_t seed) {
     const auto world = world_of(mesh_collider(mesh));
     const SignedDistance distance(world);
-    const TriangleMesh placed = *world.mesh_of(0);
-    const ParityOracle parity(placed);
-    const Box3 box = bounds(placed);
+    const TriangleMesh baked = *world.mesh_of(0);
+    const ParityOracle parity(baked);
+    const Box3 box = bounds(baked);
     RandomSequence random(seed, 0, 0);
     int undecided = 0;
     for (int i = 0; i < count; ++i) {
-        const Vec3 p = flush_tiny(hard_point(placed, box, i % 6, random));
+        const Vec3 p = flush_tiny(hard_point(baked, box, i % 6, random));
         const Side where = parity.side(p);
         const auto found = distance.closest(0, p, HUGE_VAL);
         ASSERT_TRUE(found);
@@ -178,13 +178,13 @@ TEST(SignedDistance, IsRightBesideATipWhereAFacesNormalIsWrong) {
     EXPECT_EQ(world.side_of_surface(0, {0, -3e-4, 1e-4}), -1);
 }
 
-/// What the order of the header says, by looking at every triangle.
+/// What the order of the header says, by testing every triangle.
 std::optional<SurfacePoint> by_brute_force(const CollisionWorld& world, std::uint32_t collider, const Vec3& p) {
     std::optional<SurfacePoint> best;
     std::array<double, 2> key{HUGE_VAL, 0};
     for (std::uint32_t t = 0; t < world.triangles().size(); ++t) {
         const SurfaceId surface = world.surface_of_triangle(t);
-        if (world.is_left_out(t) || world.name_of(surface).collider != collider) continue;
+        if (world.is_degenerate(t) || world.name_of(surface).collider != collider) continue;
         const auto [a, b, c] = world.corners_of_triangle(t);
         const auto nearest = closest_point_on_triangle(p, a, b, c);
         const std::array<double, 2> its{nearest.distance_squared, static_cast<double>(rank(nearest.feature))};
@@ -323,7 +323,7 @@ TEST(SignedDistance, OfPlanesBallsAndCylindersIsTheirFormula) {
     EXPECT_EQ(beside->surface, world.first_surface_of(2));
 }
 
-TEST(SignedDistance, ListsNothingBeyondTheDistanceAskedFor) {
+TEST(SignedDistance, ListsNothingBeyondTheGivenDistance) {
     const auto world = world_of(mesh_collider(box_mesh({0, 0, 0}, {1, 1, 1})), plane_collider({0, 0, 0}, {1, 0, 0}),
                                 ColliderDescription{"ball", BallShape{1.0, {{5, 0, 0}, {0, 0, 1}, 0.0, {1, 1, 1}}}, 0});
     const SignedDistance distance(world);
@@ -342,7 +342,7 @@ TEST(SignedDistance, ListsNothingBeyondTheDistanceAskedFor) {
 TEST(SignedDistance, OnTheSurfaceTheDirectionIsTheSurfacesOwn) {
     const auto world = world_of(mesh_collider(box_mesh({0, 0, 0}, {1, 1, 1})));
     const SignedDistance distance(world);
-    // A place that is in a face and on its rim counts as the face's.
+    // A point that is in a face and on its rim counts as the face's.
     for (const Vec3& p : {Vec3{0.25, 0.5, 1.0}, Vec3{1.0, 0.5, 1.0}, Vec3{1.0, 1.0, 1.0}}) {
         const auto found = distance.closest(0, p, 0.0);
         ASSERT_TRUE(found);
@@ -352,7 +352,7 @@ TEST(SignedDistance, OnTheSurfaceTheDirectionIsTheSurfacesOwn) {
     }
 }
 
-TEST(SignedDistance, SaysWhereTheNearestPlaceIsAnOpenRim) {
+TEST(SignedDistance, SaysWhereTheClosestPointIsOnAnOpenRim) {
     const auto world = world_of(mesh_collider(floor_mesh(1.0, 4)));
     const SignedDistance distance(world);
     const auto above = distance.closest(0, {0.1, 0.2, 0.5}, 1.0);
@@ -395,25 +395,25 @@ TEST(SignedDistance, KnowsOutsideUnderMirroredPlacementsAndBesideOtherColliders)
     }
 }
 
-TEST(SignedDistance, ACollidersTrianglesWithoutAreaAreNotThere) {
+TEST(SignedDistance, LeavesOutTrianglesWithoutArea) {
     TriangleMesh lines{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 0, 1}}};
     const auto world = world_of(mesh_collider(lines), mesh_collider(merged(lines, box_mesh({0, 0, 0}, {1, 1, 1}))));
     const SignedDistance distance(world);
     EXPECT_FALSE(distance.closest(0, {0.5, 0, 0}, HUGE_VAL));
-    EXPECT_FALSE(distance.segment_meets(0, {0.5, 0, -1}, {0.5, 0, 1}));
+    EXPECT_FALSE(distance.segment_intersects(0, {0.5, 0, -1}, {0.5, 0, 1}));
     const auto found = all_near(distance, {1.75, 0, 0}, HUGE_VAL);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].collider, 1U);
     EXPECT_DOUBLE_EQ(found[0].distance, 0.75);
 }
 
-TEST(SignedDistance, SegmentsMeetACollidersSurfacesExactly) {
+TEST(SignedDistance, SegmentsIntersectACollidersSurfacesExactly) {
     const auto world = mixed_world();
     auto unculled = mixed_world();
     unculled.set_culling(false);
     const SignedDistance distance(world), reference(unculled);
     RandomSequence random(41, 0, 0);
-    int met = 0;
+    int intersected = 0;
     for (int i = 0; i < cases(1000); ++i) {
         const Vec3 p = 3.0 * random.in_unit_ball();
         const Vec3 q = i % 3 == 0 ? world.vertices()[static_cast<std::size_t>(500.0 * random.uniform())]
@@ -423,15 +423,15 @@ TEST(SignedDistance, SegmentsMeetACollidersSurfacesExactly) {
             for (SurfaceId s = 0; s < world.surface_count_of(c) && !expected; ++s) {
                 const SurfaceId surface = world.first_surface_of(c) + s;
                 const auto& corners = world.name_of(surface);
-                const bool is_flat_line = c == 1 && world.is_left_out(corners.triangle);  // the first mesh
-                expected = !is_flat_line && world.segment_meets(surface, p, q);
+                const bool is_flat_line = c == 1 && world.is_degenerate(corners.triangle);  // the first mesh
+                expected = !is_flat_line && world.segment_intersects(surface, p, q);
             }
-            ASSERT_EQ(distance.segment_meets(c, p, q), expected) << i << ", collider " << c;
-            ASSERT_EQ(reference.segment_meets(c, p, q), expected) << i << ", collider " << c;
-            met += expected ? 1 : 0;
+            ASSERT_EQ(distance.segment_intersects(c, p, q), expected) << i << ", collider " << c;
+            ASSERT_EQ(reference.segment_intersects(c, p, q), expected) << i << ", collider " << c;
+            intersected += expected ? 1 : 0;
         }
     }
-    EXPECT_GT(met, 0);
+    EXPECT_GT(intersected, 0);
 }
 
 TEST(SignedDistance, NearTakesNoMemoryOnceItsListHasGrown) {

@@ -9,7 +9,7 @@ namespace ricochet {
 namespace {
 
 /// Halvings of a path in search of pieces flat enough for the boxes. Only pieces near the triangles are halved; a path
-/// that bends so much that this is not enough is tested against every triangle.
+/// so curved that this is not enough is tested against every triangle.
 constexpr int kPieceDepth = 40;
 
 // The margin for curvature keeps chords that begin on such a piece and end on the next one away from the triangles too.

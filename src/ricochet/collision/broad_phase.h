@@ -10,14 +10,14 @@ namespace ricochet {
 [[nodiscard]] double broad_phase_margin(const Path& path, const QueryMargins& margins);
 
 /// True when the triangles near the path include all that its chord from time `from` to `to` may intersect. Longer
-/// chords of a curved path may run where the broad phase has not been asked.
+/// chords of a curved path may run where the broad phase has not been queried.
 [[nodiscard]] bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from,
                                 double to);
 
 /// Which triangles were candidates of a path.
 enum class CandidateSet {
     near,  ///< those that the broad phase proposed
-    all,   ///< every one: the path bends too much for the boxes, is too long for them, or culling is off
+    all,   ///< every one: the path is too curved or too long for the boxes, or culling is off
 };
 
 /// Has the narrow phase test every triangle that the path may come near, in the order of time, up to the first contact.

@@ -33,12 +33,12 @@ void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>&
                    std::span<Vec3> world) {
     parallel_for_blocks(local.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 placed = flush_tiny(map.point(local[i]));
-            if (!is_finite(placed) || max_abs(placed) > kLargestCoordinate) {
+            const Vec3 vertex = flush_tiny(map.point(local[i]));
+            if (!is_finite(vertex) || max_abs(vertex) > kLargestCoordinate) {
                 refuse(collider,
                        "a placed vertex is not finite or beyond 1e75 m, expected a smaller position or scale");
             }
-            world[i] = placed;
+            world[i] = vertex;
         }
     });
 }
@@ -59,14 +59,14 @@ Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& tria
 
 }  // namespace
 
-CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double room)
+CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin)
     : colliders_(std::move(colliders)) {
     for (ColliderDescription& collider : colliders_) add(collider);
     flag_degenerate_triangles();
     triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
-    bulge_ = room * mean_box();
+    chord_margin_ = chord_margin * mean_box();
     prepare_radius(0.0);
     distance_field_ = DistanceField(vertices_, triangles_, triangle_bounds_);
 }
@@ -97,10 +97,10 @@ void CollisionWorld::add_shape(const AnalyticShape& shape) {
     ++surface_count_;
 }
 
-// A class's reach leaves room for its largest radius and for the bulge; radii up to half the bulge share the points'
-// class.
+// The boxes of a class are enlarged by its largest radius and the chord margin; radii up to half the chord margin share
+// the points' class.
 double CollisionWorld::largest_radius_of_class(double radius) const {
-    if (radius <= 0.5 * bulge_) return 0.5 * bulge_;
+    if (radius <= 0.5 * chord_margin_) return 0.5 * chord_margin_;
     const int exponent = std::ilogb(radius);
     const double power = std::ldexp(1.0, exponent);
     return power == radius ? power : 2.0 * power;
@@ -111,11 +111,11 @@ void CollisionWorld::prepare_radius(double radius) {
     const auto at = std::lower_bound(classes_.begin(), classes_.end(), largest,
                                      [](const RadiusClass& c, double r) { return c.largest_radius < r; });
     if (at != classes_.end() && at->largest_radius == largest) return;
-    const double reach = largest <= 0.5 * bulge_ ? bulge_ : largest + bulge_;
+    const double box_margin = largest <= 0.5 * chord_margin_ ? chord_margin_ : largest + chord_margin_;
     if (!clusters_) {
         clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices_, triangles_));
     }
-    classes_.insert(at, RadiusClass{largest, TriangleBvh(clusters_, reach)});
+    classes_.insert(at, RadiusClass{largest, TriangleBvh(clusters_, box_margin)});
 }
 
 const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
@@ -314,7 +314,7 @@ double CollisionWorld::time_over(SurfaceId surface, const Path& path, double sla
     return triangle_exit_time(path, a, b, c, unit_normal(a, b, c), slack);
 }
 
-bool CollisionWorld::segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const {
+bool CollisionWorld::segment_intersects(SurfaceId surface, const Vec3& p, const Vec3& q) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind == Kind::shape) return !shapes_[range.index].shape.segment_is_clear(p, q);
     if (range.kind == Kind::plane) {

@@ -24,9 +24,9 @@ class CollisionWorld {
 public:
     /// Bakes every placement into world coordinates and builds the broad phase. Throws InputError that names the
     /// collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
-    /// room: by how much paths may leave the chords that the broad phase is asked about, in parts of the mean
+    /// chord_margin: how far beside its chords a path may run before the broad phase divides it, in parts of the mean
     /// triangle's box. Results do not depend on it.
-    explicit CollisionWorld(std::vector<ColliderDescription> colliders, double room = kChordMargin);
+    explicit CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin = kChordMargin);
     CollisionWorld(const CollisionWorld&) = delete;  // the broad phase refers to the arrays
     CollisionWorld& operator=(const CollisionWorld&) = delete;
 
@@ -48,11 +48,11 @@ public:
     };
     [[nodiscard]] std::span<const ShapeSurface> shapes() const { return shapes_; }
 
-    /// Broad phase over the triangles of all meshes for particles of that radius. It speaks of triangles by their place
-    /// in triangles(). Particles are served by radius classes (powers of two), so that small ones do not pay for large
-    /// ones; a class must have been prepared.
+    /// Broad phase over the triangles of all meshes for particles of that radius. It proposes triangles by their index
+    /// in triangles(). There is one for each radius class (powers of two), so that small particles do not pay for large
+    /// ones; the class must have been prepared.
     [[nodiscard]] const TriangleBvh& bvh_for(double radius) const;
-    /// Builds the class of a radius when it is not there yet. Not while others are asking.
+    /// Builds the class of a radius when it is not there yet. Not safe beside queries of other threads.
     void prepare_radius(double radius);
     /// False: every triangle is a candidate of every path. The same results, slowly: the reference of tests.
     void set_culling(bool culls) { culls_ = culls; }
@@ -60,11 +60,11 @@ public:
     [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
     [[nodiscard]] std::span<const Vec3> vertices() const { return vertices_; }
     /// True for triangles of no area, which take no part in collisions: their neighbours' edges cover them.
-    [[nodiscard]] bool is_left_out(std::uint32_t triangle) const {
+    [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
         return degenerate_count_ != 0 && degenerate_[triangle] != 0;
     }
     [[nodiscard]] SurfaceId surface_of_triangle(std::uint32_t triangle) const;
-    /// Place in triangles(); nothing for planes and shapes.
+    /// Index into triangles(); nothing for planes and shapes.
     [[nodiscard]] std::optional<std::uint32_t> triangle_of(SurfaceId surface) const {
         const Range& range = ranges_[collider_of(surface)];
         if (range.kind != Kind::mesh) return std::nullopt;
@@ -112,10 +112,10 @@ public:
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
     /// Time that a path along a surface stays over it, see triangle_exit_time(); the whole duration for a plane.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
-    /// Exact: does the closed segment [p, q] meet the surface?
-    [[nodiscard]] bool segment_meets(SurfaceId surface, const Vec3& p, const Vec3& q) const;
+    /// Exact: does the closed segment [p, q] intersect the surface?
+    [[nodiscard]] bool segment_intersects(SurfaceId surface, const Vec3& p, const Vec3& q) const;
     /// Exact: does the point lie on the surface?
-    [[nodiscard]] bool point_on(SurfaceId surface, const Vec3& p) const { return segment_meets(surface, p, p); }
+    [[nodiscard]] bool point_on(SurfaceId surface, const Vec3& p) const { return segment_intersects(surface, p, p); }
 
     /// World-space mesh of a collider with all its triangles, degenerate ones included; nothing for planes.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
@@ -129,7 +129,7 @@ public:
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
     /// How far it is to the triangles.
     [[nodiscard]] const DistanceField& distance_field() const { return distance_field_; }
-    /// What all of this takes without the colliders' own meshes, bytes: also what the ray library maps by itself.
+    /// What all of this takes without the colliders' own meshes, bytes: also what Embree maps by itself.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// Triangles that take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
@@ -171,7 +171,7 @@ private:
     Box3 triangle_bounds_;
     std::vector<ShapeSurface> shapes_;
     std::vector<std::uint32_t> triangle_materials_;  ///< empty when no mesh names materials by triangle
-    double bulge_ = 0.0;              ///< m by which paths may bulge off the chords that the broad phase is asked about
+    double chord_margin_ = 0.0;       ///< m, how far beside its chords a path may run before it is divided
     TriangleBvh::Clusters clusters_;  ///< of all triangles, shared by the classes
     struct RadiusClass {
         double largest_radius;

@@ -43,7 +43,7 @@ struct Contact {
 [[nodiscard]] Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v);
 
 /// All triangles that come near a particle's path in one step to come, where they are known and few. They serve speed
-/// only: the query that they are cached for need not ask the broad phase.
+/// only: the query that they are cached for needs no broad phase.
 class ContactCandidates {
 public:
     static constexpr std::size_t kMost = 4;

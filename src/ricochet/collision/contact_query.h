@@ -10,17 +10,17 @@
 
 namespace ricochet {
 
-/// What is asked.
+/// A path, and what is already known about it.
 struct ContactQuery {
     const Path& path;     ///< of the centre; finite
     double radius = 0.0;  ///< m, 0 for a point; prepared (CollisionWorld::prepare_radius)
-    /// Where the particle goes on after the path, which begins with it; null: of no interest. The contact is the same.
+    /// Where the particle goes after the path, with which it begins; null: do not look ahead. The contact is the same.
     const LookAhead* look_ahead = nullptr;
     /// All triangles near this path, where an earlier query has found them (LookAheadResult::candidates).
     ContactCandidates candidates = {};
 };
 
-/// What is found.
+/// The first contact, and what else the query has found on the way to it.
 struct ContactQueryResult {
     std::optional<Contact> contact;  ///< the first under the order (time, collider, triangle)
     NearSurfaces near;               ///< for certificates of segments along the path, up to the contact

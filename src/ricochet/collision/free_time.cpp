@@ -48,26 +48,26 @@ double time_outside(const Path& path, const Box3& box) {
     double longest = 0.0;
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
         const Vec3& normal = kAxes[axis];
-        const double place = dot(normal, path.c[0]);
-        const bool is_below = place < dot(normal, box.lower);
-        if (!is_below && place <= dot(normal, box.upper)) continue;
+        const double coordinate = dot(normal, path.c[0]);
+        const bool is_below = coordinate < dot(normal, box.lower);
+        if (!is_below && coordinate <= dot(normal, box.upper)) continue;
         const Plane face{is_below ? box.lower : box.upper, normal};
         longest = std::max(longest, time_free_of_plane(path, face, 0.0));
     }
     return longest;
 }
 
-// Within t the particle gets no further than v t + b t^2 / 2, which is the clearance at the root in the form without
+// Within t the particle gets no further than v t + a t^2 / 2, which is the clearance at the root in the form without
 // cancellation.
 double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from) {
-    const double bend = 2.0 * length(path.c[2]);
+    const double acceleration = 2.0 * length(path.c[2]);
     double time = from;
     for (int step = 0; step < kMostTracingSteps && time < path.duration; ++step) {
-        const double room = field.lower_bound(path.position(time)) - margin;
-        if (!(room > 0.0)) break;
+        const double clearance = field.lower_bound(path.position(time)) - margin;
+        if (!(clearance > 0.0)) break;
         const double speed = length(path.velocity(time));
-        const double way = speed + std::sqrt(speed * speed + 2.0 * bend * room);
-        time += (1.0 - kTimeRounding) * (2.0 * room / way);
+        const double sum = speed + std::sqrt(speed * speed + 2.0 * acceleration * clearance);
+        time += (1.0 - kTimeRounding) * (2.0 * clearance / sum);
     }
     return std::min(time, path.duration);
 }

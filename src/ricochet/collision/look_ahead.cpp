@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/collision/free_time.h"
+#include "ricochet/core/box3.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 
@@ -18,18 +19,57 @@ constexpr int kAdvancementSteps = 4;
 /// A further step of advancement is not worth it when the last one has gained less than this part of a time step.
 constexpr double kLittleOfAStep = 0x1p-5;
 
-}  // namespace
+/// One look-ahead while it runs.
+class LookAheadQuery {
+public:
+    LookAheadQuery(const CollisionWorld& world, const QueryMargins& margins, const Path& path, const LookAhead& ahead,
+                   NarrowPhase& narrow_phase, ContactScratch& scratch)
+        : world_(world),
+          margins_(margins),
+          path_(path),
+          ahead_(ahead),
+          narrow_phase_(narrow_phase),
+          scratch_(scratch) {}
 
-bool LookAheadQuery::run() {
-    pass_planes_and_shapes();
-    if (world_.triangles().empty()) return true;
-    if (result_.free_until > 0.0 && world_.culls() && pass_triangles()) return true;
-    result_ = {};
-    return false;
+    [[nodiscard]] LookAheadOutcome run();
+
+private:
+    void advance_past_planes_and_shapes();
+    [[nodiscard]] bool query_line();
+    [[nodiscard]] bool query_parabola();
+    void query_piece(double from, double to);
+    void add_approach(std::uint32_t triangle, double enter, double last);
+    void keep_candidates(double until);
+    [[nodiscard]] double time_of_approach(std::uint32_t triangle, double enter, double last) const;
+    [[nodiscard]] bool is_left_behind(double separating_speed) const;
+    [[nodiscard]] Box3 box_of_interest() const;
+    [[nodiscard]] bool boxes_hold(double duration) const;
+    [[nodiscard]] double margin_until(double time) const;
+    [[nodiscard]] double end_of_query() const;
+    [[nodiscard]] double end_of_interest() const;
+
+    const CollisionWorld& world_;
+    const QueryMargins& margins_;
+    const Path& path_;
+    const LookAhead& ahead_;
+    NarrowPhase& narrow_phase_;
+    ContactScratch& scratch_;
+    LookAheadResult result_;
+    CandidateSet candidates_ = CandidateSet::near;
+};
+
+LookAheadOutcome LookAheadQuery::run() {
+    advance_past_planes_and_shapes();
+    if (world_.triangles().empty()) return {result_, candidates_};
+    if (result_.free_until > 0.0 && world_.culls()) {
+        const bool is_tested = ahead_.path.degree > 1 ? query_parabola() : query_line();
+        if (is_tested) return {result_, candidates_};
+    }
+    return {};
 }
 
-// For shapes there is no time, only a yes or no: durations are tried, each half of the one before.
-void LookAheadQuery::pass_planes_and_shapes() {
+// A shape is either cleared by a path or not: durations are tried, each half of the one before.
+void LookAheadQuery::advance_past_planes_and_shapes() {
     double& free_until = result_.free_until;
     free_until = ahead_.path.duration;
     const double margin = margins_.radius + ahead_.margin;
@@ -43,8 +83,6 @@ void LookAheadQuery::pass_planes_and_shapes() {
     }
     if (free_until < ahead_.least) free_until = 0.0;
 }
-
-bool LookAheadQuery::pass_triangles() { return ahead_.path.degree > 1 ? query_parabola() : query_line(); }
 
 /// Where paths may come near triangles.
 Box3 LookAheadQuery::box_of_interest() const {
@@ -68,9 +106,9 @@ bool LookAheadQuery::query_line() {
 }
 
 // While a parabola is beyond one side of all triangles no query is needed. Free space is crossed by sphere tracing.
-// Where triangles are near, the broad phase is asked piece by piece: over one piece the query's path, the look-ahead's
-// and all their chords of a step stay within what the boxes leave beside the chord. Where that is not even a step, only
-// the free space beyond the path's end is traced.
+// Where triangles are near, the broad phase is queried piece by piece: over one piece the query's path, the
+// look-ahead's and all their chords of a step stay within what the boxes leave beside the chord. Where that is not even
+// a step, only the free space beyond the path's end is traced.
 bool LookAheadQuery::query_parabola() {
     const double outside = time_outside(ahead_.path, box_of_interest());
     if (outside >= ahead_.least) {
@@ -80,8 +118,8 @@ bool LookAheadQuery::query_parabola() {
     const double end = end_of_query();
     if (!boxes_hold(end)) return false;
     const double margin = margin_until(end);
-    const double bend = length(ahead_.path.c[2]);  // the sagitta over t is bend t^2 / 4; twice that must do
-    const double piece = std::sqrt(2.0 * std::max(0.0, margins_.curvature - ahead_.margin) / bend);
+    // The sagitta over t is |c2| t^2 / 4; twice that must fit.
+    const double piece = std::sqrt(2.0 * std::max(0.0, margins_.curvature - ahead_.margin) / length(ahead_.path.c[2]));
     if (!(piece >= ahead_.least)) {
         candidates_ = test_triangles_near(world_, margins_, path_, narrow_phase_);
         result_.free_until = std::min(
@@ -106,7 +144,7 @@ void LookAheadQuery::query_piece(double from, double to) {
     const Tube tube(ahead_.path.position(from), ahead_.path.position(to), margin_until(to),
                     span * span * ahead_.path.c[2]);
     margins_.bvh->query_tube(tube, [&](std::uint32_t triangle, double enter, double leave) {
-        if (!world_.is_left_out(triangle)) {
+        if (!world_.is_degenerate(triangle)) {
             const bool is_near_path = from + enter * span <= path_.duration;
             const double speed = is_near_path ? narrow_phase_.test_triangle(triangle) : 0.0;
             const bool is_ahead = from + leave * span >= path_.duration && !is_left_behind(speed);
@@ -169,7 +207,7 @@ double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, do
 void LookAheadQuery::keep_candidates(double until) {
     result_.candidates_until = until;
     result_.candidates = ContactCandidates::none();
-    // The triangle that is hit first makes short work of the others.
+    // The triangle that is hit first shortens the tests of the others.
     std::sort(scratch_.approaches.begin(), scratch_.approaches.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
     for (const auto& [triangle, begin] : scratch_.approaches) {
@@ -183,6 +221,13 @@ void LookAheadQuery::keep_candidates(double until) {
 bool LookAheadQuery::is_left_behind(double separating_speed) const {
     if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
     return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);
+}
+
+}  // namespace
+
+LookAheadOutcome look_ahead(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                            const LookAhead& ahead, NarrowPhase& narrow_phase, ContactScratch& scratch) {
+    return LookAheadQuery(world, margins, path, ahead, narrow_phase, scratch).run();
 }
 
 }  // namespace ricochet

@@ -6,12 +6,13 @@
 /// step is what a query would have left: the end of the same path.
 #pragma once
 
+#include <optional>
+
 #include "ricochet/collision/broad_phase.h"
-#include "ricochet/core/box3.h"
 
 namespace ricochet {
 
-/// Where a particle is going beyond the path of a query, if nothing stands in its way.
+/// Where a particle goes beyond the path of a query as long as it is in free flight.
 struct LookAhead {
     Path path;            ///< a line or parabola that begins with the query's path
     double margin = 0.0;  ///< m, > 0: nothing may come nearer than the radius plus this but what is left behind. It
@@ -32,49 +33,17 @@ struct LookAheadResult {
     double candidates_until = 0.0;
 };
 
-/// Looks ahead and tests the triangles near the query's own path by the narrow phase on the way.
-class LookAheadQuery {
-public:
-    /// All must outlive it. narrow_phase has tested planes and shapes, and none is hit.
-    LookAheadQuery(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
-                   const LookAhead& look_ahead, NarrowPhase& narrow_phase, ContactScratch& scratch)
-        : world_(world),
-          margins_(margins),
-          path_(path),
-          ahead_(look_ahead),
-          narrow_phase_(narrow_phase),
-          scratch_(scratch) {}
-
-    /// False when the triangles near the path still have to be tested; nothing is known of what comes after it then.
-    [[nodiscard]] bool run();
-
-    [[nodiscard]] const LookAheadResult& result() const { return result_; }
-    [[nodiscard]] CandidateSet candidates() const { return candidates_; }
-
-private:
-    void pass_planes_and_shapes();
-    [[nodiscard]] bool pass_triangles();
-    [[nodiscard]] bool query_line();
-    [[nodiscard]] bool query_parabola();
-    void query_piece(double from, double to);
-    void add_approach(std::uint32_t triangle, double enter, double last);
-    void keep_candidates(double until);
-    [[nodiscard]] double time_of_approach(std::uint32_t triangle, double enter, double last) const;
-    [[nodiscard]] bool is_left_behind(double separating_speed) const;
-    [[nodiscard]] Box3 box_of_interest() const;
-    [[nodiscard]] bool boxes_hold(double duration) const;
-    [[nodiscard]] double margin_until(double time) const;
-    [[nodiscard]] double end_of_query() const;
-    [[nodiscard]] double end_of_interest() const;
-
-    const CollisionWorld& world_;
-    const QueryMargins& margins_;
-    const Path& path_;
-    const LookAhead& ahead_;
-    NarrowPhase& narrow_phase_;
-    ContactScratch& scratch_;
-    LookAheadResult result_;
-    CandidateSet candidates_ = CandidateSet::near;
+/// What looking ahead has found, and what it has left to be done.
+struct LookAheadOutcome {
+    LookAheadResult result;
+    /// The triangles that have been tested against the query's own path; nothing: they still have to be tested, and
+    /// nothing is known of what comes after the path.
+    std::optional<CandidateSet> tested;
 };
+
+/// Looks ahead, and on the way has the narrow phase test the triangles near the query's own path. narrow_phase has
+/// tested planes and shapes, and none is hit.
+[[nodiscard]] LookAheadOutcome look_ahead(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                                          const LookAhead& ahead, NarrowPhase& narrow_phase, ContactScratch& scratch);
 
 }  // namespace ricochet

@@ -91,7 +91,7 @@ void NarrowPhase::test_shapes() {
 }
 
 double NarrowPhase::test_triangle(std::uint32_t triangle) {
-    if (world_.is_left_out(triangle)) return 0.0;
+    if (world_.is_degenerate(triangle)) return 0.0;
     if (sphere_) return test_sphere(triangle);
     test_point(triangle);
     return 0.0;

@@ -45,7 +45,7 @@ public:
     [[nodiscard]] bool has_hit() const { return !scratch_.hits.empty(); }
     /// s, that of the first hit so far; infinite without one.
     [[nodiscard]] double first_time() const { return first_time_; }
-    /// The surfaces of the first hits. Only when has_hit(); the last thing to be asked.
+    /// The surfaces of the first hits. Only when has_hit(), and only once: it drops the other hits.
     [[nodiscard]] Contact take_first_contact();
 
 private:

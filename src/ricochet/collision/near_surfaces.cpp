@@ -83,7 +83,7 @@ std::vector<SurfaceId> NearSurfaces::surfaces_at(const Vec3& p) const {
 bool NearSurfaces::is_free_after(const Vec3& p, const Vec3& q) const {
     const std::vector<SurfaceId> list = surfaces();
     return std::all_of(list.begin(), list.end(), [&](SurfaceId surface) {
-        if (!world().segment_meets(surface, p, q)) return true;
+        if (!world().segment_intersects(surface, p, q)) return true;
         return world().point_on(surface, p) && world().side_of_surface(surface, q) != 0;
     });
 }

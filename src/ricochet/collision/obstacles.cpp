@@ -21,7 +21,7 @@ bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 
 }  // namespace
 
 bool Obstacles::blocks(SurfaceId surface, const Vec3& to) const {
-    if (world_.segment_meets(surface, from_, to)) return true;
+    if (world_.segment_intersects(surface, from_, to)) return true;
     if (radius_ == 0.0) return false;
     const double tolerance = kPartOfTolerance * sphere_tolerance(radius_, std::max(max_abs(from_), max_abs(to)));
     const double distance = world_.nearest(surface, to).distance;
@@ -40,7 +40,7 @@ void Obstacles::for_each_blocker(const Vec3& to, Found&& found) const {
     }
     if (world_.triangles().empty()) return;
     bvh_.query_segment(from_, to, [&](std::uint32_t triangle) {
-        if (world_.is_left_out(triangle)) return 1.0;
+        if (world_.is_degenerate(triangle)) return 1.0;
         const SurfaceId surface = world_.surface_of_triangle(triangle);
         return blocks(surface, to) && !found(surface) ? 0.0 : 1.0;
     });
@@ -55,20 +55,20 @@ bool Obstacles::block(const Vec3& to) const {
     return any;
 }
 
-ContactSurface Obstacles::seen_from(SurfaceId surface, const Vec3& place, const Vec3& v) const {
+ContactSurface Obstacles::contact_at(SurfaceId surface, const Vec3& p, const Vec3& v) const {
     if (radius_ > 0.0) {
-        const CollisionWorld::Nearest nearest = world_.nearest(surface, place);
+        const CollisionWorld::Nearest nearest = world_.nearest(surface, p);
         return {surface, nearest.normal, nearest.flat};
     }
-    const double distance = world_.signed_distance_from(surface, place);
-    const int side = distance > 0.0 ? 1 : distance < 0.0 ? -1 : world_.side_of_surface(surface, place);
-    return {surface, facing_normal(world_, surface, side, place, v), world_.is_flat(surface)};
+    const double distance = world_.signed_distance_from(surface, p);
+    const int side = distance > 0.0 ? 1 : distance < 0.0 ? -1 : world_.side_of_surface(surface, p);
+    return {surface, facing_normal(world_, surface, side, p, v), world_.is_flat(surface)};
 }
 
-void Obstacles::gather(const Vec3& to, const Vec3& place, const Vec3& v, std::vector<ContactSurface>& out) const {
+void Obstacles::gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector<ContactSurface>& out) const {
     out.clear();
     for_each_blocker(to, [&](SurfaceId surface) {
-        out.push_back(seen_from(surface, place, v));
+        out.push_back(contact_at(surface, p, v));
         return true;
     });
     std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
@@ -80,7 +80,7 @@ void Obstacles::gather(const Vec3& to, const Vec3& place, const Vec3& v, std::ve
             return face.flat && same_normal(face.normal, edge.normal);
         });
     };
-    // Marked first: erasing while looking would compare with what has moved already.
+    // Into a list of its own: erasing in this one would compare with what has moved already.
     std::vector<ContactSurface> kept;
     for (const ContactSurface& surface : all) {
         if (!is_seam(surface)) kept.push_back(surface);

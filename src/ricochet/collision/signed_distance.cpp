@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// True when no place of a box is so near to p that a triangle in it could replace one at that squared distance,
-/// however distances are rounded: they err by less than 2^-48 of the way to the box's far corner.
+/// True when no point of a box is so near to p that a triangle in it could replace one at that squared distance,
+/// however distances are rounded: they err by less than 2^-48 of the distance from the box's far corner.
 bool is_farther(const Box3& box, const Vec3& p, double squared) {
     const Vec3 below = box.lower - p;
     const Vec3 above = p - box.upper;
@@ -80,9 +80,10 @@ public:
         found_.clear();
     }
 
-    /// Returns what is left to look at: as far as the mesh whose nearest triangle is the farthest, once each has one.
+    /// Returns the distance within which more may be found: as far as the mesh whose nearest triangle is the farthest,
+    /// once each has one.
     double operator()(std::uint32_t triangle) {
-        if (distance_.world_.is_left_out(triangle)) return within_;
+        if (distance_.world_.is_degenerate(triangle)) return within_;
         const std::uint32_t mesh = distance_.mesh_of_triangle(triangle);
         const auto at = std::lower_bound(found_.begin(), found_.end(), mesh,
                                          [](const Candidate& c, std::uint32_t m) { return c.mesh < m; });
@@ -132,7 +133,8 @@ std::optional<SignedDistance::Candidate> SignedDistance::nearest_triangle(std::u
     const Mesh& of = meshes_[mesh];
     std::optional<Candidate> best;
     visit_near(p, within, [&](std::uint32_t triangle) {
-        if (triangle < of.first_triangle || triangle >= of.end_triangle || world_.is_left_out(triangle)) return within;
+        if (triangle < of.first_triangle || triangle >= of.end_triangle || world_.is_degenerate(triangle))
+            return within;
         Candidate candidate{mesh, triangle, {}};
         if (!best) {
             candidate.nearest = nearest_on(triangle, p);
@@ -173,7 +175,7 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index
     return if_within(found, within);
 }
 
-/// Over a face the distance from its plane is the accurate one. On the surface itself the way to p has no direction:
+/// Over a face the distance from its plane is the accurate one. On the surface itself the offset to p has no direction:
 /// there the pseudonormal stands in, or the triangle's normal where that is zero.
 std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& candidate, const Vec3& p,
                                                             double within) const {
@@ -225,37 +227,37 @@ void SignedDistance::near(const Vec3& p, double within, std::vector<SurfacePoint
     }
 }
 
-bool SignedDistance::segment_meets(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
-    bool meets = false;
-    visit_met(collider, p, q, [&](SurfaceId) {
-        meets = true;
+bool SignedDistance::segment_intersects(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
+    bool intersects = false;
+    visit_intersected(collider, p, q, [&](SurfaceId) {
+        intersects = true;
         return false;
     });
-    return meets;
+    return intersects;
 }
 
 std::size_t SignedDistance::count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
     if (parts_[collider].kind == Kind::shape) {
-        if (!segment_meets(collider, p, q)) return 0;
+        if (!segment_intersects(collider, p, q)) return 0;
         const auto before = nearest_of_shape(parts_[collider].index, p, std::numeric_limits<double>::infinity());
         const auto after = nearest_of_shape(parts_[collider].index, q, std::numeric_limits<double>::infinity());
         return before && after && before->side == after->side ? 2 : 1;
     }
-    std::vector<SurfaceId> met;  // the hierarchy may propose a triangle twice
-    visit_met(collider, p, q, [&](SurfaceId surface) {
-        if (std::find(met.begin(), met.end(), surface) == met.end()) met.push_back(surface);
+    std::vector<SurfaceId> list;  // the hierarchy may propose a triangle twice
+    visit_intersected(collider, p, q, [&](SurfaceId surface) {
+        if (std::find(list.begin(), list.end(), surface) == list.end()) list.push_back(surface);
         return true;
     });
-    return met.size();
+    return list.size();
 }
 
-/// Calls found(surface), which returns whether to go on, for the surfaces of the collider that [p, q] meets.
+/// Calls found(surface), which returns whether to go on, for the surfaces of the collider that [p, q] intersects.
 template <class Found>
-void SignedDistance::visit_met(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const {
+void SignedDistance::visit_intersected(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const {
     const Part& part = parts_[collider];
     const SurfaceId first = world_.first_surface_of(collider);
     if (part.kind != Kind::mesh) {
-        if (world_.segment_meets(first, p, q)) found(first);
+        if (world_.segment_intersects(first, p, q)) found(first);
         return;
     }
     const Mesh& mesh = meshes_[part.index];
@@ -263,7 +265,7 @@ void SignedDistance::visit_met(std::uint32_t collider, const Vec3& p, const Vec3
     const auto visit = [&](std::uint32_t triangle) {
         if (!goes_on || triangle < mesh.first_triangle || triangle >= mesh.end_triangle) return goes_on ? 1.0 : 0.0;
         const SurfaceId surface = first + (triangle - mesh.first_triangle);
-        if (!world_.is_left_out(triangle) && world_.segment_meets(surface, p, q)) goes_on = found(surface);
+        if (!world_.is_degenerate(triangle) && world_.segment_intersects(surface, p, q)) goes_on = found(surface);
         return goes_on ? 1.0 : 0.0;
     };
     if (world_.culls()) {

@@ -1,5 +1,5 @@
 /// \file
-/// Where is a point with respect to the colliders of a scene: on which side, how far, and where is the nearest place?
+/// Where is a point with respect to the colliders of a scene: on which side, how far, and where is the closest point?
 ///
 /// Planes, balls and cylinders answer by their formula. Meshes answer by the nearest triangle, whose side is judged by
 /// pseudonormals (geometry/mesh/pseudonormals.h): right for meshes that bound a solid and are wound outward; everywhere
@@ -16,7 +16,7 @@
 
 namespace ricochet {
 
-/// The place of a collider's surface that is nearest to a point p.
+/// The point of a collider's surface that is closest to a point p.
 struct SurfacePoint {
     Vec3 point;             ///< on the surface, m
     Vec3 direction;         ///< unit, from the surface to p; the surface's own normal where p lies on it
@@ -30,13 +30,13 @@ struct SurfacePoint {
 
 /// Immutable; safe from any number of threads. Results depend neither on the broad phase nor on the order in which it
 /// proposes triangles: nearest is the smallest under (squared distance in doubles, face before edge before vertex,
-/// surface). A place on a face's rim that is as near as its face counts as the face's.
+/// surface). A point on a face's rim that is as near as its face counts as the face's.
 class SignedDistance {
 public:
     /// The world must outlive it.
     explicit SignedDistance(const CollisionWorld& world);
 
-    /// The place of one collider nearest to p (finite); nothing when it is farther away than `within` (m, >= 0, may be
+    /// The point of one collider closest to p (finite); nothing when it is farther away than `within` (m, >= 0, may be
     /// infinite) or the collider has no triangle with an area.
     [[nodiscard]] std::optional<SurfacePoint> closest(std::uint32_t collider, const Vec3& p, double within) const;
 
@@ -44,11 +44,11 @@ public:
     /// Allocates only while `out` grows (and once a thread).
     void near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const;
 
-    /// Does the closed segment [p, q] meet any surface of the collider? Exact for planes and meshes; errs on the side
-    /// of true for shapes with a formula, by some 2^-90. Both ends must be finite.
-    [[nodiscard]] bool segment_meets(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
+    /// Does the closed segment [p, q] intersect any surface of the collider? Exact for planes and meshes; errs on the
+    /// side of true for shapes with a formula, by some 2^-90. Both ends must be finite.
+    [[nodiscard]] bool segment_intersects(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
-    /// How many surfaces of the collider the closed segment [p, q] meets; a way through an edge meets both its
+    /// How many surfaces of the collider the closed segment [p, q] intersects; one through an edge intersects both its
     /// triangles. Of a shape with a formula 1 when the ends are on different sides, 2 when it goes in and out.
     [[nodiscard]] std::size_t count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
@@ -58,7 +58,7 @@ public:
 private:
     enum class Kind : std::uint8_t { plane, shape, mesh };
 
-    /// Where a collider is found: a place in the world's planes or shapes, or in meshes_.
+    /// Where a collider is found: an index into the world's planes or shapes, or into meshes_.
     struct Part {
         Kind kind;
         std::uint32_t index;
@@ -83,7 +83,7 @@ private:
 
     void add_mesh(std::uint32_t collider);
     template <class Found>
-    void visit_met(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const;
+    void visit_intersected(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const;
     [[nodiscard]] std::uint32_t mesh_of_triangle(std::uint32_t triangle) const;
     template <class Visit>
     void visit_near(const Vec3& p, double within, Visit&& visit) const;

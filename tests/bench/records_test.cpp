@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,7 @@ TEST(BenchRecords, OfAFileHaveTheSameKeysAndTheirOwn) {
 }
 
 TEST(BenchRecords, AreAnArrayAlsoWhenThereAreNone) {
-    EXPECT_EQ(to_json({}), "[]\n");
+    EXPECT_EQ(to_json(std::span<const Record>{}), "[]\n");
     EXPECT_EQ(to_csv({}), "");
 }
 

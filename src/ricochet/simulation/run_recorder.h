@@ -43,7 +43,7 @@ struct BlockRecord {
 inline void BlockRecord::add(const MoveOutcome& outcome) {
     contacts += outcome.bounces;
     stayed += outcome.stayed;
-    frozen += outcome.frozen ? 1 : 0;
+    frozen += outcome.is_frozen() ? 1 : 0;
     bounces_max = std::max(bounces_max, outcome.bounces);
     trials += outcome.trials;
     penetrations += outcome.depth > 0.0 ? 1 : 0;

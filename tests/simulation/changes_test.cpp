@@ -59,7 +59,9 @@ std::uint64_t changing_run(SimulationSetup setup, int threads, bool at_once) {
     const auto change = [&] {
         const std::uint64_t step = simulation.step_index();
         if (step == 40) (void)simulation.add_particle(ball({0.1, 0.2, 0.3}, {1, 2, 3}));
-        if (step == 70) EXPECT_EQ(simulation.remove_particles(std::vector<std::uint64_t>{3, 5, 99999}), 2U);
+        if (step == 70) {
+            EXPECT_EQ(simulation.remove_particles(std::vector<std::uint64_t>{3, 5, 99999}), 2U);
+        }
         if (step == 150) simulation.set_forces(gravity({3.0, 0.0, -9.0}));
         if (step == 220) simulation.set_forces({});
         return true;

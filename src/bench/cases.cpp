@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <iterator>
 
-#include "bench/cases.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet::bench {

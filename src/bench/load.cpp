@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -9,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/case_setup.h"
+#include "bench/case_run.h"
 #include "bench/cases.h"
 #include "bench/load.h"
 #include "bench/timing.h"

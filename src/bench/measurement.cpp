@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "bench/case_run.h"
-#include "bench/case_setup.h"
 #include "bench/timing.h"
 #include "ricochet/core/parallel.h"
 

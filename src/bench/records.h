@@ -1,5 +1,5 @@
 /// \file
-/// Measurements as named fields, and these as JSON and CSV. docs/bench.md lists the names.
+/// What was measured and with what, as named fields, JSON, CSV and tables. docs/bench.md lists the names.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,28 @@
 
 namespace ricochet::bench {
 
+// What numbers were measured with: machine, compiler, libraries.
+
+struct Environment {
+    std::string machine;  ///< machine_slug()
+    std::string cpu;      ///< as the processor calls itself
+    int hardware_threads = 0;
+    std::string compiler;     ///< with its version
+    std::string build_type;   ///< CMake's
+    std::string build_flags;  ///< the compiler's, without those for warnings
+    std::string ray_library;
+    std::string thread_library;
+    std::string date;  ///< UTC, as in 2024-05-31T18:00:00Z
+    std::string ricochet;
+};
+
+/// A name for machines of the same kind, fit for a folder: the processor's model in small letters, digits and hyphens,
+/// and its threads, as in "xeon-platinum-8488c-2t". What every model of a maker says is left out.
+[[nodiscard]] std::string machine_slug(std::string_view cpu, int hardware_threads);
+
+/// Here and now. version: of ricochet.
+[[nodiscard]] Environment this_environment(std::string_view version);
+
 /// A value; std::monostate where there is none.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
@@ -29,6 +51,8 @@ using Record = std::vector<Field>;
 [[nodiscard]] Record record_of(const Row& row);
 /// The same fields, empty where files have none, and those of files.
 [[nodiscard]] Record record_of(const LoadRow& row);
+/// To be appended to those of a row.
+[[nodiscard]] Record record_of(const Environment& environment);
 
 /// An array of objects, one a record; null where there is no value or it is not finite.
 [[nodiscard]] std::string to_json(std::span<const Record> records);

@@ -4,8 +4,7 @@
 #include <atomic>
 #include <utility>
 
-#include "bench/case_setup.h"
-#include "bench/reference.h"
+#include "bench/case_run.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 

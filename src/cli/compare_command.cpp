@@ -9,14 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "cli/gnuplot.h"
-#include "cli/interrupt.h"
-#include "cli/option_values.h"
-#include "cli/progress_line.h"
-#include "cli/scene_arguments.h"
-#include "cli/text_table.h"
+#include "cli/arguments.h"
+#include "cli/terminal.h"
 #include "ricochet/compare/comparison.h"
 #include "ricochet/compare/comparison_files.h"
+#include "ricochet/compare/gnuplot.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -31,7 +28,7 @@ constexpr int kSignalled = 128;  // exit code of a program that a signal ended, 
 
 // The arguments as they stand on the command line.
 struct CompareArguments {
-    SceneArguments scene;
+    cli::SceneArguments scene;
     ComparisonRequest request;
     std::string output;
     std::string threads;
@@ -45,7 +42,7 @@ std::string progress_text(const ComparisonProgress& progress) {
 }
 
 // Finds out whether the scene can run at all before anything in the output folder is touched.
-void check_setup(const SceneArguments& arguments) {
+void check_setup(const cli::SceneArguments& arguments) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {
         const Simulation simulation(std::move(scene.setup));
@@ -87,8 +84,7 @@ void write_numbers(const std::filesystem::path& folder, const Comparison& compar
 // Returns why there are no pictures; empty when there are.
 std::string draw(const std::filesystem::path& folder) {
     const std::vector<std::string> pictures(kComparisonPictures.begin(), kComparisonPictures.end());
-    return cli::draw_with_gnuplot(folder, kComparisonScriptFile, pictures,
-                                  [] { return InterruptGuard::signal() != 0; });
+    return draw_with_gnuplot(folder, kComparisonScriptFile, pictures, [] { return InterruptGuard::signal() != 0; });
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonSource& source,
@@ -122,7 +118,7 @@ void print_report(const Comparison& comparison, const CompareArguments& argument
 
 int run_compare(const CompareArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
-    SceneDescription scene = load_scene(arguments.scene);
+    SceneDescription scene = cli::load_scene(arguments.scene);
     const ComparisonPlan plan = make_plan(arguments.request, scene.setup.options);
     check_setup(arguments.scene);
     const InterruptGuard guard;
@@ -139,7 +135,7 @@ int run_compare(const CompareArguments& arguments) {
 }
 
 void add_options(cli::Command command, CompareArguments& a) {
-    add_scene_arguments(command, a.scene);
+    cli::add_scene_arguments(command, a.scene);
     command.add_option("--output", a.output, "Folder for the report: new, empty, or an earlier run's")
         .type_name("DIR")
         .required();

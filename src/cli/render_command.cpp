@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/film.h"
-#include "cli/interrupt.h"
-#include "cli/option_values.h"
-#include "cli/progress_line.h"
+#include "cli/arguments.h"
 #include "cli/run_pictures.h"
+#include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 

@@ -11,11 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "cli/interrupt.h"
-#include "cli/option_values.h"
-#include "cli/progress_line.h"
-#include "cli/scene_arguments.h"
-#include "cli/violation_report.h"
+#include "cli/arguments.h"
+#include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
@@ -33,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 
 // The arguments as they stand on the command line.
 struct RunArguments {
-    SceneArguments scene;
+    cli::SceneArguments scene;
     std::string output;
     std::string output_state;
     std::string threads;
@@ -196,9 +193,9 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, const OutputDire
 }
 
 SceneDescription load_scene(const RunArguments& arguments) {
-    SceneArguments wanted = arguments.scene;
+    cli::SceneArguments wanted = arguments.scene;
     if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
-    SceneDescription scene = load_scene(wanted);
+    SceneDescription scene = cli::load_scene(wanted);
     scene.setup.options.verify = arguments.verify;
     return scene;
 }
@@ -254,7 +251,7 @@ int run(const RunArguments& arguments) {
 }
 
 void add_options(cli::Command command, RunArguments& a) {
-    add_scene_arguments(command, a.scene);
+    cli::add_scene_arguments(command, a.scene);
     command.add_option("--output", a.output, "Folder for frames and summary: new, empty, or an earlier run's")
         .type_name("DIR")
         .required();

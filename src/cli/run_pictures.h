@@ -1,6 +1,8 @@
-// Pictures of a run: its folder on one side, the renderer on the other.
+// Pictures and films of a run: its folder on one side, the renderer on the other.
 #pragma once
 
+#include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,10 +12,39 @@
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/camera.h"
 #include "ricochet/render/color_map.h"
+#include "ricochet/render/image.h"
 #include "ricochet/render/picture.h"
 #include "ricochet/render/preview.h"
 
 namespace ricochet::cli {
+
+// A film from pictures, through the ffmpeg program.
+
+/// Feeds pictures to ffmpeg, which writes an H.264 film. The film appears under its name when finish() has been called;
+/// without it nothing is left behind.
+class Film {
+public:
+    /// Throws RunError when ffmpeg is not installed. width and height must be even.
+    Film(std::filesystem::path target, int width, int height, int frames_per_second);
+    ~Film();
+    Film(const Film&) = delete;
+    Film& operator=(const Film&) = delete;
+
+    /// Throws RunError with ffmpeg's own words when it has given up.
+    void add(const Image& image);
+    void finish();
+
+private:
+    void start(int width, int height, int frames_per_second);
+    int wait();
+    [[noreturn]] void fail();
+
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;
+    std::FILE* messages_ = nullptr;  // what ffmpeg says on stderr
+    int pipe_ = -1;
+    int process_ = -1;
+};
 
 /// What particles are drawn as.
 enum class ParticleDrawing {

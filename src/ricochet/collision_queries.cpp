@@ -7,15 +7,39 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/signed_distance.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/simulation/collision_queries_impl.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {
+
+/// A collision world, with what only some of the questions need: that is made when the first of them is asked.
+struct CollisionQueries::Impl {
+    explicit Impl(std::shared_ptr<const CollisionWorld> collision_world) : world(std::move(collision_world)) {}
+
+    [[nodiscard]] const SignedDistance& signed_distance() const;
+    /// Of the closed meshes.
+    [[nodiscard]] const std::vector<MeshInterior>& interiors() const;
+
+    std::shared_ptr<const CollisionWorld> world;
+
+private:
+    mutable std::once_flag distance_made_;
+    mutable std::once_flag interiors_made_;
+    mutable std::optional<SignedDistance> distance_;
+    mutable std::vector<MeshInterior> interiors_;
+};
+
 namespace {
 
 /// Part by which a ray's segment is longer than the way to the farthest surface, so that rounding cuts none off.
@@ -108,7 +132,10 @@ const std::vector<MeshInterior>& CollisionQueries::Impl::interiors() const {
 }
 
 CollisionQueries::CollisionQueries(std::vector<ColliderDescription> colliders)
-    : impl_(std::make_shared<const Impl>(world_of(std::move(colliders)))) {}
+    : CollisionQueries(world_of(std::move(colliders))) {}
+
+CollisionQueries::CollisionQueries(std::shared_ptr<const CollisionWorld> world)
+    : impl_(std::make_shared<const Impl>(std::move(world))) {}
 
 const std::vector<ColliderDescription>& CollisionQueries::colliders() const { return impl_->world->colliders(); }
 

@@ -14,6 +14,8 @@
 
 namespace ricochet {
 
+class CollisionWorld;
+
 /// Where a ray first hits a surface.
 struct RayHit {
     double distance = 0.0;  ///< m from the origin, >= 0
@@ -64,7 +66,7 @@ public:
 private:
     friend class Simulation;
     struct Impl;
-    explicit CollisionQueries(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+    explicit CollisionQueries(std::shared_ptr<const CollisionWorld> world);
 
     std::shared_ptr<const Impl> impl_;
 };

@@ -33,4 +33,3 @@
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/options.h"
 #include "ricochet/verify/verifier.h"
-#include "ricochet/verify/violation.h"

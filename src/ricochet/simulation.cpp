@@ -11,7 +11,6 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/simulation/collision_queries_impl.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
@@ -32,7 +31,7 @@ double Simulation::time() const { return impl_->clock.time_at(impl_->recorder.st
 std::uint64_t Simulation::step_index() const { return impl_->recorder.statistics().steps; }
 std::uint64_t Simulation::step_count() const { return impl_->clock.steps(); }
 CollisionQueries Simulation::queries_of(std::shared_ptr<const CollisionWorld> world) {
-    return CollisionQueries(std::make_shared<const CollisionQueries::Impl>(std::move(world)));
+    return CollisionQueries(std::move(world));
 }
 const CollisionQueries& Simulation::collisions() const { return impl_->queries; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }

@@ -13,8 +13,8 @@
 #include "ricochet/collision/collider.h"
 #include "ricochet/collision/surface.h"
 #include "ricochet/collision_queries.h"
-#include "ricochet/core/byte_stream.h"
 #include "ricochet/core/box3.h"
+#include "ricochet/core/byte_stream.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
@@ -25,7 +25,7 @@
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/simulation/options.h"
-#include "ricochet/verify/violation.h"
+#include "ricochet/verify/verifier.h"
 
 namespace ricochet {
 

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/case_setup.h"
-#include "bench/cases.h"
+#include "bench/case_run.h"
 #include "bench/small_cases.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 

@@ -1,4 +1,4 @@
-#include "bench/environment.h"
+#include "bench/records.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bench/case_setup.h"
+#include "bench/case_run.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/case_setup.h"
 #include "bench/small_cases.h"
 
 namespace ricochet::bench {

@@ -1,4 +1,4 @@
-#include "cli/bench_plots.h"
+#include "cli/bench_files.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/cases.h"
-#include "cli/gnuplot.h"
+#include "ricochet/compare/gnuplot.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {

@@ -1,4 +1,4 @@
-#include "cli/violation_report.h"
+#include "cli/terminal.h"
 
 #include <gtest/gtest.h>
 

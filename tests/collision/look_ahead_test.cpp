@@ -1,6 +1,5 @@
 #include "ricochet/collision/look_ahead.h"
 #include "collision/worlds.h"
-#include "ricochet/collision/free_time.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/compare/reference.h"
+#include "ricochet/compare/measured_run.h"
 
 #include <gtest/gtest.h>
 

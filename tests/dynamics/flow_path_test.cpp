@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/dynamics/flight.h"
 
 #include <gtest/gtest.h>
 

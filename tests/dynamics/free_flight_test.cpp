@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/free_flight.h"
+#include "ricochet/dynamics/flight.h"
 
 #include <gtest/gtest.h>
 

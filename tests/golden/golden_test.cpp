@@ -228,8 +228,8 @@ TEST_P(GoldenInstructionSet, EndsInTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenInstructionSet, ::testing::Values("sse2", "sse4.2", "avx2", "avx512"),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& test) {
+                             std::string name = test.param;
                              std::erase(name, '.');
                              return name;
                          });

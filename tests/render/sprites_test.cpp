@@ -1,9 +1,8 @@
-#include "ricochet/render/sprites.h"
+#include "ricochet/render/picture.h"
 
 #include <gtest/gtest.h>
 
 #include "ricochet/core/parallel.h"
-#include "ricochet/render/picture.h"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/deferred_steps.h"
+#include "ricochet/simulation/free_flights.h"
 
 #include <gtest/gtest.h>
 

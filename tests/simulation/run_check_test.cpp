@@ -1,5 +1,5 @@
 // Runs that verify themselves: nothing is found, in closed and open meshes, planes, shapes, for points and spheres.
-#include "ricochet/simulation/run_check.h"
+#include "ricochet/simulation/run_recorder.h"
 
 #include <gtest/gtest.h>
 

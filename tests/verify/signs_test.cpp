@@ -1,4 +1,4 @@
-#include "ricochet/verify/signs.h"
+#include "ricochet/verify/triangle_tests.h"
 
 #include <gtest/gtest.h>
 

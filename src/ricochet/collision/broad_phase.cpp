@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/collision/free_time.h"
+#include "ricochet/collision/look_ahead.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {

@@ -1,6 +1,93 @@
 #include "ricochet/collision/contact_query.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/geometry/predicates/predicates.h"
+
 namespace ricochet {
+
+bool NearSurfaces::is_overlapped(SurfaceId surface) const {
+    const auto& list = scratch_->overlapped;
+    return std::find(list.begin(), list.end(), surface) != list.end();
+}
+
+bool NearSurfaces::starts_in_overlap() const {
+    return margins_.radius > 0.0 ? !scratch_->overlapped.empty() : blocker(start_, start_).has_value();
+}
+
+bool NearSurfaces::plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const {
+    if (side_of(plane.plane, p) * side_of(plane.plane, q) <= 0) return true;
+    if (margins_.radius == 0.0 || is_overlapped(plane.surface)) return false;
+    const double nearest =
+        std::min(std::fabs(signed_distance(p, plane.plane)), std::fabs(signed_distance(q, plane.plane)));
+    return nearest < margins_.radius - margins_.tolerance;
+}
+
+bool NearSurfaces::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
+    if (!shape.shape.segment_is_clear(p, q)) return true;
+    if (margins_.radius == 0.0 || is_overlapped(shape.surface)) return false;
+    return shape.shape.distance_to_segment(p, q) < margins_.radius - margins_.tolerance;
+}
+
+bool NearSurfaces::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
+    if (margins_.radius == 0.0) return geometry_.plane_of(triangle).intersects_segment(p, q);
+    const auto [a, b, c] = world().corners_of_triangle(triangle);
+    if (segment_intersects_triangle(p, q, a, b, c)) return true;
+    if (sphere_segment_is_clear(p, q, margins_.radius, margins_.tolerance, a, b, c)) return false;
+    return !is_overlapped(world().surface_of_triangle(triangle));
+}
+
+bool NearSurfaces::is_free(const Vec3& p, const Vec3& q) const {
+    const auto none = [](const auto& list, const auto& blocks) {
+        return std::none_of(list.begin(), list.end(), blocks);
+    };
+    return none(scratch_->planes, [&](std::uint32_t k) { return plane_blocks(world().planes()[k], p, q); }) &&
+           none(scratch_->shapes, [&](std::uint32_t k) { return shape_blocks(world().shapes()[k], p, q); }) &&
+           none(scratch_->triangles, [&](std::uint32_t t) { return triangle_blocks(t, p, q); });
+}
+
+std::optional<SurfaceId> NearSurfaces::blocker(const Vec3& p, const Vec3& q) const {
+    std::optional<SurfaceId> smallest;
+    const auto consider = [&](SurfaceId surface) {
+        if (!smallest || surface < *smallest) smallest = surface;
+    };
+    for (const std::uint32_t k : scratch_->planes) {
+        if (plane_blocks(world().planes()[k], p, q)) consider(world().planes()[k].surface);
+    }
+    for (const std::uint32_t k : scratch_->shapes) {
+        if (shape_blocks(world().shapes()[k], p, q)) consider(world().shapes()[k].surface);
+    }
+    for (const std::uint32_t triangle : scratch_->triangles) {
+        if (triangle_blocks(triangle, p, q)) consider(world().surface_of_triangle(triangle));
+    }
+    return smallest;
+}
+
+std::vector<SurfaceId> NearSurfaces::surfaces() const {
+    std::vector<SurfaceId> list;
+    for (const std::uint32_t k : scratch_->planes) list.push_back(world().planes()[k].surface);
+    for (const std::uint32_t k : scratch_->shapes) list.push_back(world().shapes()[k].surface);
+    for (const std::uint32_t triangle : scratch_->triangles) list.push_back(world().surface_of_triangle(triangle));
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+}
+
+std::vector<SurfaceId> NearSurfaces::surfaces_at(const Vec3& p) const {
+    std::vector<SurfaceId> list = surfaces();
+    std::erase_if(list, [&](SurfaceId surface) { return !world().point_on(surface, p); });
+    return list;
+}
+
+bool NearSurfaces::is_free_after(const Vec3& p, const Vec3& q) const {
+    const std::vector<SurfaceId> list = surfaces();
+    return std::all_of(list.begin(), list.end(), [&](SurfaceId surface) {
+        if (!world().segment_intersects(surface, p, q)) return true;
+        return world().point_on(surface, p) && world().side_of_surface(surface, q) != 0;
+    });
+}
+
 namespace {
 
 /// True when one is hit. Otherwise the particle has passed them all, and what comes then is not known: the triangles

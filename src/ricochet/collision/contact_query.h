@@ -1,14 +1,63 @@
 /// \file
 /// The first contact of a path with the world: planes and shapes, then triangles by broad and narrow phase, and in the
-/// same query how long the path remains free beyond its end.
+/// same query how long the path remains free beyond its end; and the certificate of segments beside the path.
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/look_ahead.h"
-#include "ricochet/collision/near_surfaces.h"
 
 namespace ricochet {
+
+// The surfaces near a path, and the certificate of segments beside it.
+
+/// The surfaces that a contact query has gathered near its path, up to the first contact. What it says about segments
+/// holds for those on the path or within slack() of it. Valid until the next query with the same scratch memory.
+class NearSurfaces {
+public:
+    NearSurfaces(const SurfaceGeometry& geometry, const ContactScratch& scratch, const QueryMargins& margins,
+                 const Vec3& start, CandidateSet candidates)
+        : geometry_(geometry), scratch_(&scratch), margins_(margins), start_(start), candidates_(candidates) {}
+
+    /// The certificate: no surface blocks the closed segment [p, q] of the centre. A surface blocks a segment that
+    /// intersects it (decided exactly for planes and triangles) or that comes nearer to it than the radius less
+    /// sphere_tolerance(). Surfaces overlapped from the start only block what intersects them.
+    [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
+    /// The surface of the smallest number that blocks the segment.
+    [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
+    /// The same for a segment that starts on surfaces: true when it leaves all of them and intersects no other.
+    [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
+
+    /// True when the surfaces include all that the path's chord between two times may intersect.
+    [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const {
+        return candidates_ == CandidateSet::all || ricochet::covers_chord(world(), margins_, path, from, to);
+    }
+    /// All of them on which the point lies exactly.
+    [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
+    /// True when the sphere overlaps a surface by more than the tolerance (a point: lies on one) at the path's start.
+    [[nodiscard]] bool starts_in_overlap() const;
+
+    [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
+    [[nodiscard]] const CollisionWorld& world() const { return geometry_.world(); }
+    [[nodiscard]] double radius() const { return margins_.radius; }
+    /// m, how far beside the path certified positions may lie: nothing is known of surfaces further off.
+    [[nodiscard]] double slack() const { return margins_.slack; }
+
+private:
+    [[nodiscard]] std::vector<SurfaceId> surfaces() const;
+    [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
+    [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const;
+
+    SurfaceGeometry geometry_;
+    const ContactScratch* scratch_;
+    QueryMargins margins_;
+    Vec3 start_;
+    CandidateSet candidates_;
+};
 
 /// A path, and what is already known about it.
 struct ContactQuery {

@@ -3,13 +3,13 @@
 #include "ricochet/compare/comparison.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "ricochet/compare/measured_run.h"
-#include "ricochet/compare/reference.h"
 #include "ricochet/core/error.h"
 #include "ricochet/simulation.h"
 

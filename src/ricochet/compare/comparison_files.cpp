@@ -1,12 +1,12 @@
 #include "ricochet/compare/comparison_files.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "ricochet/compare/comparison_files.h"
 #include "ricochet/core/hash.h"
 
 namespace ricochet {

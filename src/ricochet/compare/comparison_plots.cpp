@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "ricochet/compare/comparison_files.h"
-#include "ricochet/compare/gnuplot_style.h"
+#include "ricochet/compare/gnuplot.h"
 #include "ricochet/io/run_folder.h"
 
 namespace ricochet {

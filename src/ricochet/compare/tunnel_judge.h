@@ -13,7 +13,7 @@
 #include "ricochet/compare/figures.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/simulation.h"
-#include "ricochet/verify/violation.h"
+#include "ricochet/verify/verifier.h"
 
 namespace ricochet {
 

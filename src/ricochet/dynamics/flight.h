@@ -2,8 +2,10 @@
 /// The path that each integrator says a particle takes inside a step.
 #pragma once
 
+#include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
@@ -72,5 +74,62 @@ struct Flight {
 /// others are on the flight's path.
 [[nodiscard]] PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight,
                                   double s);
+
+// Steps of particles that meet nothing: where begin_flight() would lead to, without its path.
+
+/// One step under an acceleration that depends on neither position, velocity nor time, prepared for many particles. The
+/// state after it has the same bits as the end of begin_flight()'s flight.
+class FreeFlight {
+public:
+    /// acceleration in m/s^2, duration in s.
+    FreeFlight(const Integrator& integrator, const Vec3& acceleration, double duration)
+        : duration_(duration), kick_(duration * acceleration) {
+        if (kicks_first(integrator.kind)) {
+            drift_kick_ = kick_;
+        } else if (integrator.kind != IntegratorKind::forward_euler) {
+            drift_kick_ = (0.5 * duration) * acceleration;
+        }
+    }
+
+    /// The state at the end of the step. A kick of zero changes no bit: flush_tiny() knows but one zero.
+    [[nodiscard]] PhaseState step(const Vec3& position, const Vec3& velocity) const {
+        return {flush_tiny(position + duration_ * (velocity + drift_kick_)), velocity + kick_};
+    }
+
+    /// True when the velocity stays: only its zeros may change their sign, with the first step.
+    [[nodiscard]] bool is_straight() const { return kick_ == Vec3{} && drift_kick_ == Vec3{}; }
+    [[nodiscard]] double duration() const { return duration_; }
+
+private:
+    double duration_;
+    Vec3 kick_;
+    Vec3 drift_kick_;
+};
+
+// First-order motion: the path of a particle that goes with a flow, x' = g(x, t), by the integrators that have a
+// meaning there.
+
+/// A piece of way with a flow.
+struct FlowPath {
+    Path path;
+    double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
+};
+
+/// True for the methods of first-order motion: forward_euler, midpoint, rk4 and dormand_prince. The others step
+/// position and velocity separately and have no meaning here.
+[[nodiscard]] bool carries_along_flows(IntegratorKind kind);
+
+/// The way from a place at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of its
+/// first sub-step, for which it tries `first` seconds. Throws InputError for a method that has no meaning here.
+///
+/// forward_euler is a straight line with the flow's velocity at the start (first order). midpoint (second order) and
+/// rk4 (fourth) make their ordinary step; the path is the cubic Hermite polynomial through both ends with the flow's
+/// velocities there, whose error is of fourth order in the duration. dormand_prince halves its step until the embedded
+/// estimate of its error and the distance between that cubic and the method's own interpolant in the middle of the
+/// step, where it is largest, are within the tolerance of the position; that of the velocity plays no role. Sources: as
+/// in integrator.h; interpolant: L. F. Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46,
+/// 1986.
+[[nodiscard]] FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
+                                 double duration, double first);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
-#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,6 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/embree.h"
-#include "ricochet/render/preview.h"
 
 namespace ricochet {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/particle_step.h"

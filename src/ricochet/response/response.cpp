@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/response/advect.h"
 #include "ricochet/response/exact.h"
 #include "ricochet/response/penalty.h"

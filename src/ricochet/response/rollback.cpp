@@ -5,7 +5,6 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/rollback_mover.h"
 
 namespace ricochet {
 namespace {

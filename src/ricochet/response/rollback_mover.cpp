@@ -1,4 +1,4 @@
-#include "ricochet/response/rollback_mover.h"
+#include "ricochet/response/rollback.h"
 
 #include <algorithm>
 #include <cmath>

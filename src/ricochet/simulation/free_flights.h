@@ -2,20 +2,94 @@
 /// Private to the simulation: the steps of particles that meet nothing.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "ricochet/dynamics/free_flight.h"
-#include "ricochet/simulation/active_set.h"
-#include "ricochet/simulation/deferred_steps.h"
+#include "ricochet/core/algorithms.h"
+#include "ricochet/dynamics/flight.h"
+#include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
-#include "ricochet/simulation/run_check.h"
 #include "ricochet/simulation/run_recorder.h"
 
 namespace ricochet {
+
+// Steps of free flights, integrated together later. A particle that makes many of
+// them at once is fetched from memory once.
+
+/// Which particle has made which of the latest steps. Particles that coast make none of them before they are asked to.
+class DeferredSteps {
+public:
+    /// No more steps are kept, so that they stay in the nearest memory and numbers small.
+    static constexpr std::size_t kMost = 64;
+
+    /// Nothing is deferred by any of `count` particles.
+    explicit DeferredSteps(std::size_t count) : made_(count, 0) {}
+
+    /// One more step that all particles in free flight defer. Not when is_full().
+    void add(const FreeFlight& step) {
+        is_straight_ = (is_empty() || is_straight_) && step.is_straight() && step.duration() >= kShortestStraight;
+        steps_.push_back(step);
+    }
+    [[nodiscard]] bool is_full() const { return steps_.size() == kMost; }
+    [[nodiscard]] bool is_empty() const { return steps_.empty(); }
+
+    /// A particle that is spawned within the step that is made now: it has deferred nothing.
+    void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
+    /// Makes room for `more` particles.
+    void reserve(std::size_t more) { grow_capacity_by(made_, more); }
+    /// Keeps the particles whose flag is not 0. keep.size() is the number of particles.
+    void compact(const std::vector<std::uint8_t>& keep) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < keep.size(); ++i) {
+            if (keep[i] != 0) made_[kept++] = made_[i];
+        }
+        made_.resize(kept);
+    }
+
+    /// Where a particle is after its deferred steps.
+    [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
+        std::size_t k = made_[i];
+        if (k >= steps_.size()) return state;  // more than these, where the step that is made now has failed
+        state = steps_[k++].step(state.position, state.velocity);
+        if (is_straight_ && moves_far(state.velocity)) return straight_on(k, state);
+        for (; k < steps_.size(); ++k) state = steps_[k].step(state.position, state.velocity);
+        return state;
+    }
+    /// The particle has made all steps so far and the one that is made now.
+    void make_next(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size() + 1); }
+    /// Every particle has made all steps.
+    void clear() {
+        steps_.clear();
+        std::fill(made_.begin(), made_.end(), std::uint8_t{0});
+    }
+
+private:
+    // A step by nothing or by 2^-230 m and more along each axis never ends at a position that flush_tiny() changes:
+    // where the position nearly cancels the displacement, both are multiples of 2^-283 m.
+    static constexpr double kShortestStraight = 0x1p-100;  ///< s
+    static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
+
+    [[nodiscard]] static bool moves_far(const Vec3& velocity) {
+        const auto far = [](double v) { return v == 0.0 || std::fabs(v) >= kSlowestStraight; };
+        return far(velocity.x) && far(velocity.y) && far(velocity.z);
+    }
+
+    /// What FreeFlight::step() does, in fewer operations that wait for each other.
+    [[nodiscard]] PhaseState straight_on(std::size_t k, PhaseState state) const {
+        for (; k < steps_.size(); ++k) state.position += steps_[k].duration() * state.velocity;
+        return state;
+    }
+
+    bool is_straight_ = true;  ///< all steps are, and none is very short
+    std::vector<FreeFlight> steps_;
+    std::vector<std::uint8_t> made_;  ///< of every particle how many of them
+};
 
 /// Advances the particles in free flight, and finds the others: the pass over all particles that every step begins
 /// with.

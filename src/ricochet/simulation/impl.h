@@ -11,16 +11,13 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
-#include "ricochet/simulation/active_set.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/free_flights.h"
 #include "ricochet/simulation/offspring.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
 #include "ricochet/simulation/retirement.h"
-#include "ricochet/simulation/run_check.h"
 #include "ricochet/simulation/run_recorder.h"
-#include "ricochet/simulation/step_clock.h"
 
 namespace ricochet {
 

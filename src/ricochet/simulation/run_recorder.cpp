@@ -1,8 +1,46 @@
 #include "ricochet/simulation/run_recorder.h"
 
 #include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
+
+namespace {
+
+/// Hits from the prefetch of a surface's totals to their change.
+constexpr std::size_t kPrefetchDistance = 8;
+
+}  // namespace
+
+std::uint64_t SurfaceTotals::add(std::span<const SurfaceHit> hits) {
+    if (empty()) return 0;
+    std::uint64_t lost = 0;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        if (k + kPrefetchDistance < hits.size()) {
+            const Entry& later = entries_[hits[k + kPrefetchDistance].surface];
+            __builtin_prefetch(&later.hits, 1);
+            __builtin_prefetch(&later.z, 1);
+        }
+        const SurfaceHit& hit = hits[k];
+        Entry& entry = entries_[hit.surface];
+        if (hit.impact) entry.hits.fetch_add(1, std::memory_order_relaxed);
+        const bool x = entry.x.add(hit.impulse.x, kImpulseUnit);
+        const bool y = entry.y.add(hit.impulse.y, kImpulseUnit);
+        const bool z = entry.z.add(hit.impulse.z, kImpulseUnit);
+        lost += x && y && z ? 0 : 1;
+    }
+    return lost;
+}
+
+Vec3 SurfaceTotals::impulse(std::size_t surface) const {
+    const Entry& entry = entries_[surface];
+    return {entry.x.value(kImpulseUnit), entry.y.value(kImpulseUnit), entry.z.value(kImpulseUnit)};
+}
+
 namespace {
 
 /// What all blocks list under `list`, in the order of particles, whatever the order in which they were moved.
@@ -75,6 +113,66 @@ void RunRecorder::end_step() {
     std::stable_sort(contacts_.begin(), contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
+}
+
+namespace {
+
+/// Particles per unit of parallel work.
+constexpr std::size_t kBlock = 64;
+
+/// The colliders as they collide; planes and shapes own one surface each.
+std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world) {
+    std::vector<VerifiedSurface> surfaces(world.colliders().size());
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const ColliderShape& shape = world.colliders()[i].shape;
+        if (const auto* ball = std::get_if<BallShape>(&shape)) {
+            surfaces[i] = VerifiedShape{world_from_unit(*ball), false};
+        } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+            surfaces[i] = VerifiedShape{world_from_unit(*cylinder), true};
+        } else if (auto mesh = world.mesh_of(i)) {
+            surfaces[i] = std::move(*mesh);
+        }
+    }
+    for (const auto& [plane, surface] : world.planes()) {
+        surfaces[world.name_of(surface).collider] = VerifiedPlane{plane.point, plane.normal};
+    }
+    return surfaces;
+}
+
+}  // namespace
+
+RunCheck::RunCheck(const CollisionWorld& world) : verifier_(surfaces_of(world)) {}
+
+void RunCheck::watch_spawned(const Particles& particles) {
+    const std::size_t first = watched_.size();
+    watched_.resize(particles.size());
+    parallel_for_blocks(particles.size() - first, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i]);
+        }
+    });
+}
+
+void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+                     std::span<const Segment> segments, std::vector<Violation>& violations) {
+    const VerifiedStep step{particles.id[i], particles.position[i], moved.position, particles.radius[i], time,
+                            segments};
+    verifier_.check(step, watched_[i], violations);
+}
+
+void RunCheck::restart(const Particles& particles) {
+    watched_.clear();
+    watch_spawned(particles);
+}
+
+void RunCheck::compact(const std::vector<std::uint8_t>& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < watched_.size(); ++i) {
+        if (keep[i] == 0) continue;
+        if (kept != i) watched_[kept] = std::move(watched_[i]);
+        ++kept;
+    }
+    watched_.resize(kept);
 }
 
 }  // namespace ricochet

@@ -3,15 +3,69 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "ricochet/collision/collision_world.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/segment.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/response/response.h"
 #include "ricochet/simulation.h"
-#include "ricochet/simulation/surface_totals.h"
+#include "ricochet/verify/verifier.h"
 
 namespace ricochet {
+
+// Hits and impulses of every surface, added up from any number of threads to the same bits.
+
+/// Sums since the start of the run, one entry a surface.
+class SurfaceTotals {
+public:
+    /// surfaces: how many; 0 where nothing is to be kept.
+    explicit SurfaceTotals(std::size_t surfaces) : entries_(surfaces) {}
+
+    [[nodiscard]] bool empty() const { return entries_.empty(); }
+    [[nodiscard]] std::size_t size() const { return entries_.size(); }
+
+    /// Adds hits; returns how many of them had an impulse that is too large for the sums. Nothing when empty(). From
+    /// any number of threads.
+    std::uint64_t add(std::span<const SurfaceHit> hits);
+    [[nodiscard]] std::uint64_t hits(std::size_t surface) const {
+        return entries_[surface].hits.load(std::memory_order_relaxed);
+    }
+    /// N s, given to the surface.
+    [[nodiscard]] Vec3 impulse(std::size_t surface) const;
+
+    /// Saves or restores the sums; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        for (Entry& entry : entries_) {
+            std::uint64_t hits = entry.hits.load(std::memory_order_relaxed);
+            a(hits);
+            if constexpr (Archive::kReads) entry.hits.store(hits, std::memory_order_relaxed);
+            for (FixedPointSum* sum : {&entry.x, &entry.y, &entry.z}) {
+                auto words = sum->words();
+                a(words);
+                if constexpr (Archive::kReads) sum->set_words(words);
+            }
+        }
+    }
+
+private:
+    struct Entry {
+        std::atomic<std::uint64_t> hits{0};
+        FixedPointSum x;
+        FixedPointSum y;
+        FixedPointSum z;
+    };
+
+    std::vector<Entry> entries_;
+};
 
 /// Time of a particle that its bounce budget has cut off.
 struct CutOff {
@@ -97,6 +151,29 @@ private:
     std::vector<Violation> last_violations_;  // of the step
     bool shows_contacts_;
     bool collects_contacts_;
+};
+
+// Private to the simulation: the verifier at work on a run.
+
+/// The verifier with what it remembers of every living particle, in the order of Particles.
+class RunCheck {
+public:
+    explicit RunCheck(const CollisionWorld& world);
+
+    /// Begins to watch the particles that have been appended since the last call. Not while others check.
+    void watch_spawned(const Particles& particles);
+    /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
+    /// checked from several threads at once.
+    void check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+               std::span<const Segment> segments, std::vector<Violation>& violations);
+    /// Begins to watch all particles from where they are.
+    void restart(const Particles& particles);
+    /// Keeps what Particles::compact() keeps.
+    void compact(const std::vector<std::uint8_t>& keep);
+
+private:
+    Verifier verifier_;
+    std::vector<VerifiedParticle> watched_;
 };
 
 }  // namespace ricochet

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "ricochet/verify/signs.h"
 #include "ricochet/verify/triangle_tests.h"
 
 namespace ricochet {

@@ -1,13 +1,166 @@
+#include "ricochet/verify/triangle_tests.h"
+
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstddef>
-
-#include "ricochet/verify/signs.h"
-#include "ricochet/verify/triangle_tests.h"
+#include <cstdint>
+#include <limits>
 
 namespace ricochet::verify {
+
+namespace {
+
+/// Error of a determinant relative to the sum of its terms' magnitudes. Each term passes at most 8 roundings of half an
+/// epsilon, and so does the sum of magnitudes: 8 epsilon are about twice what is needed.
+template <class Real>
+constexpr Real kFilter = 8 * std::numeric_limits<Real>::epsilon();
+
+/// Where products may have been rounded to zero the filter decides nothing.
+constexpr double kSmallestBound = 0x1p-950;
+
+/// +1 or -1 when the value is certain to have that sign, else 0. Overflow ends in 0 as well.
+template <class Real>
+int certain_sign(Real value, Real magnitude) {
+    const Real bound = kFilter<Real> * magnitude;
+    if (!(bound > static_cast<Real>(kSmallestBound)) || !(bound < std::numeric_limits<Real>::infinity())) return 0;
+    return static_cast<int>(value > bound) - static_cast<int>(value < -bound);
+}
+
+template <class Real>
+struct Vector {
+    Real x, y, z;
+};
+
+template <class Real>
+Vector<Real> between(const Vec3& from, const Vec3& to) {
+    return {static_cast<Real>(to.x) - static_cast<Real>(from.x), static_cast<Real>(to.y) - static_cast<Real>(from.y),
+            static_cast<Real>(to.z) - static_cast<Real>(from.z)};
+}
+
+template <class Real>
+int filtered_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    const Vector<Real> u = between<Real>(a, b), v = between<Real>(a, c), w = between<Real>(a, p);
+    const Real yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
+    const Real value = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
+    const Real magnitude = (std::fabs(yz) + std::fabs(zy)) * std::fabs(w.x) +
+                           (std::fabs(zx) + std::fabs(xz)) * std::fabs(w.y) +
+                           (std::fabs(xy) + std::fabs(yx)) * std::fabs(w.z);
+    return certain_sign(value, magnitude);
+}
+
+// Fixed-size integers need no memory of their own; what does not fit is left to unlimited ones.
+using SmallInteger = boost::multiprecision::int512_t;
+using LargeInteger = boost::multiprecision::cpp_int;
+constexpr int kSmallBits = 500;
+
+/// Coordinates as whole numbers: all of them times one power of two.
+struct Scale {
+    int lowest = std::numeric_limits<int>::max();      ///< exponent of the last place of the smallest coordinate
+    int highest = std::numeric_limits<int>::lowest();  ///< exponent of the largest
+
+    template <class... Points>
+    explicit Scale(const Points&... points) {
+        (include(points), ...);
+    }
+    void include(const Vec3& p) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (p[axis] == 0.0) continue;
+            const int exponent = std::ilogb(p[axis]) + 1;
+            lowest = std::min(lowest, exponent - 53);
+            highest = std::max(highest, exponent);
+        }
+    }
+    /// Do products of `factors` differences and their sums fit?
+    [[nodiscard]] bool is_small(int factors) const {
+        return highest < lowest || factors * (highest - lowest + 2) + 4 <= kSmallBits;
+    }
+};
+
+template <class Integer>
+Integer whole(double x, const Scale& scale) {
+    if (x == 0.0) return 0;
+    int exponent = 0;
+    const double fraction = std::frexp(x, &exponent);
+    const Integer mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+    return Integer(mantissa << static_cast<unsigned>(exponent - 53 - scale.lowest));
+}
+
+template <class Integer>
+using WholePoint = std::array<Integer, 3>;
+
+template <class Integer>
+WholePoint<Integer> whole_between(const Vec3& from, const Vec3& to, const Scale& scale) {
+    WholePoint<Integer> difference;
+    for (int axis = 0; axis < 3; ++axis) {
+        difference[static_cast<std::size_t>(axis)] =
+            whole<Integer>(to[axis], scale) - whole<Integer>(from[axis], scale);
+    }
+    return difference;
+}
+
+template <class Integer>
+int exact_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Scale& scale) {
+    const auto u = whole_between<Integer>(a, b, scale);
+    const auto v = whole_between<Integer>(a, c, scale);
+    const auto w = whole_between<Integer>(a, p, scale);
+    const Integer x = u[1] * v[2] - u[2] * v[1];
+    const Integer y = u[2] * v[0] - u[0] * v[2];
+    const Integer z = u[0] * v[1] - u[1] * v[0];
+    return Integer(x * w[0] + y * w[1] + z * w[2]).sign();
+}
+
+template <class Integer>
+int exact_planar_sign(std::size_t u, std::size_t v, const Vec3& a, const Vec3& b, const Vec3& p, const Scale& scale) {
+    const auto ab = whole_between<Integer>(a, b, scale);
+    const auto ap = whole_between<Integer>(a, p, scale);
+    return Integer(ab[u] * ap[v] - ab[v] * ap[u]).sign();
+}
+
+/// n's own scale is another one: its digits say nothing about places.
+int exact_height_sign(const Vec3& n, const Vec3& point, const Vec3& p) {
+    const Scale of_normal(n), of_places(point, p);
+    const auto difference = whole_between<LargeInteger>(point, p, of_places);
+    LargeInteger sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        sum += whole<LargeInteger>(n[axis], of_normal) * difference[static_cast<std::size_t>(axis)];
+    }
+    return sum.sign();
+}
+
+}  // namespace
+
+int spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    if (const int sign = filtered_spatial_sign<double>(a, b, c, p); sign != 0) return sign;
+    if (const int sign = filtered_spatial_sign<long double>(a, b, c, p); sign != 0) return sign;
+    const Scale scale(a, b, c, p);
+    return scale.is_small(3) ? exact_spatial_sign<SmallInteger>(a, b, c, p, scale)
+                             : exact_spatial_sign<LargeInteger>(a, b, c, p, scale);
+}
+
+int planar_sign(int u, int v, const Vec3& a, const Vec3& b, const Vec3& p) {
+    const double first = (b[u] - a[u]) * (p[v] - a[v]);
+    const double second = (b[v] - a[v]) * (p[u] - a[u]);
+    if (const int sign = certain_sign(first - second, std::fabs(first) + std::fabs(second)); sign != 0) return sign;
+    // A difference is zero only when it is exactly: axis-parallel edges need no whole numbers.
+    if ((b[u] == a[u] || p[v] == a[v]) && (b[v] == a[v] || p[u] == a[u])) return 0;
+    const Scale scale(a, b, p);
+    const auto i = static_cast<std::size_t>(u), j = static_cast<std::size_t>(v);
+    return scale.is_small(2) ? exact_planar_sign<SmallInteger>(i, j, a, b, p, scale)
+                             : exact_planar_sign<LargeInteger>(i, j, a, b, p, scale);
+}
+
+int height_sign(const Vec3& n, const Vec3& point, const Vec3& p) {
+    const Vec3 w = p - point;
+    const int sign = certain_sign(dot(n, w), dot(abs(n), abs(w)));
+    return sign != 0 ? sign : exact_height_sign(n, point, p);
+}
+
+bool on_one_line(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return planar_sign(0, 1, a, b, c) == 0 && planar_sign(1, 2, a, b, c) == 0 && planar_sign(2, 0, a, b, c) == 0;
+}
 
 namespace {
 

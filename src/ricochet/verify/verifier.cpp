@@ -9,7 +9,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/checked_shape.h"
-#include "ricochet/verify/signs.h"
 #include "ricochet/verify/triangle_tests.h"
 #include "ricochet/verify/triangle_tree.h"
 

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "ricochet/geometry/mesh/mesh_connectivity.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "ricochet/dynamics/flow_path.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "ricochet/io/scene/laws.h"
+#include "ricochet/io/scene/context.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::detail {

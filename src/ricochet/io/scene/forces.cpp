@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "ricochet/io/scene/laws.h"
+#include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
 namespace {

@@ -1,9 +1,12 @@
-// Values of options that are more than one number.
+// Arguments that several commands share, and values of options that are more than one number.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "cli/command_line.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet::cli {
 
@@ -28,5 +31,18 @@ struct PictureSize {
 
 /// How often something is timed, 1..1000. Throws InputError.
 [[nodiscard]] std::uint32_t parse_repeats(const std::string& text);
+
+// The arguments of every command that takes a scene.
+
+struct SceneArguments {
+    std::string file;
+    std::vector<std::string> overrides;  ///< PATH=VALUE
+};
+
+/// Adds the scene file and `--set PATH=VALUE`. The arguments must outlive the parser.
+void add_scene_arguments(cli::Command command, SceneArguments& arguments);
+
+/// Reads the scene and prints its warnings on standard error. Throws SceneError.
+[[nodiscard]] SceneDescription load_scene(const SceneArguments& arguments);
 
 }  // namespace ricochet::cli

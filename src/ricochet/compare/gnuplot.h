@@ -1,12 +1,24 @@
 // Pictures through the gnuplot program.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-namespace ricochet::cli {
+namespace ricochet {
+
+// How the pictures look that gnuplot draws for reports: one look for all of them.
+
+/// The beginning of a script: terminal, grid, borders, key. A variable `ending` set before it is to be appended to the
+/// names of the pictures. remark: one line, what the script draws and how it is run.
+[[nodiscard]] std::string gnuplot_start(std::string_view remark);
+
+/// Defines line styles 1 to count: colours that the colour-blind tell apart, and points of different forms, those of
+/// the first larger, so that equal points show all.
+[[nodiscard]] std::string gnuplot_line_styles(std::size_t count);
 
 /// Runs a script in its folder and waits. The script must put the variable `ending` behind the names of the pictures
 /// that it writes; they appear under their own names only when all are complete. Returns why there are no pictures:
@@ -15,4 +27,4 @@ namespace ricochet::cli {
                                             const std::vector<std::string>& pictures,
                                             const std::function<bool()>& should_stop);
 
-}  // namespace ricochet::cli
+}  // namespace ricochet

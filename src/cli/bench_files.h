@@ -1,11 +1,14 @@
-// A folder of benchmark results: one folder a machine, one table and one picture a suite.
+// A folder of benchmark results (one folder a machine, one table and one picture a suite), and its plots.
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "bench/environment.h"
+#include "bench/load.h"
+#include "bench/measurement.h"
 #include "bench/records.h"
 
 namespace ricochet::cli {
@@ -28,5 +31,16 @@ private:
     std::filesystem::path folder_;
     bench::Environment environment_;
 };
+
+// Pictures of the benchmark's numbers.
+
+/// A gnuplot script, with the numbers in it, that draws SUITE.png in the folder it is run in: for `size` the cost over
+/// the number of triangles, for `count` rates over the number of particles, for `threads` the speedup, for `radius` and
+/// `response` the costs side by side, for the others the ratios. Of the other suites' rows those with the most threads
+/// are drawn. At least one row.
+[[nodiscard]] std::string plot_script(std::string_view suite, std::span<const bench::Row> rows);
+
+/// The same for files: how fast they are read and built.
+[[nodiscard]] std::string plot_script(std::span<const bench::LoadRow> rows);
 
 }  // namespace ricochet::cli

@@ -1,16 +1,22 @@
-#include "cli/commands.h"
-
+// The commands that run nothing: info, check and schema.
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 
+#include "cli/arguments.h"
+#include "cli/commands.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet {
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -111,6 +117,57 @@ void add_info_command(cli::Command program, int& exit_code) {
     command.add_flag("--json", options->json, "Print one JSON object");
     command.on_call([options, &exit_code] {
         run_info(*options);
+        exit_code = 0;
+    });
+}
+
+namespace {
+
+std::string counted(std::size_t count, std::string_view singular) {
+    return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
+}
+
+std::size_t triangle_count(const SimulationSetup& setup) {
+    std::size_t triangles = 0;
+    for (const ColliderDescription& collider : setup.colliders) {
+        if (const auto* mesh = std::get_if<MeshShape>(&collider.shape)) triangles += mesh->mesh->triangles.size();
+    }
+    return triangles;
+}
+
+void run_check(const cli::SceneArguments& arguments) {
+    SceneDescription scene = cli::load_scene(arguments);
+    const std::string counts = fmt::format(
+        "{} ({}), {}, {}, {}", counted(scene.setup.colliders.size(), "collider"),
+        counted(triangle_count(scene.setup), "triangle"), counted(scene.setup.emitters.size(), "emitter"),
+        counted(scene.setup.particles.size(), "explicit particle"), counted(scene.setup.forces.size(), "force"));
+    try {
+        const Simulation simulation(std::move(scene.setup));
+        fmt::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
+                   simulation.options().time_step);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", arguments.file, error.what()));
+    }
+}
+
+}  // namespace
+
+void add_check_command(cli::Command program, int& exit_code) {
+    const auto arguments = std::make_shared<cli::SceneArguments>();
+    cli::Command command = program.add_command("check", "Everything that is wrong with a scene, without running it");
+    cli::add_scene_arguments(command, *arguments);
+    command.on_call([arguments, &exit_code] {
+        run_check(*arguments);
+        exit_code = 0;
+    });
+}
+
+void add_schema_command(cli::Command program, int& exit_code) {
+    const auto markdown = std::make_shared<bool>(false);
+    cli::Command command = program.add_command("schema", "Prints the JSON Schema of scene files");
+    command.add_flag("--markdown", *markdown, "Print the reference page instead");
+    command.on_call([markdown, &exit_code] {
+        fmt::print("{}", *markdown ? scene_reference() : scene_schema());
         exit_code = 0;
     });
 }

@@ -1,15 +1,17 @@
-#include "cli/option_values.h"
+#include "cli/arguments.h"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string_view>
 
 #include "ricochet/core/error.h"
 
 namespace ricochet::cli {
+
 namespace {
 
 template <typename Number>
@@ -90,6 +92,22 @@ std::uint32_t parse_repeats(const std::string& text) {
     const auto repeats = parse_all<std::uint32_t>(text);
     if (repeats && *repeats >= 1 && *repeats <= kMost) return *repeats;
     throw InputError(fmt::format("--repeats {}: expected a whole number from 1 to {}", text, kMost));
+}
+
+void add_scene_arguments(cli::Command command, SceneArguments& arguments) {
+    command.add_option("scene", arguments.file, "Scene file (docs/scene-format.md)").required();
+    // One value each, so that the scene file can follow it.
+    command
+        .add_option("--set", arguments.overrides,
+                    "Change one value, for example simulation.time_step=0.01 or colliders[0].scale=2; may be repeated")
+        .type_name("PATH=VALUE")
+        .one_value_each();
+}
+
+SceneDescription load_scene(const SceneArguments& arguments) {
+    SceneDescription scene = read_scene(arguments.file, arguments.overrides);
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "ricochet: warning: {}\n", warning);
+    return scene;
 }
 
 }  // namespace ricochet::cli

@@ -1,0 +1,136 @@
+#include "cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+namespace ricochet::cli {
+
+void print_table(const std::vector<std::vector<std::string>>& table) {
+    std::vector<std::size_t> widths(table.front().size(), 0);
+    for (const auto& row : table) {
+        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+    }
+    for (const auto& row : table) {
+        std::string line = fmt::format("  {:<{}}", row.front(), widths.front());
+        for (std::size_t k = 1; k < row.size(); ++k) line += fmt::format("  {:>{}}", row[k], widths[k]);
+        fmt::print("{}\n", line);
+    }
+}
+
+ProgressLine::ProgressLine(bool quiet)
+    : enabled_(!quiet && ::isatty(STDERR_FILENO) == 1), next_(std::chrono::steady_clock::now()) {}
+
+ProgressLine::~ProgressLine() { erase(); }
+
+bool ProgressLine::due() {
+    if (!enabled_) return false;
+    const std::lock_guard lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + std::chrono::milliseconds(100);
+    return true;
+}
+
+void ProgressLine::show(const std::string& text) {
+    if (!enabled_) return;
+    const std::lock_guard lock(mutex_);
+    fmt::print(stderr, "\r{}\033[K", text);
+    (void)std::fflush(stderr);
+    shown_ = true;
+}
+
+void ProgressLine::erase() {
+    const std::lock_guard lock(mutex_);
+    if (!shown_) return;
+    fmt::print(stderr, "\r\033[K");
+    (void)std::fflush(stderr);
+    shown_ = false;
+}
+
+std::string duration_text(double seconds) {
+    if (!std::isfinite(seconds) || seconds > 1e8) return "long";
+    const auto whole = static_cast<long>(std::lround(std::max(0.0, seconds)));
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string short_number(double value) {
+    if (value >= 1e9) return fmt::format("{:.3g} G", value / 1e9);
+    if (value >= 1e6) return fmt::format("{:.3g} M", value / 1e6);
+    if (value >= 1e3) return fmt::format("{:.3g} k", value / 1e3);
+    return fmt::format("{:.0f}", value);
+}
+
+namespace {
+
+const char* text_of(ViolationKind kind) {
+    switch (kind) {
+        case ViolationKind::crossing:
+            return "a segment meets";
+        case ViolationKind::gap:
+            return "its segments do not join";
+        case ViolationKind::wrong_side:
+            return "is on another side than at birth of";
+        case ViolationKind::overlap:
+            return "overlaps";
+    }
+    return "";
+}
+
+std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {
+    std::string line =
+        fmt::format("leak: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}", violation.particle,
+                    violation.place.x, violation.place.y, violation.place.z, violation.time, text_of(violation.kind));
+    if (violation.collider) line += fmt::format(" collider \"{}\"", colliders[*violation.collider].name);
+    if (violation.triangle) line += fmt::format(", triangle {}", *violation.triangle);
+    return line;
+}
+
+}  // namespace
+
+std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
+                                         const std::vector<ColliderDescription>& colliders) {
+    std::vector<std::string> lines;
+    for (const Violation& violation : violations.first(std::min(violations.size(), kMostListedViolations))) {
+        lines.push_back(line_of(violation, colliders));
+    }
+    if (count > lines.size()) lines.push_back(fmt::format("leak: and {} more", count - lines.size()));
+    return lines;
+}
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void remember(int signal) { received = signal; }
+
+void catch_once(int signal) {
+    struct sigaction action {};
+    action.sa_handler = remember;
+    // The default comes back with the first one, so that the second ends the process; system calls go on.
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+    (void)::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+InterruptGuard::InterruptGuard() {
+    received = 0;
+    catch_once(SIGINT);
+    catch_once(SIGTERM);
+}
+
+InterruptGuard::~InterruptGuard() {
+    (void)std::signal(SIGINT, SIG_DFL);
+    (void)std::signal(SIGTERM, SIG_DFL);
+}
+
+int InterruptGuard::signal() { return received; }
+
+}  // namespace ricochet::cli

@@ -1,0 +1,73 @@
+// What the tool says to a terminal, and hears from it.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ricochet/collision/collider.h"
+#include "ricochet/verify/verifier.h"
+
+namespace ricochet::cli {
+
+// Tables on standard output.
+
+/// A header and rows of as many cells each: the first column to the left, numbers to the right.
+void print_table(const std::vector<std::vector<std::string>>& table);
+
+// One line on a terminal that is drawn over and over, and nothing at all in a pipe.
+
+/// Progress on stderr. May be used from several threads.
+class ProgressLine {
+public:
+    /// quiet: show nothing even on a terminal.
+    explicit ProgressLine(bool quiet);
+    /// Erases the line.
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    /// True when it is time to draw again (ten times a second at most).
+    [[nodiscard]] bool due();
+    void show(const std::string& text);
+    void erase();
+
+private:
+    bool shown_ = false;
+    bool enabled_;
+    std::chrono::steady_clock::time_point next_;
+    std::mutex mutex_;
+};
+
+/// Seconds as people say them: 4 s, 3 min 05 s, 2 h 10 min.
+[[nodiscard]] std::string duration_text(double seconds);
+/// A count or rate with k, M or G: 950, 12.3 k, 4.56 M.
+[[nodiscard]] std::string short_number(double value);
+
+/// Most violations that are listed.
+inline constexpr std::size_t kMostListedViolations = 20;
+
+/// One line for every violation, up to kMostListedViolations, with particle, place, time, collider and triangle; and
+/// one with the number of those that are not listed. violations: the first of the `count` that there are.
+[[nodiscard]] std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
+                                                       const std::vector<ColliderDescription>& colliders);
+
+// Ctrl-C and kill: the first one asks the work to end properly, the second one ends the process at once.
+
+/// Catches the first SIGINT or SIGTERM while it lives. One at a time.
+class InterruptGuard {
+public:
+    InterruptGuard();
+    ~InterruptGuard();
+    InterruptGuard(const InterruptGuard&) = delete;
+    InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+    /// The signal that came in; 0 when none did.
+    [[nodiscard]] static int signal();
+};
+
+}  // namespace ricochet::cli

@@ -1,0 +1,217 @@
+// How the particles of a simulation change in number: emitted, spawned by particles, added and removed by the user.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/impl.h"
+#include "ricochet/simulation/retirement.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet {
+
+// Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
+void Simulation::Impl::emit_particles(const TimeSpan& step) {
+    std::vector<Particle> born;
+    for (Emitter& emitter : emitters) {
+        std::vector<Particle> births = emitter.births(step.begin, step.end);
+        born.insert(born.end(), std::make_move_iterator(births.begin()), std::make_move_iterator(births.end()));
+    }
+    std::stable_sort(born.begin(), born.end(),
+                     [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
+    const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, store.size());
+    const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
+    recorder.statistics().births_refused_by_population += born.size() - allowed;
+    reserve(allowed);
+    for (std::size_t k = 0; k < allowed; ++k) add(std::move(born[k]));
+    if (allowed > 0 && coupled.is_active()) coupled.bind(particles());
+    if (check) check->watch_spawned(particles());
+}
+
+/// Returns the children.
+ParticleRange Simulation::Impl::spawn_children(const TimeSpan& step) {
+    const ParticleRange none{store.size(), store.size()};
+    if (!offspring) return none;
+    OffspringCounts counts;
+    for (Particle& child :
+         offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(), counts)) {
+        add(std::move(child));
+    }
+    SimulationStatistics& statistics = recorder.statistics();
+    statistics.children += counts.children;
+    statistics.births_refused_by_depth += counts.refused_by_depth;
+    statistics.births_refused_by_population += counts.refused_by_population;
+    const ParticleRange children{none.begin, store.size()};
+    if (!children.empty() && coupled.is_active()) coupled.bind(particles());
+    if (check) check->watch_spawned(particles());
+    return children;
+}
+
+void Simulation::Impl::reserve(std::size_t more) {
+    store.reserve(more);
+    schedule.reserve(more);
+    free_flights.reserve(more);
+}
+
+void Simulation::Impl::add(Particle&& particle) {
+    world.prepare_radius(particle.radius);
+    if (starts_in_overlap(particle)) ++recorder.statistics().started_inside;
+    schedule.append(particle.pinned);
+    free_flights.append();
+    store.append(std::move(particle));
+    const std::size_t i = store.size() - 1;
+    if (response->keeps_sides() && is_finite(particles().position[i])) {
+        response->first_sides(particles().position[i], store.sides_of(i));
+    }
+    ++recorder.statistics().emitted;
+}
+
+bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
+    const Vec3 position = flush_tiny(particle.position);
+    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
+    ContactScratch scratch;
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    const Path path = line_path(position, Vec3{}, 0.0);
+    return find_first_contact(geometry, {path, particle.radius}, scratch).near.starts_in_overlap();
+}
+
+// What users change between two steps.
+
+std::uint64_t Simulation::add_particle(Particle particle) { return add_particles(std::span(&particle, 1)).front(); }
+
+std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> particles) {
+    impl_->require_between_steps();
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+        validate(particles[k], k, impl_->particles().attributes.columns().size());
+    }
+    const std::uint64_t most = options().most_particles;
+    const std::uint64_t room = most - std::min<std::uint64_t>(most, impl_->store.size());
+    if (particles.size() > room) {
+        throw InputError(fmt::format("add_particles: found {} particles, expected at most {}: most_particles is {}",
+                                     particles.size(), room, most));
+    }
+    impl_->reserve(particles.size());
+    std::vector<std::uint64_t> ids;
+    for (Particle particle : particles) {
+        particle.birth_time = time();
+        particle.origin = Origin{};
+        impl_->add(std::move(particle));
+        ids.push_back(impl_->particles().id.back());
+    }
+    if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles());
+    if (impl_->check) impl_->check->watch_spawned(impl_->particles());
+    return ids;
+}
+
+bool Simulation::remove_particle(std::uint64_t id) { return remove_particles(std::span(&id, 1)) == 1; }
+
+std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
+    impl_->require_between_steps();
+    std::vector<std::uint64_t> sorted(ids.begin(), ids.end());
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint8_t> keep(impl_->store.size(), 1);
+    std::size_t removed = 0;
+    SimulationStatistics& statistics = impl_->recorder.statistics();
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (!std::binary_search(sorted.begin(), sorted.end(), impl_->particles().id[i])) continue;
+        keep[i] = 0;
+        ++removed;
+        statistics.lost_impulses += impl_->mover.add_weight(i, time(), 1.0);
+        statistics.resting -= impl_->particles().resting[i];
+        statistics.asleep -= impl_->store.is_asleep(i) ? 1 : 0;
+    }
+    statistics.removed += removed;
+    if (removed > 0) impl_->compact(keep);
+    return removed;
+}
+
+// What was known of free flights, and what has let particles sleep, was known for the forces until now.
+void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
+    impl_->require_between_steps();
+    validate(std::span(forces));
+    if (options().flow != nullptr && !forces.empty()) {
+        throw InputError(
+            fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));
+    }
+    impl_->free_flights.end_deferring();
+    SimulationStatistics& statistics = impl_->recorder.statistics();
+    for (std::size_t i = 0; i < impl_->store.size(); ++i) {
+        statistics.lost_impulses += impl_->mover.add_weight(i, time(), 1.0);
+        impl_->store.wake(i);
+    }
+    statistics.asleep = 0;
+    impl_->forces = ForceField(std::move(forces));
+    impl_->store.set_may_sleep(impl_->acceleration.sleeping && impl_->forces.is_steady());
+    impl_->forget_queries();
+}
+
+void Simulation::on_contact(ContactCallback callback) {
+    impl_->require_between_steps();
+    impl_->callback = std::move(callback);
+    impl_->recorder.show_contacts(options().record_contacts || impl_->callback);
+}
+
+void Simulation::Impl::require_between_steps() const {
+    if (!inside_step) return;
+    throw RunError("particles, forces and callbacks of a simulation can be changed between its steps only");
+}
+
+void Simulation::Impl::report_contacts() {
+    if (!callback || recorder.contact_records().empty()) return;
+    is_reporting = true;
+    try {
+        callback(recorder.contact_records());
+    } catch (...) {
+        is_reporting = false;
+        throw;
+    }
+    is_reporting = false;
+}
+
+// A free flight ends before the particle's life does.
+Departure Retirement::departure_of(std::size_t i, double time) const {
+    const Departure by_bounds = is_outside(i) ? Departure::out_of_bounds : Departure::none;
+    if (schedule_.is_in_free_flight(i)) return by_bounds;
+    const Particles& particles = store_.particles();
+    if (particles.absorbed[i] == kShattered) return Departure::shattered;
+    if (particles.absorbed[i] != 0) return Departure::absorbed;
+    if (particles.birth_time[i] + particles.lifetime[i] <= time) return Departure::expired;
+    return by_bounds;
+}
+
+EndOfStepCounts Retirement::count(double time) const {
+    std::vector<EndOfStepCounts> blocks(blocks_of(store_.size()));
+    parallel_for_blocks(store_.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        blocks[block] = count_block(begin, end, time);
+    });
+    EndOfStepCounts all;
+    for (const EndOfStepCounts& block : blocks) {
+        all.leaving += block.leaving;
+        all.resting += block.resting;
+        all.held += block.held;
+    }
+    return all;
+}
+
+EndOfStepCounts Retirement::count_block(std::size_t begin, std::size_t end, double time) const {
+    const Particles& particles = store_.particles();
+    EndOfStepCounts counts;
+    for (std::size_t i = begin; bounds_ && i < end; ++i) {
+        counts.leaving += schedule_.is_in_free_flight(i) && is_outside(i) ? 1 : 0;
+    }
+    schedule_.visit_all_but_free_flights(begin, end, [&](std::size_t i) {
+        const bool leaves = departure_of(i, time) != Departure::none;
+        counts.leaving += leaves ? 1 : 0;
+        counts.resting += leaves ? 0 : particles.resting[i];
+        counts.held += leaves ? 0 : particles.held[i];
+    });
+    return counts;
+}
+
+}  // namespace ricochet

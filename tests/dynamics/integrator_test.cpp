@@ -1,7 +1,7 @@
 // Orders of convergence in free flight, against closed forms; what symplectic methods keep; what an adaptive one
 // promises.
-#include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/flight.h"
 
 #include <gtest/gtest.h>
 
@@ -299,12 +299,9 @@ TEST(SymplecticMethods, KeepTheEnergyBoundedOverAHundredThousandPeriods) {
     EXPECT_GT(drift_of(IntegratorKind::forward_euler, 20, 40).largest, 1.0);
 }
 
-TEST(IntegratorNames, RoundTrip) {
-    for (const std::string_view name : integrator_names()) {
-        ASSERT_TRUE(integrator_from_name(name).has_value());
-        EXPECT_EQ(name_of(*integrator_from_name(name)), name);
-    }
-    EXPECT_FALSE(integrator_from_name("euler").has_value());
+TEST(IntegratorNames, StandInTheOrderOfTheEnumeration) {
+    const std::vector<std::string_view> names = integrator_names();
+    for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(name_of(static_cast<IntegratorKind>(k)), names[k]);
 }
 
 }  // namespace

@@ -62,13 +62,6 @@ void share_momentum(const Vec3& velocity, double mass, std::vector<Particle>& fr
 
 }  // namespace
 
-std::optional<BirthEvent> birth_event_from_name(std::string_view name) {
-    if (name == "life") return BirthEvent::life;
-    if (name == "death") return BirthEvent::death;
-    if (name == "impact") return BirthEvent::impact;
-    return std::nullopt;
-}
-
 std::vector<LifeBirth> births_in_life(const Emitter& emitter, const Particle& parent, double from, double to) {
     const std::uint64_t key = mixed_key(parent.origin.lineage, emitter.number(), 0xFFFFFFFFU);
     const double rate = emitter.draw_once(key, kLifeRatePurpose, emitter.description().rate);

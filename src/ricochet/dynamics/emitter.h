@@ -41,8 +41,6 @@ enum class BirthEvent {
     impact,  ///< at an impact whose impulse reaches the threshold
 };
 
-[[nodiscard]] std::optional<BirthEvent> birth_event_from_name(std::string_view name);
-
 /// The rule by which an emitter's particles come from other particles.
 struct ParentRule {
     std::uint32_t emitter = 0;  ///< whose particles are the parents, as its number in the scene

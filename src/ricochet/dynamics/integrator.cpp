@@ -125,13 +125,6 @@ Flight parabolic_flight(const ForceField& forces, const ForceInput& state, doubl
 
 }  // namespace
 
-std::optional<IntegratorKind> integrator_from_name(std::string_view name) {
-    for (const auto& [kind, known] : kNames) {
-        if (known == name) return kind;
-    }
-    return std::nullopt;
-}
-
 std::string_view name_of(IntegratorKind kind) {
     return std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; })->second;
 }

@@ -2,7 +2,6 @@
 /// Integrators by name, with their settings.
 #pragma once
 
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -39,7 +38,6 @@ struct Integrator {
     friend bool operator==(const Integrator&, const Integrator&) = default;
 };
 
-[[nodiscard]] std::optional<IntegratorKind> integrator_from_name(std::string_view name);
 [[nodiscard]] std::string_view name_of(IntegratorKind kind);
 /// True for the methods that put the whole step's force into the velocity first and drift in a straight line then.
 [[nodiscard]] constexpr bool kicks_first(IntegratorKind kind) {

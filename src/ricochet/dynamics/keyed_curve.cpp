@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -11,9 +10,6 @@
 
 namespace ricochet {
 namespace {
-
-constexpr std::array<Interpolation, 3> kInterpolations = {Interpolation::linear, Interpolation::slow_in_slow_out,
-                                                          Interpolation::spline};
 
 bool is_good(double value) { return std::isfinite(value); }
 bool is_good(const Vec3& value) { return is_finite(value); }
@@ -54,13 +50,6 @@ Value parabola_slope(double before, const Value& slope_before, double after, con
 
 }  // namespace
 
-std::optional<Interpolation> interpolation_from_name(std::string_view name) {
-    for (const Interpolation interpolation : kInterpolations) {
-        if (name_of(interpolation) == name) return interpolation;
-    }
-    return std::nullopt;
-}
-
 std::string_view name_of(Interpolation interpolation) {
     switch (interpolation) {
         case Interpolation::linear:
@@ -72,8 +61,6 @@ std::string_view name_of(Interpolation interpolation) {
     }
     return "";
 }
-
-std::span<const Interpolation> interpolations() { return kInterpolations; }
 
 template <class Value>
 KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation, CurveEnds ends)

@@ -6,8 +6,6 @@
 /// (piecewise cubic Bessel interpolation).
 #pragma once
 
-#include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -23,10 +21,7 @@ enum class Interpolation {
                        ///< (Catmull-Rom where keys are evenly spaced): continuous derivative
 };
 
-[[nodiscard]] std::optional<Interpolation> interpolation_from_name(std::string_view name);
 [[nodiscard]] std::string_view name_of(Interpolation interpolation);
-/// All of them, in the order of the enumeration.
-[[nodiscard]] std::span<const Interpolation> interpolations();
 
 /// What holds before the first and after the last key.
 enum class CurveEnds {

@@ -63,8 +63,6 @@ public:
     /// Distributes over the contact points what a pull, m/s^2, presses onto them.
     void load(const Vec3& pull);
     void unload() { loads_ = {}; }
-    /// By load(): the acceleration, m/s^2, with which each contact point holds the particle.
-    [[nodiscard]] const std::array<double, 3>& loads() const { return loads_; }
     [[nodiscard]] bool is_loaded() const { return loads_[0] > 0.0 || loads_[1] > 0.0 || loads_[2] > 0.0; }
     /// Coulomb coefficient of all contact points together under the pull that was given to load().
     [[nodiscard]] double friction(const Vec3& pull, const ImpactAnswer& impact) const;
@@ -87,7 +85,7 @@ private:
     std::array<SurfaceId, kMostPoints> surfaces_{};  // 0 beyond count_
     std::array<Vec3, kMostPoints> normals_;
     std::array<bool, kMostPoints> flat_{};
-    std::array<double, kMostPoints> loads_{};      // m/s^2
+    std::array<double, kMostPoints> loads_{};      // m/s^2 with which each holds the particle
     std::array<SurfaceId, kMostRecent> recent_{};  // a ring of the latest surfaces touched
     std::size_t recent_count_ = 0;                 // ever touched
 };

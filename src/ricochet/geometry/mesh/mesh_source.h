@@ -93,7 +93,6 @@ public:
         if (comes_next(' ')) ++at_;
         return !comes_plain() && at_line_end_slowly();
     }
-    [[nodiscard]] bool at_text_end() const { return at_ == end_; }
     /// Next word of the line; empty at its end.
     [[nodiscard]] std::string_view word();
     /// Rest of the line without blanks at its ends, comments included.

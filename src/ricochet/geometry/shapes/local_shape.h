@@ -131,7 +131,6 @@ public:
 
     [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
     [[nodiscard]] bool is_capped() const { return is_capped_; }
-    [[nodiscard]] bool is_sphere() const { return !is_capped_ && ellipsoid_.is_round(); }
     [[nodiscard]] double half_height() const { return half_height_; }
     /// Radius of a ball about the origin that holds the shape, m.
     [[nodiscard]] double extent() const { return ellipsoid_.largest() + half_height_; }

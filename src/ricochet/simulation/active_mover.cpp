@@ -22,6 +22,12 @@ void ActiveSet::cut_evenly() {
     for (std::size_t k = 0; k < ends_.size(); ++k) ends_[k] = std::min((k + 1) * kParticleBlock, particles_.size());
 }
 
+bool ActiveSet::is_worth_sorting(std::size_t all_particles, std::size_t triangles) const {
+    constexpr std::size_t kFewActive = 512;
+    constexpr std::size_t kFewTriangles = std::size_t{1} << 17U;
+    return size() >= kFewActive && size() <= all_particles / 4 && triangles >= kFewTriangles;
+}
+
 void ActiveSet::sort_by_position(const std::vector<Vec3>& positions, const Box3& box) {
     const auto bits = static_cast<unsigned>(std::bit_width(positions.size()));
     std::vector<std::uint64_t> keys(particles_.size());

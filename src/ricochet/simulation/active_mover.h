@@ -59,6 +59,10 @@ public:
     /// Puts the list in the order of a space-filling curve in the box, so that particles that follow each other query
     /// the same triangles. Deterministic.
     void sort_by_position(const std::vector<Vec3>& positions, const Box3& box);
+    /// True when that saves more than it costs: the set is a thin selection of all particles, so that its order in
+    /// memory is of no use, and the caches hold only a part of the triangles. Ordering most of the particles fetches
+    /// them from memory at random: that cost debris 40 % (docs/decisions/2026-11-23-what-pays.md).
+    [[nodiscard]] bool is_worth_sorting(std::size_t all_particles, std::size_t triangles) const;
 
 private:
     [[nodiscard]] std::size_t begin_of(std::size_t k) const { return k == 0 ? 0 : ends_[k - 1]; }

@@ -6,13 +6,6 @@
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
-namespace {
-
-/// Order pays for neither few particles nor few triangles, whose hierarchy stays in the L1 and L2 caches anyway.
-constexpr std::size_t kFewActive = 512;
-constexpr std::size_t kFewTriangles = 1024;
-
-}  // namespace
 
 void Simulation::step() {
     if (!finished()) impl_->step();
@@ -104,8 +97,9 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
 void Simulation::Impl::order_active_set(ActiveSet& active) const {
     if (options.response != ResponseKind::exact) return;
     active.cut_evenly();
-    const bool pays = active.size() >= kFewActive && world.triangles().size() >= kFewTriangles;
-    if (acceleration.spatial_order && pays) active.sort_by_position(particles().position, world.triangle_bounds());
+    if (acceleration.spatial_order && active.is_worth_sorting(store.size(), world.triangles().size())) {
+        active.sort_by_position(particles().position, world.triangle_bounds());
+    }
 }
 
 void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {

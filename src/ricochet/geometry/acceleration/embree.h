@@ -109,10 +109,9 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// A new device, on huge pages where the system has them, with further Embree configuration. Geometries and rays need
-/// mask -1: Embree 4 always masks.
+/// A new device, in Embree's own configuration language. Geometries and rays need mask -1: Embree 4 always masks.
 [[nodiscard]] inline Device make_device(const std::string& config = {}) {
-    Device device(rtcNewDevice(("hugepages=1," + config).c_str()));
+    Device device(rtcNewDevice(config.c_str()));
     if (device.get() == nullptr) throw RunError("Embree could not create a device");
     return device;
 }

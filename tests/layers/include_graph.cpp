@@ -68,7 +68,7 @@ constexpr std::array kDoors = {
     Door{"benchmark/", "bench/.*"},
     Door{"Eigen/", "src/ricochet/dynamics/implicit_euler\\.cpp"},
     Door{"boost/", "src/ricochet/verify/[^/]*\\.cpp|tests/.*"},
-    Door{"(unistd|fcntl|signal|spawn)\\.h|sys/", ".*\\.cpp|tests/.*"},
+    Door{"(unistd|fcntl|signal|spawn|malloc)\\.h|sys/", ".*\\.cpp|tests/.*"},
 };
 
 bool matches(const std::string& text, const std::string& pattern) {

@@ -86,7 +86,7 @@ const char* text_of(ViolationKind kind) {
 std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {
     std::string line =
         fmt::format("leak: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}", violation.particle,
-                    violation.place.x, violation.place.y, violation.place.z, violation.time, text_of(violation.kind));
+                    violation.position.x, violation.position.y, violation.position.z, violation.time, text_of(violation.kind));
     if (violation.collider) line += fmt::format(" collider \"{}\"", colliders[*violation.collider].name);
     if (violation.triangle) line += fmt::format(", triangle {}", *violation.triangle);
     return line;

@@ -42,7 +42,7 @@ private:
 
 namespace {
 
-/// Part by which a ray's segment is longer than the way to the farthest surface, so that rounding cuts none off.
+/// Part by which a ray's segment is longer than the distance to the farthest surface, so that rounding cuts none off.
 constexpr double kBeyond = 0x1p-20;
 
 void require_position(const Vec3& p, const char* what) {

@@ -42,7 +42,7 @@ public:
 
     /// The first surface on the ray from `origin` along `direction` (of any length above 0), at most most_distance
     /// (m, >= 0) away; of surfaces that are hit at the same distance the first under (collider, triangle). Which
-    /// triangles and planes the ray meets is decided exactly, for the straight segment from the origin to the ray's
+    /// triangles and planes the ray hits is decided exactly, for the straight segment from the origin to the ray's
     /// end, rounded; the distance has an error of a few ulp of the segment's length. A ray that begins on a surface
     /// hits it at distance 0. Surfaces are hit from both sides. Hits with coordinates beyond kLargestCoordinate are not
     /// found. Throws InputError for arguments that are not finite or out of range.

@@ -40,7 +40,7 @@ struct SimulationSetup {
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
     std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
     std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
-    /// An own method for all particles together, in place of options.integrator, which then says only how particles go
+    /// An own method for all particles together, instead of options.integrator, which then says only how particles go
     /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
     SystemSolver solver = {};
     std::optional<Box3> bounds;                       ///< particles outside are retired
@@ -68,7 +68,7 @@ struct SimulationStatistics {
     std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
     std::uint64_t asleep = 0;            ///< of the resting ones those that cost nothing
     std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
-    std::uint64_t stayed = 0;            ///< impacts after which no certified place nearer to the surface was found
+    std::uint64_t stayed = 0;            ///< impacts after which no certified position nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;        ///< what options.verify found wrong
     std::uint64_t trials = 0;            ///< states that a response tested for collision or penetration; 0 for exact
@@ -107,7 +107,7 @@ public:
     /// follow them with this step; and what forces throw. Particles are inside the step then: calls throw RunError.
     void step();
     /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
-    /// after each step, says no; faster, because what flies freely goes its way at once. While go_on is asked, places
+    /// after each step, says no; faster, because free flights are integrated at once. While go_on is asked, places
     /// and velocities of particles may still be those of an earlier step, and what is made of them (energies, hash,
     /// frames, save()); everything else is up to date. Throws like step() and what go_on throws.
     void advance(std::uint64_t count, const std::function<bool()>& go_on = {});

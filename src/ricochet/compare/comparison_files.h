@@ -57,7 +57,7 @@ struct ComparisonColumn {
 /// In the order in which they are written. docs/compare.md says what each means.
 [[nodiscard]] const std::vector<ComparisonColumn>& comparison_columns();
 
-/// Place of a column by its name, from 0. Throws std::invalid_argument for a name that is none.
+/// Index of a column by its name, from 0. Throws std::invalid_argument for a name that is none.
 [[nodiscard]] std::size_t column_index(const std::string& name);
 /// A cell as a number; kNoNumber for text.
 [[nodiscard]] double number_of(const ComparisonCell& cell);

@@ -12,7 +12,7 @@
 
 namespace ricochet {
 
-/// In place of a number that does not exist, such as the mean of nothing.
+/// Instead of a number that does not exist, such as the mean of nothing.
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// Particles that went through a surface. Each particle counts once in every number.
@@ -37,7 +37,7 @@ struct ErrorSpread {
     double largest = kNoNumber;
 };
 
-/// A place in a series over time.
+/// An entry of a series over time.
 struct EnergyPoint {
     double time = 0.0;   ///< s
     double error = 0.0;  ///< see ReferenceErrors
@@ -74,7 +74,7 @@ struct ReferenceErrors {
     ErrorSpread impact;
     std::uint64_t impacts_missed = 0;  ///< particles that have an impact in the reference only
     std::uint64_t impacts_extra = 0;   ///< particles that have one in this run only
-    /// Distances, m, between the particles' last places here and there, where both are alive.
+    /// Distances, m, between the particles' last positions here and there, where both are alive.
     ErrorSpread position;
 };
 

@@ -57,7 +57,7 @@ std::string gnuplot_line_styles(std::size_t count) {
 
 namespace {
 
-constexpr auto kPause = std::chrono::milliseconds(20);  // between two looks whether gnuplot has ended
+constexpr auto kPause = std::chrono::milliseconds(20);  // between two checks whether gnuplot has ended
 
 // Removes the unfinished pictures that are left when it goes.
 class UnfinishedPictures {

@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-// How the pictures look that gnuplot draws for reports: one look for all of them.
+// The common style of the pictures that gnuplot draws for reports.
 
 /// The beginning of a script: terminal, grid, borders, key. A variable `ending` set before it is to be appended to the
 /// names of the pictures. remark: one line, what the script draws and how it is run.

@@ -1,5 +1,5 @@
 /// \file
-/// Which way a collider's surface faces where a particle met it, as well as a report of the verifier says where.
+/// Where a collider's surface faces at a particle's crossing, as well as a report of the verifier says where.
 #include "ricochet/compare/measured_run.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class SurfaceNormals {
 public:
     explicit SurfaceNormals(const Simulation& simulation);
     /// Of any length, for a crossing. Of a triangle by the counter-clockwise rule; of a ball or cylinder outward, for
-    /// the place where the segment ended, since that is what is reported. Zero where there is none: planes.
+    /// the position where the segment ended, since that is what is reported. Zero where there is none: planes.
     [[nodiscard]] Vec3 at(const Violation& crossing) const;
 
 private:
@@ -37,7 +37,7 @@ private:
         std::optional<TriangleMesh> mesh;
         std::optional<Shape> shape;
     };
-    [[nodiscard]] static Vec3 shape_normal(const Shape& shape, const Vec3& place);
+    [[nodiscard]] static Vec3 shape_normal(const Shape& shape, const Vec3& position);
 
     std::vector<Surface> surfaces_;
 };
@@ -58,7 +58,7 @@ SurfaceNormals::SurfaceNormals(const Simulation& simulation) {
 
 Vec3 SurfaceNormals::at(const Violation& crossing) const {
     const Surface& surface = surfaces_[*crossing.collider];
-    if (surface.shape) return shape_normal(*surface.shape, crossing.place);
+    if (surface.shape) return shape_normal(*surface.shape, crossing.position);
     if (!surface.mesh || !crossing.triangle) return {};
     const auto [a, b, c] = surface.mesh->triangles[*crossing.triangle];
     const auto& vertices = surface.mesh->vertices;
@@ -66,7 +66,7 @@ Vec3 SurfaceNormals::at(const Violation& crossing) const {
 }
 
 // Normals go into the world by the transposed inverse, whose columns are the cross products of the map's own.
-Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& place) {
+Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
     const AffineMap& map = shape.world_from_unit;
     const Vec3 x{map.row_x.x, map.row_y.x, map.row_z.x};
     const Vec3 y{map.row_x.y, map.row_y.y, map.row_z.y};
@@ -75,7 +75,7 @@ Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& place) {
     const Vec3 along_x = cross(y, z) / determinant;
     const Vec3 along_y = cross(z, x) / determinant;
     const Vec3 along_z = cross(x, y) / determinant;
-    const Vec3 from_centre = place - map.translation;
+    const Vec3 from_centre = position - map.translation;
     Vec3 unit{dot(along_x, from_centre), dot(along_y, from_centre), dot(along_z, from_centre)};
     if (shape.is_cylinder) {
         const double to_side = std::fabs(1.0 - std::hypot(unit.x, unit.y)) * length(x);

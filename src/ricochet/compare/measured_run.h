@@ -64,7 +64,7 @@ struct TimedRun {
 void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
                  const std::vector<const ComparisonRow*>& exact);
 
-// One run against the reference: energies at equal times, first impacts and last places of equal particles.
+// One run against the reference: energies at equal times, first impacts and last positions of equal particles.
 
 /// Value at `time` of a series given at ascending times, linear between them and constant beyond both ends. Not empty.
 [[nodiscard]] double interpolate(std::span<const double> times, std::span<const double> values, double time);

@@ -10,17 +10,17 @@
 namespace ricochet {
 namespace {
 
-bool same_place(const Vec3& a, const Vec3& b) {
+bool same_position(const Vec3& a, const Vec3& b) {
     return max_abs(a - b) <= kSameCrossing * std::max(max_abs(a), max_abs(b));
 }
 
-/// Neighbouring triangles that a segment meets in their common edge are one crossing.
+/// Neighbouring triangles that a segment crosses in their common edge are one crossing.
 std::size_t count_crossings(const std::vector<const Violation*>& meetings) {
     std::vector<Vec3> different;
-    for (const Violation* meeting : meetings) {
+    for (const Violation* crossing : meetings) {
         const bool known = std::any_of(different.begin(), different.end(),
-                                       [&](const Vec3& other) { return same_place(meeting->place, other); });
-        if (!known) different.push_back(meeting->place);
+                                       [&](const Vec3& other) { return same_position(crossing->position, other); });
+        if (!known) different.push_back(crossing->position);
     }
     return different.size();
 }
@@ -64,12 +64,12 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-// A segment that met a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the
+// A segment that crossed a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the
 // number of segments and the change of side do not agree, one has passed through.
 void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
-    std::size_t met = 0;
-    for (const auto& [time, crossings] : segments) met += crossings.size();
-    const bool agrees = (met % 2 == 1) == flipped;
+    std::size_t count = 0;
+    for (const auto& [time, crossings] : segments) count += crossings.size();
+    const bool agrees = (count % 2 == 1) == flipped;
     if (!agrees) jumped_.insert(pair.first);
     if (!agrees && flipped) change_side(pair, *segments.rbegin()->second.back());
     if (!agrees) return;

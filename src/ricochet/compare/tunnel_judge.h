@@ -19,15 +19,15 @@ namespace ricochet {
 
 /// What the verifier can say of a collider.
 enum class ColliderKind : std::uint8_t {
-    plane,        ///< sides; a segment meets it once at most
-    shape,        ///< ball or cylinder: sides; a segment that meets it is reported once, however often it does
-    closed_mesh,  ///< sides, and every triangle that a segment meets
-    open_mesh,    ///< every triangle that a segment meets
+    plane,        ///< sides; a segment crosses it once at most
+    shape,        ///< ball or cylinder: sides; a segment that crosses it is reported once, however often it does
+    closed_mesh,  ///< sides, and every triangle that a segment crosses
+    open_mesh,    ///< every triangle that a segment crosses
 };
 
 [[nodiscard]] std::vector<ColliderKind> collider_kinds(const Simulation& simulation);
 
-/// Which way the surface faces where a crossing was reported; of any length.
+/// Where the surface faces where a crossing was reported; of any length.
 using NormalAt = std::function<Vec3(const Violation&)>;
 
 /// Follows a run. The order in which violations are given within a step does not matter.

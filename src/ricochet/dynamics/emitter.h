@@ -44,7 +44,7 @@ enum class BirthEvent {
 /// The rule by which an emitter's particles come from other particles.
 struct ParentRule {
     std::uint32_t emitter = 0;  ///< whose particles are the parents, as its number in the scene
-    bool recursive = false;     ///< the children are parents in the same way too
+    bool recursive = false;     ///< the children are parents too, in turn
     BirthEvent on = BirthEvent::life;
     MeanSpread count{1.0, 0.0};      ///< children of a death or impact; rounded, negative draws count as 0
     double threshold_impulse = 0.0;  ///< N s, >= 0: least impulse of an impact that gives birth
@@ -110,7 +110,7 @@ struct MeshVolumeShape {
 using EmitterShape =
     std::variant<PointShape, DiskShape, BoxShape, SphereShape, MeshSurfaceShape, ConeShape, MeshVolumeShape>;
 
-/// A place of birth.
+/// A position of birth.
 struct LaunchPlace {
     Vec3 position;
     Vec3 direction;  ///< the shape's own, of unit length
@@ -118,7 +118,7 @@ struct LaunchPlace {
 
 class MeshInterior;
 
-/// Draws places of a shape.
+/// Draws positions in a shape.
 class ShapeSampler {
 public:
     /// Throws InputError, with a sentence on what is wrong, for a shape outside the ranges stated there, for a mesh
@@ -149,7 +149,7 @@ private:
 /// A box around the shape.
 [[nodiscard]] Box3 bounds(const EmitterShape& shape);
 
-// How large an emitter is on the screen of a reference camera: the second way of W. T. Reeves to say how many
+// How large an emitter is on the screen of a reference camera: the second rule of W. T. Reeves for how many
 // particles a frame gives birth to ("Particle Systems", ACM TOG 2(2), 1983, section 2.1: so many a unit of screen
 // area, so that what is far away costs little). The camera belongs to the scene and never depends on how pictures
 // are made.
@@ -183,7 +183,7 @@ struct ReferenceCamera {
 
 /// Mean and spread of an attribute, for each component.
 struct AttributeSpread {
-    std::string name;  ///< of one of the scene's attributes, those for looks included
+    std::string name;  ///< of one of the scene's attributes, those of appearance included
     Vec3 mean;         ///< of one component: x
     Vec3 spread;       ///< each component >= 0
 };
@@ -217,7 +217,7 @@ struct EmitterDescription {
     std::size_t frame = 0;
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
     std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
-    std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's place in the scene
+    std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's index in the scene
     std::optional<ParentRule> parent;         ///< particles give birth here; shape, burst, start and stop are not used
 };
 

@@ -16,7 +16,7 @@ struct PhaseState {
     Vec3 velocity;
 };
 
-/// What a particle does until the end of the step, or until something is in its way.
+/// What a particle does until the end of the step, or until it hits something.
 struct Flight {
     Path path;          ///< where it goes
     Vec3 acceleration;  ///< what the forces do at the start, m/s^2
@@ -25,7 +25,7 @@ struct Flight {
     ForceInput start{};  ///< the state that the flight starts from; one-step methods step from it again
     Vec3 end_velocity;   ///< velocity at the end of the path, m/s
     double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
-    bool steps_again = false;    ///< velocities on the way are those of a shorter step, not the path's derivative
+    bool steps_again = false;    ///< velocities along the path are those of a shorter step, not the path's derivative
 };
 
 /// The flight that starts at the beginning of a step (or at birth), over `duration` seconds; an adaptive method may end
@@ -65,7 +65,7 @@ struct Flight {
 [[nodiscard]] Vec3 velocity_at(const Integrator& integrator, const ForceField& forces, const Flight& flight, double s);
 
 /// For an acceleration that depends on neither position, velocity nor time: the parabola on which the ends of all
-/// further steps of `time_step` seconds lie, up to rounding, if nothing stands in the way. It begins with the flight,
+/// further steps of `time_step` seconds lie, up to rounding, if nothing is hit. It begins with the flight,
 /// which and whose successors lie within |acceleration| time_step^2 / 8 of it. duration >= that of the flight, s.
 [[nodiscard]] Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step,
                                    double duration);
@@ -75,7 +75,7 @@ struct Flight {
 [[nodiscard]] PhaseState state_at(const Integrator& integrator, const ForceField& forces, const Flight& flight,
                                   double s);
 
-// Steps of particles that meet nothing: where begin_flight() would lead to, without its path.
+// Steps of particles that hit nothing: where begin_flight() would lead to, without its path.
 
 /// One step under an acceleration that depends on neither position, velocity nor time, prepared for many particles. The
 /// state after it has the same bits as the end of begin_flight()'s flight.
@@ -109,7 +109,7 @@ private:
 // First-order motion: the path of a particle that goes with a flow, x' = g(x, t), by the integrators that have a
 // meaning there.
 
-/// A piece of way with a flow.
+/// A piece of path along a flow.
 struct FlowPath {
     Path path;
     double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
@@ -119,7 +119,7 @@ struct FlowPath {
 /// position and velocity separately and have no meaning here.
 [[nodiscard]] bool carries_along_flows(IntegratorKind kind);
 
-/// The way from a place at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of its
+/// The path from a position at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of its
 /// first sub-step, for which it tries `first` seconds. Throws InputError for a method that has no meaning here.
 ///
 /// forward_euler is a straight line with the flow's velocity at the start (first order). midpoint (second order) and

@@ -270,7 +270,7 @@ FlowPointer make_scaled_flow(FlowPointer flow, double factor) {
 
 namespace {
 
-// Place along one axis: between two samples.
+// Position along one axis: between two samples.
 struct Cell {
     std::size_t first = 0;
     std::size_t second = 0;
@@ -280,14 +280,14 @@ struct Cell {
 
 Cell cell_of(double x, double origin, double spacing, std::uint32_t count) {
     if (count == 1) return {};
-    const double place = (x - origin) / spacing;
+    const double cell = (x - origin) / spacing;
     const double last = count - 1;
-    const bool inside = place >= 0.0 && place <= last;
-    if (!(place > 0.0)) return {0, 0, 0.0, inside};  // and what is no number
-    if (place >= last) return {count - std::size_t{1}, count - std::size_t{1}, 0.0, inside};
-    const double below = std::floor(place);
+    const bool inside = cell >= 0.0 && cell <= last;
+    if (!(cell > 0.0)) return {0, 0, 0.0, inside};  // and what is no number
+    if (cell >= last) return {count - std::size_t{1}, count - std::size_t{1}, 0.0, inside};
+    const double below = std::floor(cell);
     const auto first = static_cast<std::size_t>(below);
-    return {first, first + 1, place - below, inside};
+    return {first, first + 1, cell - below, inside};
 }
 
 Vec3 between(const Vec3& a, const Vec3& b, double part) { return a + (b - a) * part; }

@@ -49,7 +49,7 @@ enum class VortexProfile {
 struct VortexSettings {
     Vec3 point;                ///< m, on the axis
     Vec3 axis{0, 0, 1};        ///< of any length but zero
-    double circulation = 0.0;  ///< m^2/s; negative turns the other way
+    double circulation = 0.0;  ///< m^2/s; negative: clockwise
     double core_radius = 1.0;  ///< m, > 0
     VortexProfile profile = VortexProfile::rankine;
 };
@@ -71,7 +71,7 @@ struct VortexSettings {
 /// Cambridge 1967, section 6.8. center in m; radius in m, > 0.
 [[nodiscard]] FlowPointer make_flow_past_sphere(const Vec3& center, double radius, const Vec3& velocity);
 
-/// Any callable of place and time, m/s. It must be pure. is_steady: it does not depend on time.
+/// Any callable of position and time, m/s. It must be pure. is_steady: it does not depend on time.
 [[nodiscard]] FlowPointer make_flow(std::function<Vec3(const Vec3&, double)> velocity, bool is_steady = false);
 
 /// A sum of flows, added in the order given; none may be a null pointer.
@@ -90,7 +90,7 @@ struct VectorGrid {
     std::vector<Vec3> values;               ///< one a point
 };
 
-/// What a grid says about places beyond its points.
+/// What a grid says about positions beyond its points.
 enum class OutsideGrid {
     clamp,  ///< the value at the nearest point of the grid's box
     zero,   ///< nothing

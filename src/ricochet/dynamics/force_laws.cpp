@@ -166,7 +166,7 @@ public:
     [[nodiscard]] bool is_steady() const override { return true; }
 
 private:
-    // The one place that knows whose charge it is.
+    // Only here is it known whose charge it is.
     [[nodiscard]] double charge_of(const ForceInput&) const { return settings_.charge; }
 
     LorentzSettings settings_;

@@ -13,7 +13,7 @@
 
 namespace ricochet {
 
-/// What a force may look at: one particle's own state at a time.
+/// What a force may depend on: one particle's own state at a time.
 struct ForceInput {
     Vec3 position;  ///< m
     Vec3 velocity;  ///< m/s
@@ -117,7 +117,7 @@ private:
 
 // Gravity of point masses.
 
-/// One attracting mass, fixed in place.
+/// One attracting mass, that stays where it is.
 struct Attractor {
     Vec3 position;           ///< m
     double strength = 0.0;   ///< G M, m^3/s^2; negative repels
@@ -125,7 +125,7 @@ struct Attractor {
 };
 
 /// a = -strength d / (|d|^2 + softening^2)^(3/2), d from the attractor to the particle; summed over the attractors in
-/// their order. At the very place of an attractor without softening, where nothing is defined, it does not pull.
+/// their order. Exactly at an attractor without softening, where nothing is defined, it does not pull.
 /// Source: H. C. Plummer, MNRAS 71, 1911.
 [[nodiscard]] std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors);
 

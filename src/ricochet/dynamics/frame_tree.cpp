@@ -21,9 +21,9 @@ std::optional<std::size_t> place_of(std::span<const FrameDescription> frames, st
 }
 
 // Moves the frame along its own axes.
-void shift(MovingPose& pose, const Vec3& way, const Vec3& rate) {
+void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate) {
     AffineMap& map = pose.world_from_frame;
-    const Vec3 moved = map.direction(way);
+    const Vec3 moved = map.direction(offset);
     map.translation += moved;
     pose.velocity += cross(pose.angular_velocity, moved) + map.direction(rate);
 }
@@ -50,8 +50,8 @@ void step_into(MovingPose& pose, const FrameDescription& frame, double time) {
         if (const auto* rotation = std::get_if<KeyedRotation>(&motion)) {
             turn(pose, rotation->axis, rotation->degrees.value(time), rotation->degrees.derivative(time));
         } else {
-            const auto& way = std::get<KeyedTranslation>(motion).way;
-            shift(pose, way.value(time), way.derivative(time));
+            const auto& path = std::get<KeyedTranslation>(motion).path;
+            shift(pose, path.value(time), path.derivative(time));
         }
     }
 }

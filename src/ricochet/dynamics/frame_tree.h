@@ -24,9 +24,9 @@ struct KeyedRotation {
     Vec3 axis{0, 0, 1};          ///< of any length but zero
     KeyedCurve<double> degrees;  ///< the angle
 };
-/// A way that the frame's origin goes.
+/// The trajectory of the frame's origin.
 struct KeyedTranslation {
-    KeyedCurve<Vec3> way;  ///< m
+    KeyedCurve<Vec3> path;  ///< m
 };
 using FrameMotion = std::variant<KeyedRotation, KeyedTranslation>;
 
@@ -43,7 +43,7 @@ struct FrameDescription {
 
 /// Where a frame is at one time, and how it moves.
 struct MovingPose {
-    AffineMap world_from_frame;  ///< a rotation and the origin's place, m
+    AffineMap world_from_frame;  ///< a rotation and the origin's position, m
     Vec3 velocity;               ///< of the origin, m/s
     Vec3 angular_velocity;       ///< rad/s, in world axes
 

@@ -132,7 +132,7 @@ private:
             const Progress progress = newton_step(solver, slope);
             if (progress.done) return true;
             if (progress.failed && slope == Slope::definite) return false;
-            // Near the solution springs under pressure have found their place, and counting them in is quadratic.
+            // Near the solution springs under pressure are where they will be, and counting them in is quadratic.
             const bool is_near = !progress.failed && !progress.cut && progress.correction < kNear * largest_speed();
             slope = is_near ? Slope::symmetric : Slope::definite;
         }
@@ -187,7 +187,7 @@ private:
         }
     }
 
-    /// Places and accelerations at the end, and the negative residuals; returns the sum of their squares.
+    /// Positions and accelerations at the end, and the negative residuals; returns the sum of their squares.
     double evaluate(const std::vector<Vec3>& v1) {
         const std::size_t count = system_.size();
         for (std::size_t i = 0; i < count; ++i) x1_[i] = system_.positions()[i] + h_ * v1[i];
@@ -201,12 +201,12 @@ private:
         return right_.squaredNorm();
     }
 
-    /// Residuals, N s, that the rounding of the places explains: stiff springs make much of little.
+    /// Residuals, N s, that the rounding of the positions explains, which stiff springs magnify.
     [[nodiscard]] double rounding() const {
         double largest = 0.0;
         for (const ParticleSystem::Bond& bond : system_.bonds()) {
-            const double place = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
-            largest = std::max(largest, system_.spring_of(bond).stiffness * place);
+            const double largest_coordinate = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
+            largest = std::max(largest, system_.spring_of(bond).stiffness * largest_coordinate);
         }
         return kPositionRounding * h_ * largest;
     }

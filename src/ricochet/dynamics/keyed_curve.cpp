@@ -107,8 +107,8 @@ template <class Value>
 std::size_t KeyedCurve<Value>::segment_at(double time) const {
     const auto after = std::upper_bound(keys_.begin(), keys_.end(), time,
                                         [](double t, const CurveKey<Value>& key) { return t < key.time; });
-    const auto place = static_cast<std::size_t>(after - keys_.begin());
-    return std::min(std::max<std::size_t>(place, 1), keys_.size() - 1) - 1;
+    const auto next = static_cast<std::size_t>(after - keys_.begin());
+    return std::min(std::max<std::size_t>(next, 1), keys_.size() - 1) - 1;
 }
 
 template <class Value>
@@ -118,9 +118,9 @@ Value KeyedCurve<Value>::value(double time) const {
     const std::size_t k = segment_at(phase);
     const double span = keys_[k + 1].time - keys_[k].time;
     const double s = (phase - keys_[k].time) / span;
-    const Value way = keys_[k + 1].value - keys_[k].value;
+    const Value change = keys_[k + 1].value - keys_[k].value;
     const double ease = s * s * (3.0 - 2.0 * s);
-    Value value = keys_[k].value + (interpolation_ == Interpolation::linear ? s : ease) * way;
+    Value value = keys_[k].value + (interpolation_ == Interpolation::linear ? s : ease) * change;
     if (interpolation_ == Interpolation::spline) {
         const double r = 1.0 - s;
         value += (span * s * r) * (r * slopes_[k] - s * slopes_[k + 1]);

@@ -16,7 +16,7 @@ namespace ricochet {
 /// What holds between two keys.
 enum class Interpolation {
     linear,            ///< a straight line; the derivative jumps at keys
-    slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the way: at rest at every key, continuous derivative
+    slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the change: at rest at every key, continuous derivative
     spline,            ///< a cubic whose slope at a key is that of the parabola through it and both its neighbours
                        ///< (Catmull-Rom where keys are evenly spaced): continuous derivative
 };

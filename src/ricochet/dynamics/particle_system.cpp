@@ -133,7 +133,7 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
     });
 }
 
-// Every member gathers for itself, in the order of the springs: no two threads write to one place.
+// Every member gathers for itself, in the order of the springs: no two threads write to one entry.
 Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                      std::span<const Vec3> velocities) const {
     Vec3 sum;

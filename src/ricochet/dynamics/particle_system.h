@@ -18,7 +18,7 @@ namespace ricochet {
 
 /// The phase-space vector of a system of particles, its dimension, and its derivative at a time: all that a solver of
 /// ordinary differential equations needs to know. Entries 6 i to 6 i + 5 are x, y, z (m) and vx, vy, vz (m/s) of member
-/// i; the derivative holds the velocity and the acceleration in the same places, zeros for pinned members.
+/// i; the derivative holds the velocity and the acceleration at the same indices, zeros for pinned members.
 ///
 /// Source of the interface: A. Witkin, "Physically Based Modeling: Particle System Dynamics", SIGGRAPH course notes,
 /// 2001 (dimension, get state, set state, derivative).
@@ -66,7 +66,7 @@ public:
     /// What the springs do to member i, N.
     [[nodiscard]] Vec3 spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                        std::span<const Vec3> velocities) const;
-    /// What forces that look at one particle only do to member i, m/s^2.
+    /// What forces on single particles do to member i, m/s^2.
     [[nodiscard]] Vec3 own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
     /// Derivative of own_acceleration() at the end of a backward Euler step by the velocity there, see
     /// acceleration_slope(): three columns, 1/s.
@@ -80,7 +80,7 @@ public:
     [[nodiscard]] std::uint64_t id(std::size_t i) const { return constants_[i].id; }
     /// What a force sees of member i in this state.
     [[nodiscard]] ForceInput input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
-    /// True when the forces that look at one particle only depend on neither position, velocity nor time.
+    /// True when the forces on single particles depend on neither position, velocity nor time.
     [[nodiscard]] bool has_uniform_forces() const { return forces_.is_uniform(); }
 
 private:

@@ -48,9 +48,9 @@ AttributeTable::AttributeTable(std::vector<AttributeDescription> columns)
         require(find(column.name) == k, column, "the name is taken by another attribute");
         require(column.components == 1 || column.components == 3, column, "components must be 1 or 3");
         require(is_finite(column.fallback), column, "the default must be finite");
-        const auto looks = looks_attribute(column.name);
-        require(!looks || looks->components == column.components, column,
-                "the name is taken by the looks of particles");
+        const auto appearance = looks_attribute(column.name);
+        require(!appearance || appearance->components == column.components, column,
+                "the name is taken by the appearance of particles");
     }
 }
 
@@ -128,9 +128,9 @@ bool put_in_order_by_table(const std::vector<std::uint64_t>& id, std::vector<std
     if ((*highest - *lowest) / kMostPlacesAnEntry >= id.size()) return false;
     std::vector<std::uint32_t> owner(*highest - *lowest + 1, kNobody);
     for (std::uint32_t i = 0; i < id.size(); ++i) {
-        std::uint32_t& place = owner[id[i] - *lowest];
-        if (place != kNobody) return false;
-        place = i;
+        std::uint32_t& entry = owner[id[i] - *lowest];
+        if (entry != kNobody) return false;
+        entry = i;
     }
     std::copy_if(owner.begin(), owner.end(), order.begin(), [](std::uint32_t i) { return i != kNobody; });
     return true;

@@ -30,12 +30,12 @@ using AttributeValue = Vec3;
 [[nodiscard]] AttributeValue missing_attribute();
 [[nodiscard]] inline bool is_missing(const AttributeValue& value) { return value.x != value.x; }
 
-/// Names of the columns for looks. They may be declared only with the components and fallbacks that looks_attribute()
+/// Names of the columns of appearance. They may be declared only with the components and fallbacks that looks_attribute()
 /// gives; a scene declares them by using them.
 inline constexpr std::string_view kColorAttribute = "color";      ///< red, green, blue, 0..1, as linear light
 inline constexpr std::string_view kOpacityAttribute = "opacity";  ///< 0 (not seen) to 1
 inline constexpr std::string_view kSizeAttribute = "size";        ///< radius that is drawn, m; default the radius
-/// The column of that name; nothing when it is not one for looks.
+/// The column of that name; nothing when it is not one of appearance.
 [[nodiscard]] std::optional<AttributeDescription> looks_attribute(std::string_view name);
 
 /// True for the names of the arrays and columns that every run writes of itself.
@@ -81,7 +81,7 @@ private:
 
 // The particles: a structure of arrays, one entry a living particle.
 
-/// In place of an emitter's number: none.
+/// Instead of an emitter's number: none.
 inline constexpr std::uint32_t kNoEmitter = 0xFFFFFFFFU;
 
 /// Where a particle comes from.
@@ -108,7 +108,7 @@ struct Particle {
     std::vector<AttributeValue> attributes = {};  ///< one a column of Particles::attributes; fewer: fallbacks
 };
 
-/// In place of a surface number: none.
+/// Instead of a surface number: none.
 inline constexpr std::uint32_t kNoSupport = 0xFFFFFFFFU;
 
 /// In Particles::absorbed: replaced by fragments.
@@ -130,7 +130,7 @@ public:
     std::vector<std::uint8_t> frozen;      ///< 1 when the state left the range of the arithmetic: it no longer moves
     std::vector<std::uint8_t> resting;     ///< 1 while at rest on the surfaces in `support`
     std::vector<std::uint8_t> held;        ///< 1 while at rest because friction and support hold it
-    /// 1 when an impact has removed it, kShattered when its fragments take its place; gone after the step.
+    /// 1 when an impact has removed it, kShattered when its fragments replace it; gone after the step.
     std::vector<std::uint8_t> absorbed;
     std::vector<std::uint32_t> draws;  ///< random numbers drawn by impacts so far
     /// Surfaces that it slides, rolls or rests on, filled up with kNoSupport.

@@ -39,11 +39,11 @@ double solve_sinh_ratio(double ratio) {
 // ends are at asinh(s / a) = middle -+ x with sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise / L and
 // a = across / (2 x).
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_rope, const Vec3& up, std::size_t count) {
-    const Vec3 way = to - from;
-    const double rise = dot(way, up);
-    const Vec3 level = way - up * rise;
+    const Vec3 chord = to - from;
+    const double rise = dot(chord, up);
+    const Vec3 level = chord - up * rise;
     const double across = length(level);
-    const bool is_taut = length_of_rope <= length(way) * (1.0 + kTautRope);
+    const bool is_taut = length_of_rope <= length(chord) * (1.0 + kTautRope);
     const bool is_folded = across <= kFoldedRope * length_of_rope;
     const double depth = 0.5 * (length_of_rope - rise);  // of a folded rope
     double x = 0.0;
@@ -56,23 +56,23 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_ro
     }
     const double first = a * sinh_of(middle - x);
     const auto height_at = [&](double s) { return std::sqrt(a * a + s * s); };
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (std::size_t i = 0; i < count; ++i) {
         const double part = static_cast<double>(i) / static_cast<double>(count - 1);
         const double s = part * length_of_rope;
         if (is_taut) {
-            places.push_back(from + way * part);
+            positions.push_back(from + chord * part);
         } else if (is_folded) {
-            places.push_back(from + level * part + up * (s < depth ? -s : s - 2.0 * depth));
+            positions.push_back(from + level * part + up * (s < depth ? -s : s - 2.0 * depth));
         } else {
             const double aside = a * (asinh_of((first + s) / a) - (middle - x));
             const double height = height_at(first + s) - height_at(first);
-            places.push_back(from + level * (aside / across) + up * height);
+            positions.push_back(from + level * (aside / across) + up * height);
         }
     }
-    places.front() = from;
-    places.back() = to;
-    return places;
+    positions.front() = from;
+    positions.back() = to;
+    return positions;
 }
 
 namespace {
@@ -98,7 +98,7 @@ void check(const RopeSettings& rope) {
     if (rope.stiffness) detail::require_not_negative(*rope.stiffness, "rope: the stiffness", "N/m");
     if (rope.axial_stiffness) detail::require_not_negative(*rope.axial_stiffness, "rope: the axial stiffness", "N");
     check_springs(rope.damping, rope.breaking_stretch, "rope");
-    if (rope.from == rope.to) throw InputError("rope: both ends are at the same place, expected two places");
+    if (rope.from == rope.to) throw InputError("rope: both ends are at the same position, expected two positions");
 }
 
 void check(const TriangleMesh& mesh, const ClothSettings& cloth) {
@@ -184,12 +184,12 @@ SpringBody make_rope(const RopeSettings& settings) {
     const double rope_length = settings.length.value_or(length(settings.to - settings.from));
     const double rest_length = rope_length / static_cast<double>(segments);
     const Vec3 up = -detail::unit_direction(settings.sag, "rope: the direction in which it sags");
-    const std::vector<Vec3> places = catenary(settings.from, settings.to, rope_length, up, settings.nodes);
+    const std::vector<Vec3> positions = catenary(settings.from, settings.to, rope_length, up, settings.nodes);
     SpringBody rope;
     for (std::size_t i = 0; i < settings.nodes; ++i) {
         Particle node;
         node.id = i;
-        node.position = places[i];
+        node.position = positions[i];
         const double shares = i == 0 || i == segments ? 0.5 : 1.0;
         node.mass = shares * settings.mass / static_cast<double>(segments);
         node.radius = settings.radius;

@@ -37,10 +37,10 @@ void check(const Spring& spring, std::size_t number) {
     }
 }
 
-/// Finds places by id.
-class Places {
+/// Finds indices by id.
+class Indices {
 public:
-    explicit Places(std::span<const std::uint64_t> ids) : ids_(ids) {
+    explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids) {
         if (std::is_sorted(ids.begin(), ids.end())) return;
         order_.resize(ids.size());
         std::iota(order_.begin(), order_.end(), std::uint32_t{0});
@@ -88,11 +88,11 @@ SpringNetwork::SpringNetwork(std::vector<Spring> springs)
 void SpringNetwork::bind(std::span<const std::uint64_t> ids) {
     particle_count_ = ids.size();
     bonds_.clear();
-    const Places places(ids);
+    const Indices indices(ids);
     for (std::size_t i = 0; i < springs_.size(); ++i) {
         if (!is_intact(i)) continue;
-        const auto a = places.of(springs_[i].first);
-        const auto b = places.of(springs_[i].second);
+        const auto a = indices.of(springs_[i].first);
+        const auto b = indices.of(springs_[i].second);
         if (a && b) {
             bonds_.push_back({static_cast<std::uint32_t>(i), *a, *b});
         } else {

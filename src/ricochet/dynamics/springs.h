@@ -140,7 +140,7 @@ struct SpringBody {
 /// A rope: nodes at equal distances along it, a spring between neighbours.
 struct RopeSettings {
     Vec3 from;              ///< m, first node
-    Vec3 to;                ///< m, last node, another place
+    Vec3 to;                ///< m, last node, not where the first is
     std::size_t nodes = 2;  ///< >= 2
     /// Length at rest, m, > 0; default: the distance of the ends. A longer rope starts as a catenary that hangs in the
     /// direction `sag`, a shorter one as a straight line under tension.

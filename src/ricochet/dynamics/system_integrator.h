@@ -9,7 +9,7 @@
 
 namespace ricochet {
 
-/// One step of a system, as if nothing were in its way. Entries are those of its members.
+/// One step of a system, as if there were no surfaces. Entries are those of its members.
 struct SystemStep {
     std::vector<Vec3> positions;            ///< at the end, m
     std::vector<Vec3> velocities;           ///< at the end, m/s

@@ -71,7 +71,7 @@ public:
         }
         Vec3 sum;
         for (std::uint32_t i = 0; i < 2; ++i) {
-            // The slice is hashed first: a sum of slice and place would make the next slice this one, moved by a point.
+            // The slice is hashed first: a sum of slice and position would make the next slice this one, moved by a point.
             const std::uint32_t row = hashed(hashed(0, slice), at[0].point + i);
             for (std::uint32_t j = 0; j < 2; ++j) {
                 const std::uint32_t column = hashed(row, at[1].point + j);
@@ -133,18 +133,18 @@ private:
         double frequency;  // 1/m
         double speed;      // m/s for a curl of 1
         double rate;       // 1/s
-        Vec3 offset;       // of the lattice, so that those of the octaves do not meet
+        Vec3 offset;       // of the lattice, so that those of the octaves do not coincide
         std::uint32_t first_slice;
     };
 
     [[nodiscard]] Vec3 curl(const Octave& octave, const Vec3& position, double time) const {
-        const Vec3 place = position * octave.frequency + octave.offset;
+        const Vec3 point = position * octave.frequency + octave.offset;
         const LatticePlace now = place_of(octave.rate * time);
         const std::uint32_t slice = octave.first_slice + now.point;
         const double next = fade(now.offset);
-        if (next == 0.0) return noise_.curl(place, slice);
+        if (next == 0.0) return noise_.curl(point, slice);
         const double scale = 1.0 / std::sqrt(next * next + (1.0 - next) * (1.0 - next));
-        return noise_.curl(place, slice) * ((1.0 - next) * scale) + noise_.curl(place, slice + 1) * (next * scale);
+        return noise_.curl(point, slice) * ((1.0 - next) * scale) + noise_.curl(point, slice + 1) * (next * scale);
     }
 
     CurlNoise noise_;

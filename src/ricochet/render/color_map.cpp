@@ -33,9 +33,9 @@ std::vector<std::string_view> color_map_names() { return {kNames.begin(), kNames
 Vec3 map_color(ColorMap map, double t) {
     if (std::isnan(t)) return {0.3, 0.3, 0.3};
     const auto& knots = kMaps[static_cast<std::size_t>(map)];
-    const double place = std::clamp(t, 0.0, 1.0) * (kKnots - 1);
-    const auto knot = std::min(static_cast<std::size_t>(place), kKnots - 2);
-    const double weight = place - static_cast<double>(knot);
+    const double position = std::clamp(t, 0.0, 1.0) * (kKnots - 1);
+    const auto knot = std::min(static_cast<std::size_t>(position), kKnots - 2);
+    const double weight = position - static_cast<double>(knot);
     // Between knots the mix is taken in sRGB, in which the maps are even to the eye.
     const Vec3 mix = (1.0 - weight) * srgb(knots[knot]) + weight * srgb(knots[knot + 1]);
     return {linear_from_srgb(mix.x), linear_from_srgb(mix.y), linear_from_srgb(mix.z)};
@@ -53,9 +53,9 @@ ValueRange robust_range(std::vector<double> values) {
     std::erase_if(values, [](double value) { return !std::isfinite(value); });
     if (values.empty()) return {};
     const auto quantile = [&](std::size_t hundredths) {
-        const auto place = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * hundredths / 100);
-        std::nth_element(values.begin(), place, values.end());
-        return *place;
+        const auto percentile = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * hundredths / 100);
+        std::nth_element(values.begin(), percentile, values.end());
+        return *percentile;
     };
     const double low = quantile(1);
     const double high = quantile(99);

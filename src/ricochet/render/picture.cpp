@@ -125,7 +125,7 @@ struct Daylight {
     Vec3 backdrop_tint{1, 1, 1};  ///< factors of what the picture shows behind everything
     double sun_size = 0.025;  ///< tangent of half the sun's apparent size; larger than the real one for soft shadows
 
-    /// Light from a direction with nothing in the way.
+    /// Light from a direction that nothing blocks.
     [[nodiscard]] Vec3 sky(const Vec3& direction) const;
     /// What the picture shows behind everything: brighter than the light that comes from there, and pale below.
     [[nodiscard]] Vec3 backdrop(const Vec3& direction) const;
@@ -204,7 +204,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 
-// Numbers that a sample needs: place in the pixel, place on the sun (twice), direction into the sky.
+// Numbers that a sample needs: position in the pixel, position on the sun (twice), direction into the sky.
 enum Dimension { kPixelX, kPixelY, kSunU, kSunV, kSkyU, kSkyV, kFarSunU, kFarSunV, kDimensions };
 
 // Powers of 1/phi where phi is the root of x^9 = x + 1: an additive sequence that fills the 8-cube evenly.
@@ -338,7 +338,7 @@ private:
         return preview_.occluded({off_surface(hit), to_sun}) ? Vec3{} : cosine * daylight_.sun;
     }
 
-    // Light from one direction of the sky, or from the sunlit surface that is seen in its place.
+    // Light from one direction of the sky, or from the sunlit surface that is seen instead of it.
     [[nodiscard]] Vec3 sky_light(const PreviewHit& hit, const PixelSamples& samples, int s) const {
         const Vec3 direction = cosine_direction(hit.normal, samples.get(s, kSkyU), samples.get(s, kSkyV));
         const std::optional<PreviewHit> other = preview_.trace({off_surface(hit), direction});
@@ -408,11 +408,11 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
     parallel_for_blocks(rows, 1, [&](std::size_t row, std::size_t, std::size_t) {
         for (int x = 0; x < options.width; ++x) {
             Vec3 light = painter.pixel_light(x, static_cast<int>(row));
-            const std::size_t place = row * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
+            const std::size_t index = row * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
             if (!sprites.empty()) {
-                light = layer.transmittance[place] * light + tone_mapped(options.exposure * layer.light[place]);
+                light = layer.transmittance[index] * light + tone_mapped(options.exposure * layer.light[index]);
             }
-            std::uint8_t* pixel = &image.rgb[3 * place];
+            std::uint8_t* pixel = &image.rgb[3 * index];
             pixel[0] = channel(light.x);
             pixel[1] = channel(light.y);
             pixel[2] = channel(light.z);

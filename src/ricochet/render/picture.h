@@ -47,7 +47,7 @@ struct PictureOptions {
     int height = 720;  ///< pixels, 1..16384
     int samples = 16;  ///< rays a pixel, 1..4096
     double exposure = 1.0;
-    bool night = false;  ///< dark, with a little moonlight, in place of sun and sky
+    bool night = false;  ///< dark, with a little moonlight, instead of sun and sky
     /// Called now and then, from any thread, with the part that is done, 0..1. May be empty.
     std::function<void(double)> progress;
 };

@@ -56,7 +56,7 @@ struct PreviewRay {
     Vec3 direction;
 };
 
-/// Where a ray meets something.
+/// Where a ray hits something.
 struct PreviewHit {
     double distance = 0.0;  ///< m along the ray
     Vec3 point;
@@ -95,7 +95,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-// Normals that make a mesh look as smooth as it is meant.
+// Normals for smooth shading.
 
 /// Unit normals for the three corners of every triangle: the area-weighted mean of the faces around the vertex that
 /// lean less than crease_degrees away from the triangle itself, so that sharp edges stay sharp.

@@ -7,7 +7,7 @@
 /// A particle that slides follows g without its part into the surfaces that it touches (the closest velocity that
 /// enters none of them; at most three count), by the same integrator, for as long as they are under it. Over an edge it
 /// goes on with the flow until that presses it onto something again. On a curved surface it goes in straight segments
-/// of kMaxChordAngle. A particle that stops stays where it has met a wall while the flow presses it on, and leaves when
+/// of kMaxChordAngle. A particle that stops stays where it has hit a wall while the flow presses it on, and leaves when
 /// the flow turns away.
 ///
 /// The velocity stored is the one that it goes on with: zero where it is stopped. Materials, mass and spin play no

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: the contact manifold, which is what a particle touches at one time, and how hard each
+/// Private to the responses: the contact manifold, the surfaces that a particle touches at one time, and how hard each
 /// surface holds it.
 #pragma once
 

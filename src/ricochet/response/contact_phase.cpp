@@ -192,16 +192,16 @@ const ContactSurface* ContactPhase::support_of(const Flight& flight, const Conta
     return support;
 }
 
-/// Of what is touched the surface that the particle is pressed onto most.
+/// The surface of the manifold that the particle is pressed onto most.
 std::optional<ContactSurface> ContactPhase::hardest_pressed(const Vec3& forces) const {
     std::optional<ContactSurface> support;
     double hardest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        const ContactSurface touched = manifold_[k];
-        const double pressing = -dot(path_.pull(touched, forces, state_.velocity), touched.normal);
+        const ContactSurface surface = manifold_[k];
+        const double pressing = -dot(path_.pull(surface, forces, state_.velocity), surface.normal);
         if (!(pressing > hardest)) continue;
         hardest = pressing;
-        support = touched;
+        support = surface;
     }
     return support;
 }
@@ -274,7 +274,7 @@ std::optional<Contact> ContactPhase::follow_surface(ContactSurface support, bool
     return std::nullopt;
 }
 
-/// Plans an interval against all that is touched. pull: ContactPath::pull().
+/// Plans an interval against all that is surface. pull: ContactPath::pull().
 ContactInterval ContactPhase::plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration) {
     manifold_.load(pull);
     Grip grip;
@@ -303,7 +303,7 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, Contact
     return stop;
 }
 
-/// After a chord: the surfaces as they are touched at its end, and the velocity turned along them. Its speed is kept;
+/// After a chord: the contact normals at its end, and the velocity turned along them. Its speed is kept;
 /// the curvature that turned it is part of the pull.
 void ContactPhase::turn_along(ContactSurface& support) {
     manifold_.touch_again(TouchRule::at(state_.position));

@@ -8,10 +8,10 @@
 namespace ricochet {
 namespace {
 
-/// Bounces in one step after which a particle does not look ahead: it is in a narrow place, and what it would find out
+/// Bounces in one step after which a particle does not look ahead: it is in a narrow gap, and what it would find out
 /// is that something is near. Looking ahead all the same cost the narrow cavity of `ricochet bench --suite pinball` 6
 /// to 9 % (docs/decisions/2026-11-23-what-pays.md).
-constexpr std::uint32_t kBouncesInNarrowPlace = 2;
+constexpr std::uint32_t kBouncesInNarrowGap = 2;
 
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
@@ -81,7 +81,7 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const ForceInput& state = particle_.state;
     const double remaining = step_.remaining();
     const double time_step = rules_.settings.time_step;
-    const bool is_known = rules_.look_ahead && step_.outcome().bounces < kBouncesInNarrowPlace &&
+    const bool is_known = rules_.look_ahead && step_.outcome().bounces < kBouncesInNarrowGap &&
                           rules_.forces.is_uniform() && particle_.planned == nullptr && state.coupling == Vec3{} &&
                           flight.path.duration == remaining && remaining <= kWholeStep * time_step;
     if (!is_known) return std::nullopt;

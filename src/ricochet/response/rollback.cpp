@@ -73,7 +73,7 @@ private:
         return {found.free, changes ? begin + found.free : kNever, found.blocked};
     }
 
-    /// Goes with the system to `next`, and answers what it has met by then. A shorter step may be blocked, or a
+    /// Goes with the system to `next`, and answers what it has hit by then. A shorter step may be blocked, or a
     /// interval of contact may end, where the longer one did not: then it goes on in pieces.
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double end = std::min(next, p.stop);

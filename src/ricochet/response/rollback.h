@@ -61,8 +61,8 @@ void move_together(const ResponseRules& rules, std::span<SystemParticle> particl
 
 /// A bracket around the time of a collision, s from where the piece began.
 struct CollisionBracket {
-    double free = 0.0;     ///< latest time tried at which nothing is in the way
-    bool blocked = false;  ///< something is in the way right after it; false: the whole piece is free
+    double free = 0.0;     ///< latest time tried at which nothing blocks
+    bool blocked = false;  ///< something blocks right after it; false: the whole piece is free
 };
 
 /// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
@@ -87,7 +87,7 @@ public:
     [[nodiscard]] CollisionBracket bracket();
     /// Goes along the piece for a time that the bracket has found free.
     void advance(double elapsed);
-    /// Answers what is in the way at the bracket's blocked end. The particle has gone to its free end.
+    /// Answers what blocks at the bracket's blocked end. The particle has gone to its free end.
     void answer();
     /// True while it slides, rolls or rests.
     [[nodiscard]] bool in_contact() const { return !manifold_.empty(); }
@@ -129,7 +129,7 @@ private:
     std::optional<ContactInterval> interval_;
     bool turns_ = false;  // the interval is a chord of a surface that bends towards the particle
     Vec3 pull_;           // the forces' acceleration at the interval's start
-    std::vector<ContactSurface> met_;
+    std::vector<ContactSurface> hit_;
 };
 
 }  // namespace ricochet

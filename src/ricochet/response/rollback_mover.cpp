@@ -57,7 +57,7 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
     particle.contact = {};
 }
 
-/// Takes all the time that is left, goes back to what was in the way, answers, and goes on.
+/// Takes all the time that is left, goes back to what blocked it, answers, and goes on.
 void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
@@ -181,24 +181,24 @@ void RollbackMover::follow_interval(double elapsed) {
     if (turns_) turn_along();
 }
 
-/// Bounces, or stays on what it has met when all rebounds are slow and something presses it on.
+/// Bounces, or stays on what it has hit when all rebounds are slow and something presses it on.
 void RollbackMover::answer() {
     ++outcome_.bounces;
     outcome_.end = MoveEnd::moving;
-    Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, met_);
-    const bool on_surface = std::any_of(met_.begin(), met_.end(), [&](const ContactSurface& met) {
-        return rules_.world.point_on(met.surface, state_.position);
+    Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, hit_);
+    const bool on_surface = std::any_of(hit_.begin(), hit_.end(), [&](const ContactSurface& hit) {
+        return rules_.world.point_on(hit.surface, state_.position);
     });
     if (on_surface) {
         leave_surface();
         return;
     }
-    if (met_.empty()) return;
+    if (hit_.empty()) return;
     if (will_stay()) {
-        impact_.land(met_);
-        for (const ContactSurface& met : met_) manifold_.add(met);
+        impact_.land(hit_);
+        for (const ContactSurface& hit : hit_) manifold_.add(hit);
     } else {
-        impact_.reflect(met_);
+        impact_.reflect(hit_);
     }
 }
 
@@ -212,22 +212,22 @@ void RollbackMover::leave_surface() {
 /// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
-    // What is touched already holds its part; what is left may press onto the next surface.
+    // What is in contact already holds its part; what is left may press onto the next surface.
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
-    for (const ContactSurface& met : met_) {
-        const Material& material = impact_.material_of(met.surface);
+    for (const ContactSurface& hit : hit_) {
+        const Material& material = impact_.material_of(hit.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
-        const double approach = -dot(state_.velocity, met.normal) - std::max(0.0, -dot(kick_velocity_, met.normal));
+        const double approach = -dot(state_.velocity, hit.normal) - std::max(0.0, -dot(kick_velocity_, hit.normal));
         const bool can_rest = material.can_hold(rules_.settings.resting_speed);
         const double rebound = approach > 0.0 ? material.restitution_at(approach) * approach : 0.0;
         if (approach > 0.0 && (!can_rest || rebound >= rules_.settings.resting_speed)) return false;
-        pressed = pressed || (can_rest && std::min(dot(a, met.normal), dot(pull, met.normal)) < 0.0);
+        pressed = pressed || (can_rest && std::min(dot(a, hit.normal), dot(pull, hit.normal)) < 0.0);
     }
     return pressed;
 }
 
-/// Touched is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
+/// In contact is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
 /// faster than the resting speed.
 TouchRule RollbackMover::touch_rule() const {
     const double resting_speed = rules_.settings.resting_speed;
@@ -241,7 +241,7 @@ TouchRule RollbackMover::touch_rule() const {
     return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
 }
 
-/// Plans an interval on what is touched; none when nothing presses the particle on, or the surface ends here.
+/// Plans an interval on what is in contact; none when nothing presses the particle on, or the surface ends here.
 void RollbackMover::plan_contact(double duration) {
     const bool kicked = is_kicked();
     pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);

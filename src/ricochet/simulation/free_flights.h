@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the steps of particles that meet nothing.
+/// Private to the simulation: the steps of particles that hit nothing.
 #pragma once
 
 #include <algorithm>

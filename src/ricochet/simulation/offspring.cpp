@@ -17,7 +17,7 @@ namespace {
 /// Parents per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-// Exact: no surface meets the closed straight line.
+// Exact: no surface intersects the closed segment.
 bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to) {
     const SurfaceGeometry geometry(world, scratch.plane_cache);
     const Path path = line_path(from, to - from, 1.0);

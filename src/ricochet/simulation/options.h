@@ -24,7 +24,7 @@ struct SimulationOptions : ResponseSettings {
 /// What makes a simulation faster, each to be switched off by itself: for tests and benchmarks. The bits of every
 /// result are the same without it.
 struct AccelerationSwitches {
-    bool look_ahead = true;      ///< particles that certainly meet nothing are not queried
+    bool look_ahead = true;      ///< particles that certainly hit nothing are not queried
     bool deferred_steps = true;  ///< steps of free flights are made together, see Simulation::advance()
     bool sleeping = true;        ///< particles held at rest by steady forces cost nothing
     bool spatial_order = true;   ///< neighbours in space are queried one after the other

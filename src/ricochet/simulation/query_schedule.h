@@ -62,13 +62,13 @@ private:
 enum class QueryState : std::uint8_t {
     unknown,      ///< nothing is known: it is queried, and may be in contact
     flying,       ///< it is queried; it was in contact with nothing at the end of its last step
-    free_flight,  ///< it certainly meets nothing: no query
+    free_flight,  ///< it certainly hits nothing: no query
     left_alone,   ///< nothing moves it (pinned, frozen, asleep) or it is about to be removed: no query
 };
 
 /// What the look-ahead of a particle's last query has found out about a particle that flies on.
 struct FreeFlightForecast {
-    double free_until = 0.0;            ///< s: it certainly meets nothing before; up to now: not found out
+    double free_until = 0.0;            ///< s: it certainly hits nothing before; up to now: not found out
     double candidates_until = 0.0;      ///< s: no triangles but the candidates come near its path before
     ContactCandidates candidates = {};  ///< only when candidates_until is later than now
 };

@@ -17,7 +17,7 @@ enum class Departure : std::uint8_t {
     none,           ///< it stays
     expired,        ///< its lifetime is over
     absorbed,       ///< by a surface
-    shattered,      ///< fragments take its place
+    shattered,      ///< fragments replace it
     out_of_bounds,  ///< it is outside the bounds
 };
 
@@ -28,7 +28,7 @@ struct EndOfStepCounts {
     std::uint64_t held = 0;  ///< of the resting ones those that friction and support hold
 };
 
-/// Looks at all particles once a step, at those in free flight only where there are bounds.
+/// Tests all particles once a step, those in free flight only where there are bounds.
 class Retirement {
 public:
     /// All must outlive it.

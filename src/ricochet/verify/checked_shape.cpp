@@ -20,13 +20,13 @@ constexpr double kEqualAxes = 0x1p-49;
 /// some 6 roundings of 2^-53.
 constexpr double kRoughError = 0x1p-49;
 
-/// Room for rounding around the box of a shape, relative to its size and place.
+/// Margin for rounding around the box of a shape, relative to its size and position.
 constexpr double kBoxSlack = 1e-12;
 
 /// Halvings in search of the multiplier: more would not change a double.
 constexpr int kHalvings = 120;
 
-/// Values (1 is the size of the shape) below which a place counts as on the surface: far above the errors of fifty
+/// Values (1 is the size of the shape) below which a point counts as on the surface: far above the errors of fifty
 /// digits, far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than that: segments that
 /// are free would be reported. Smaller than 1e-45: rounding would decide.
 const Digits kOnSurface("1e-36");
@@ -156,7 +156,7 @@ bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
            lower.z > box.upper.z || upper.z < box.lower.z;
 }
 
-/// Is the whole segment outside? Its ends are. Between the planes of the caps the value has its least at one place.
+/// Is the whole segment outside? Its ends are. Between the planes of the caps the value has its least at one point.
 bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const {
     const VectorOf<Digits> step = minus(to, from);
     Digits first = 0;
@@ -251,14 +251,14 @@ int CheckedShape::side(const Vec3& p) const {
     return rough != 0 ? rough : impl_->exact_side(impl_->local(p));
 }
 
-bool CheckedShape::meets(const Vec3& p, const Vec3& q) const {
+bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
     if (impl_->box_misses(p, q)) return false;
     const int of_p = side(p);
     if (of_p == 0 || side(q) != of_p) return true;
     return of_p > 0 && !impl_->is_apart(impl_->local(p), impl_->local(q));
 }
 
-/// The body is convex: a segment from its surface to an inner place is inside; one to an outer place is outside unless
+/// The body is convex: a segment from its surface to an inner point is inside; one to an outer point is outside unless
 /// it dips in, and then it does so at once, also in the first 2^-40 of its length (or by less than that).
 bool CheckedShape::meets_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);

@@ -3,7 +3,7 @@
 ///
 /// The shape is the documented one (geometry/shapes/analytic_shape.h): its axes are the directions of the map's
 /// columns, made orthonormal one after the other, its half axes the columns' lengths, rounded to doubles; half axes
-/// that agree to rounding (2^-49) are equal. A place counts as on the surface when its value there is below kOnSurface.
+/// that agree to rounding (2^-49) are equal. A point counts as on the surface when its value there is below kOnSurface.
 #pragma once
 
 #include <memory>
@@ -24,9 +24,9 @@ public:
 
     /// +1 outside, -1 inside, 0 on the surface.
     [[nodiscard]] int side(const Vec3& p) const;
-    /// True when the closed segment [p, q] meets the surface.
-    [[nodiscard]] bool meets(const Vec3& p, const Vec3& q) const;
-    /// The same for a segment that starts on the surface: true when it is met again.
+    /// True when the closed segment [p, q] intersects the surface.
+    [[nodiscard]] bool intersects(const Vec3& p, const Vec3& q) const;
+    /// The same for a segment that starts on the surface: true when it intersects it again.
     [[nodiscard]] bool meets_after_start(const Vec3& p, const Vec3& q) const;
     /// True when the distance of p from the surface is below `least` (m, > 0). Errs, on the side of true, by 1e-15 of
     /// the half axes at most.

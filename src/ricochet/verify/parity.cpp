@@ -22,7 +22,7 @@ int perturbed_sign(const Vec3& a, const Vec3& b) {
 
 using Position = std::array<double, 3>;
 
-Position position(const Vec3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }  // -0 and 0 are one place
+Position position(const Vec3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }  // -0 and 0 are one point
 
 }  // namespace
 
@@ -140,7 +140,7 @@ ParityOracle::Crossing ParityOracle::crossing(const Face& face, const Vec3& poin
     if (face.area_sign == 0) {
         // Parallel to the ray: the perturbed ray passes beside it, but the point may lie on it.
         if (sides != std::array<int, 3>{0, 0, 0}) return Crossing::none;
-        return verify::meets(point, point, {a, b, c}) ? Crossing::touches : Crossing::none;
+        return verify::intersects(point, point, {a, b, c}) ? Crossing::touches : Crossing::none;
     }
     for (const int side : sides) {
         if (side * face.area_sign < 0) return Crossing::none;

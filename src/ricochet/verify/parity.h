@@ -4,7 +4,7 @@
 ///
 /// Method: crossings of an axis-parallel ray with the triangles of its column are counted. The ray's two fixed
 /// coordinates are taken as moved by infinitesimal amounts (symbolic perturbation: H. Edelsbrunner, E. P. Muecke,
-/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so it meets no edge and no vertex, and the parity
+/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so it hits no edge and no vertex, and the parity
 /// is right for every point that is not on the surface itself.
 #pragma once
 

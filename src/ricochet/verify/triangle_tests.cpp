@@ -119,7 +119,7 @@ int exact_planar_sign(std::size_t u, std::size_t v, const Vec3& a, const Vec3& b
     return Integer(ab[u] * ap[v] - ab[v] * ap[u]).sign();
 }
 
-/// n's own scale is another one: its digits say nothing about places.
+/// n's own scale is another one: its digits say nothing about positions.
 int exact_height_sign(const Vec3& n, const Vec3& point, const Vec3& p) {
     const Scale of_normal(n), of_places(point, p);
     const auto difference = whole_between<LargeInteger>(point, p, of_places);
@@ -194,7 +194,7 @@ bool passes_through(const Vec3& p, const Vec3& q, const Corners& t) {
 
 }  // namespace
 
-bool meets(const Vec3& p, const Vec3& q, const Corners& t) {
+bool intersects(const Vec3& p, const Vec3& q, const Corners& t) {
     const int of_p = spatial_sign(t.a, t.b, t.c, p);
     const int of_q = spatial_sign(t.a, t.b, t.c, q);
     if (of_p * of_q > 0) return false;
@@ -203,7 +203,7 @@ bool meets(const Vec3& p, const Vec3& q, const Corners& t) {
 
 bool meets_after_start(const Vec3& p, const Vec3& q, const Corners& t) {
     const bool leaves_plane = spatial_sign(t.a, t.b, t.c, p) == 0 && spatial_sign(t.a, t.b, t.c, q) != 0;
-    return !leaves_plane && meets(p, q, t);
+    return !leaves_plane && intersects(p, q, t);
 }
 
 Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& t) {
@@ -237,23 +237,23 @@ Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// The way from the nearest point of the triangle to p: the shortest of those from the three sides and, when its foot
+/// The offset from the nearest point of the triangle to p: the shortest of those from the three sides and, when its foot
 /// lies on the triangle, from the plane.
 template <class Real>
-VectorOf<Real> way_from(const Vec3& p, const Corners& t) {
+VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     VectorOf<Real> best = difference<Real>(p, t.a);
     Real least = product(best, best);
-    const auto consider = [&](const VectorOf<Real>& way) {
-        const Real square = product(way, way);
+    const auto consider = [&](const VectorOf<Real>& offset) {
+        const Real square = product(offset, offset);
         if (!(square < least)) return;
         least = square;
-        best = way;
+        best = offset;
     };
     const auto consider_side = [&](const Vec3& from, const Vec3& to) {
         const VectorOf<Real> side = difference<Real>(to, from);
-        const VectorOf<Real> way = difference<Real>(p, from);
-        const Real part = product(way, side) / product(side, side);
-        consider(less<Real>(way, std::clamp<Real>(part, Real(0), Real(1)), side));
+        const VectorOf<Real> offset = difference<Real>(p, from);
+        const Real part = product(offset, side) / product(side, side);
+        consider(less<Real>(offset, std::clamp<Real>(part, Real(0), Real(1)), side));
     };
     consider_side(t.a, t.b);
     consider_side(t.b, t.c);
@@ -271,8 +271,8 @@ VectorOf<Real> way_from(const Vec3& p, const Corners& t) {
 /// A plane across any direction with the whole triangle behind it separates: p is at least as far away as from the
 /// plane. That holds for a direction that is only about that of the nearest point.
 bool is_certainly_clear(const Vec3& p, const Corners& t, double least) {
-    const VectorOf<double> way = way_from<double>(p, t);
-    const Vec3 direction{way[0], way[1], way[2]};
+    const VectorOf<double> offset = offset_from<double>(p, t);
+    const Vec3 direction{offset[0], offset[1], offset[2]};
     const double size = length(direction);
     if (!(size > 0.0)) return false;
     const auto height = [&](const Vec3& corner) {
@@ -288,8 +288,8 @@ using Digits = boost::multiprecision::cpp_bin_float_100;
 
 bool is_nearer(const Vec3& p, const Corners& t, double least) {
     if (is_certainly_clear(p, t, least)) return false;
-    const VectorOf<Digits> way = way_from<Digits>(p, t);
-    return product(way, way) < Digits(least) * least;
+    const VectorOf<Digits> offset = offset_from<Digits>(p, t);
+    return product(offset, offset) < Digits(least) * least;
 }
 
 bool is_nearer(const Vec3& p, const Vec3& point, const Vec3& normal, double least) {

@@ -1,5 +1,5 @@
 /// \file
-/// Does a segment meet a surface, and is a point too near to one? With the verifier's own signs and distances.
+/// Does a segment intersect a surface, and is a point too near to one? With the verifier's own signs and distances.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -30,15 +30,15 @@ struct Corners {
 };
 
 /// True when the closed segment [p, q], which may be a point, and the closed triangle have a point in common.
-[[nodiscard]] bool meets(const Vec3& p, const Vec3& q, const Corners& triangle);
+[[nodiscard]] bool intersects(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 /// The same for a segment whose start may lie on the triangle: true when any other point of it does.
 [[nodiscard]] bool meets_after_start(const Vec3& p, const Vec3& q, const Corners& triangle);
 
-/// About where [p, q] meets the triangle's plane (rounded); p when it runs in that plane.
+/// About where [p, q] crosses the triangle's plane (rounded); p when it runs in that plane.
 [[nodiscard]] Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& triangle);
 
-// Is a place nearer to a surface than it may be? In doubles with their error where that leaves no doubt, with a
+// Is a point nearer to a surface than it may be? In doubles with their error where that leaves no doubt, with a
 // hundred digits otherwise.
 
 /// True when the distance of p from the triangle is below `least` (m, > 0).

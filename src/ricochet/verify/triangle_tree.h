@@ -1,5 +1,5 @@
 /// \file
-/// Which triangles are near a segment or a place: a hierarchy of boxes in doubles, of the verifier's own. It may name
+/// Which triangles are near a segment or a point: a hierarchy of boxes in doubles, of the verifier's own. It may name
 /// triangles that are not near, but leaves none out.
 #pragma once
 

@@ -51,9 +51,9 @@ struct Verifier::Impl {
         const VerifiedStep& step;
         std::vector<Violation>& violations;
 
-        void report(ViolationKind kind, const Vec3& place, double time, std::optional<std::uint32_t> collider,
+        void report(ViolationKind kind, const Vec3& position, double time, std::optional<std::uint32_t> collider,
                     std::optional<std::uint32_t> triangle = std::nullopt) const {
-            violations.push_back({kind, step.particle, place, time, collider, triangle});
+            violations.push_back({kind, step.particle, position, time, collider, triangle});
         }
     };
 
@@ -106,7 +106,7 @@ std::vector<Side> Verifier::Impl::sides_of(const Vec3& p) const {
 
 bool Verifier::Impl::is_on_surface(const Vec3& p) const {
     bool is_on = false;
-    triangles.near_segment(p, p, [&](const NamedTriangle& t) { is_on = is_on || verify::meets(p, p, t.corners); });
+    triangles.near_segment(p, p, [&](const NamedTriangle& t) { is_on = is_on || verify::intersects(p, p, t.corners); });
     return is_on;
 }
 
@@ -143,7 +143,7 @@ void Verifier::Impl::check_chain(const Judged& judged, const Vec3& before) const
 void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const {
     const Vec3& p = segment.from;
     const Vec3& q = segment.to;
-    if (same_bits(p, q)) return;  // its place belongs to the segment before
+    if (same_bits(p, q)) return;  // its position belongs to the segment before
     if (!is_finite(p) || !is_finite(q)) {
         judged.report(ViolationKind::gap, q, segment.time, std::nullopt);
         return;
@@ -156,12 +156,12 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
         if (of_p * of_q <= 0 && !leaves) judged.report(ViolationKind::crossing, q, segment.time, collider);
     }
     for (const auto& [collider, shape] : shapes) {
-        if (!shape.meets(p, q)) continue;
+        if (!shape.intersects(p, q)) continue;
         const bool leaves = starts_on_surface && shape.side(p) == 0 && !shape.meets_after_start(p, q);
         if (!leaves) judged.report(ViolationKind::crossing, q, segment.time, collider);
     }
     triangles.near_segment(p, q, [&](const NamedTriangle& t) {
-        if (!verify::meets(p, q, t.corners)) return;
+        if (!verify::intersects(p, q, t.corners)) return;
         if (starts_on_surface && !verify::meets_after_start(p, q, t.corners)) return;
         judged.report(ViolationKind::crossing, verify::place_of_meeting(p, q, t.corners), segment.time, t.collider,
                       t.triangle);
@@ -172,7 +172,7 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
               });
 }
 
-/// A place that is not finite is on no known side; that it was reached has been reported as a gap.
+/// A position that is not finite is on no known side; that it was reached has been reported as a gap.
 void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particle) const {
     const VerifiedStep& step = judged.step;
     if (!is_finite(step.to)) return;

@@ -24,13 +24,13 @@ namespace ricochet {
 
 // What a verified run finds wrong.
 
-/// Where a place is.
+/// Where a point is.
 enum class Side : std::uint8_t { inside, outside, on_surface };
 
 /// What is wrong.
 enum class ViolationKind : std::uint8_t {
-    crossing,    ///< a segment that was travelled meets a surface
-    gap,         ///< the segments do not join the place where the particle was last seen to that where it is now
+    crossing,    ///< a segment that was travelled intersects a surface
+    gap,         ///< the segments do not join the position at which the particle was last seen to its position now
     wrong_side,  ///< the particle is on another side of a closed surface than at birth
     overlap,     ///< a sphere is nearer to a surface than its radius, by more than sphere_tolerance()
 };
@@ -39,7 +39,7 @@ enum class ViolationKind : std::uint8_t {
 struct Violation {
     ViolationKind kind = ViolationKind::crossing;
     std::uint64_t particle = 0;             ///< id
-    Vec3 place;                             ///< m: of the meeting (rounded), else of the particle's centre
+    Vec3 position;                          ///< m: of the crossing (rounded), else of the particle's centre
     double time = 0.0;                      ///< s: a crossing's flight began then; for the others the step's end
     std::optional<std::uint32_t> collider;  ///< index; nothing for a gap
     std::optional<std::uint32_t> triangle;  ///< of the collider's mesh; nothing for planes, shapes and sides
@@ -90,7 +90,7 @@ public:
     Verifier(Verifier&&) noexcept;
     Verifier& operator=(Verifier&&) noexcept;
 
-    /// Looks at a particle at its birth. A place that is not finite has no side and is not judged.
+    /// Begins to watch a particle at its birth. A position that is not finite has no side and is not judged.
     [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
 
     /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then

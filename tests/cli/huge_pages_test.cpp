@@ -16,7 +16,7 @@ struct alignas(64) Line {
 };
 
 /// What the kernel says of the piece of memory that holds an address, in its own letters; "hg" is the advice to use
-/// large pages.
+/// huge pages.
 std::string flags_of_memory_at(const void* place) {
     const auto address = reinterpret_cast<std::uintptr_t>(place);
     std::ifstream maps("/proc/self/smaps");

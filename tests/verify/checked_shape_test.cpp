@@ -32,7 +32,7 @@ AffineMap random_map(RandomSequence& random) {
     return world_from_local(placement);
 }
 
-/// Places at all scales of nearness to the surface.
+/// Positions at all scales of nearness to the surface.
 Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     Vec3 local = random.unit_vector();
     if (random.uniform() < 0.5) local.z = local.z < 0.0 ? -1.0 : 1.0;
@@ -40,7 +40,7 @@ Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     return map.point((random.uniform() < 0.5 ? 1.0 + off : 1.0 - off) * local);
 }
 
-TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
+TEST(CheckedShape, HasTheSidesSegmentsAndDistancesOfFiftyDigits) {
     int met = 0;
     int free = 0;
     for (int i = 0; i < test::scaled(4000); ++i) {
@@ -67,7 +67,7 @@ TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
     EXPECT_GT(free, 0);
 }
 
-TEST(CheckedShape, LetsALegLeaveTheSurfaceButNotPassThrough) {
+TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
     const CheckedShape ball(AffineMap{}, false);
     EXPECT_EQ(ball.side({1, 0, 0}), 0);
     EXPECT_TRUE(ball.meets({1, 0, 0}, {2, 0, 0}));

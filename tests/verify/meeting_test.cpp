@@ -26,7 +26,7 @@ TEST(Meeting, KnowsInsideEdgesCornersAndMisses) {
 TEST(Meeting, KnowsSegmentsInTheTrianglesPlane) {
     EXPECT_TRUE(meets({-1, 1, 0}, {5, 1, 0}, kTriangle));   // through
     EXPECT_TRUE(meets({1, 1, 0}, {1.5, 1, 0}, kTriangle));  // within
-    EXPECT_TRUE(meets({3, -1, 0}, {5, 1, 0}, kTriangle));   // touches a corner
+    EXPECT_TRUE(meets({3, -1, 0}, {5, 1, 0}, kTriangle));   // through a corner
     EXPECT_TRUE(meets({5, -1, 0}, {-1, 5, 0}, kTriangle));  // along an edge
     EXPECT_FALSE(meets({5, 0, 0}, {6, 0, 0}, kTriangle));   // on an edge's line, beyond it
     EXPECT_FALSE(meets({3, 2, 0}, {2, 3, 0}, kTriangle));   // beside
@@ -57,7 +57,7 @@ TEST(Meeting, ASegmentMayLeaveATriangleToEitherSideButNotAlongIt) {
     EXPECT_TRUE(meets_after_start({1, 1, 1}, {1, 1, -1}, kTriangle));
 }
 
-TEST(Meeting, NamesThePlace) {
+TEST(Meeting, NamesThePoint) {
     EXPECT_EQ(place_of_meeting({1, 1, 3}, {1, 1, -1}, kTriangle), Vec3(1, 1, 0));
     EXPECT_EQ(place_of_meeting({-1, 1, 0}, {5, 1, 0}, kTriangle), Vec3(-1, 1, 0));
 }

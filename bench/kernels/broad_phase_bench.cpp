@@ -1,7 +1,7 @@
 /// \file
-/// Time of asking the broad phase which triangles a segment may touch, in a rocky cavity of 20 thousand and of 1.3
+/// Time of querying the broad phase for the triangles near a segment, in a rocky cavity of 20 thousand and of 1.3
 /// million triangles: segments shorter than an edge, and segments across the cavity that end at their first triangle.
-/// Of one look at a cluster of triangles, and of one at the grid of distances.
+/// Also the time of testing one cluster of triangles, and of reading the distance field once.
 
 #include <benchmark/benchmark.h>
 
@@ -71,8 +71,8 @@ BENCHMARK(visit_short)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across_until_the_first)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 
-/// Looks at clusters that a way of the given bend passes within one of their sizes.
-void look_at_clusters(benchmark::State& state, double bend) {
+/// Tests clusters that a path of the given bend passes within one of their sizes.
+void test_clusters(benchmark::State& state, double bend) {
     const TriangleMesh& mesh = ground(20'000).mesh;
     const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
     RandomSequence random(2, 0, 0);
@@ -85,32 +85,32 @@ void look_at_clusters(benchmark::State& state, double bend) {
     std::size_t i = 0;
     std::size_t near = 0;
     for ([[maybe_unused]] auto _ : state) {
-        TubeIntervals stretches;
-        near += clusters[i].overlaps(tubes[i], stretches) != 0 ? 1 : 0;
+        TubeIntervals intervals;
+        near += clusters[i].overlaps(tubes[i], intervals) != 0 ? 1 : 0;
         i = i + 1 == clusters.size() ? 0 : i + 1;
     }
     state.counters["near"] = benchmark::Counter(static_cast<double>(near), benchmark::Counter::kAvgIterations);
 }
-void look_along_lines(benchmark::State& state) { look_at_clusters(state, 0.0); }
-void look_along_parabolas(benchmark::State& state) { look_at_clusters(state, 1e-3); }
-BENCHMARK(look_along_lines);
-BENCHMARK(look_along_parabolas);
+void clusters_along_lines(benchmark::State& state) { test_clusters(state, 0.0); }
+void clusters_along_parabolas(benchmark::State& state) { test_clusters(state, 1e-3); }
+BENCHMARK(clusters_along_lines);
+BENCHMARK(clusters_along_parabolas);
 
-/// At places all over the cavity, most of them free.
-void look_up_clearance(benchmark::State& state) {
+/// At points all over the cavity, most of them free.
+void distance_lower_bound(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.include(v);
     const DistanceField grid(mesh.vertices, mesh.triangles, box);
     RandomSequence random(3, 0, 0);
-    std::vector<Vec3> places(4096);
-    for (Vec3& place : places) place = 1.5 * random.in_unit_ball();
+    std::vector<Vec3> points(4096);
+    for (Vec3& point : points) point = 1.5 * random.in_unit_ball();
     std::size_t i = 0;
-    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(grid.lower_bound(places[i++ % places.size()]));
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(grid.lower_bound(points[i++ % points.size()]));
 }
-BENCHMARK(look_up_clearance)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
+BENCHMARK(distance_lower_bound)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 
-void build_clearance(benchmark::State& state) {
+void build_distance_field(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
     Box3 box;
     for (const Vec3& v : mesh.vertices) box.include(v);
@@ -119,7 +119,7 @@ void build_clearance(benchmark::State& state) {
         benchmark::DoNotOptimize(grid.memory_bytes());
     }
 }
-BENCHMARK(build_clearance)
+BENCHMARK(build_distance_field)
     ->ArgName("triangles")
     ->Arg(20'000)
     ->Arg(1'300'000)

@@ -20,7 +20,7 @@ const Vec3 kA{-1.0, -1.0, 0.0};
 const Vec3 kB{1.0, -0.9, 0.1};
 const Vec3 kC{0.1, 1.1, -0.1};
 
-/// A way of one second between two points, bent for higher degrees.
+/// A path of one second between two points, bent for higher degrees.
 Path path_between(const Vec3& from, const Vec3& to, int degree) {
     const Vec3 bend{0.1, -0.2, 0.15};
     if (degree == 1) return line_path(from, to - from, 1.0);
@@ -28,7 +28,7 @@ Path path_between(const Vec3& from, const Vec3& to, int degree) {
     return hermite_path(from, to - from + bend, to, to - from - 2.0 * bend, 1.0);
 }
 
-/// A place on the triangle.
+/// A point on the triangle.
 Vec3 place(RandomSequence& random) {
     const double u = random.uniform();
     const double v = (1.0 - u) * random.uniform();
@@ -44,7 +44,7 @@ Path hit(RandomSequence& random, int degree) {
     return path_between(p - way, p + way, degree);
 }
 
-/// Over its plane, some way above it.
+/// Over its plane, some distance above it.
 Path miss(RandomSequence& random, int degree) {
     const Vec3 above{0.0, 0.0, 0.5 + random.uniform()};
     return path_between(place(random) + above, place(random) + 1.5 * above, degree);

@@ -37,7 +37,7 @@ TEST(Insides, OfABallAreThoseOfABoxThatIsSmallerByItsRadius) {
         EXPECT_EQ(insides.contains_ball(p, r), inside) << p.x << ' ' << p.y << ' ' << p.z << " radius " << r;
     }
     EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.0));
-    EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.5));  // it touches
+    EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.5));  // it is in contact
 }
 
 }  // namespace

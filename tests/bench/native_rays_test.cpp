@@ -21,7 +21,7 @@ std::array<float, 3> floats(const Vec3& v) {
 
 Vec3 doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-// Two balls, one in the other, so that rays have several triangles in their way.
+// Two balls, one in the other, so that rays hit several triangles.
 TriangleMesh two_balls() {
     return testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({0.125, 0, 0}, 0.5, 2));
 }

@@ -120,7 +120,7 @@ TEST(ConeInABeam, HasDragFourTimesTheSquaredSineOfItsHalfAngleAsAMirror) {
     expect_drag({testing::mesh_collider(cone(kSides))}, specular(), {-1, 1, -1, 1}, 1.0, kPi, faceting);
 }
 
-// The beam meets the half y > 0 of a plate: torque about z is minus the force times the mean lever.
+// The beam hits the half y > 0 of a plate: torque about z is minus the force times the mean lever.
 TEST(HalfLitPlate, IsTurnedByTheForceTimesItsLever) {
     const std::vector<ColliderDescription> plate{{"plate", CuboidShape{{0.02, 1, 1}, {}}, 0}};
     const Answer answer = shine(plate, specular(), {0.0, 0.5, -0.5, 0.5}, test::scaled(60000));

@@ -48,7 +48,7 @@ struct Aimed {
     Vec3 position;
     std::uint32_t triangle;
 
-    /// Flies to the next impact, or to the target when nothing is hit on the way.
+    /// Flies to the next impact, or to the target when nothing is hit before it.
     void fly(BilliardTally& tally) {
         const bool near = random.uniform() < 2.0 / 3.0;
         if (!near) triangle = random_triangle(world, random);
@@ -90,7 +90,7 @@ bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q) {
         const Vec3& a = mesh.vertices[t[0]];
         const Vec3& b = mesh.vertices[t[1]];
         const Vec3& c = mesh.vertices[t[2]];
-        // All of a triangle is within its longer edges' length of a corner; the factor leaves room for rounding.
+        // All of a triangle is within its longer edges' length of a corner; the factor leaves a margin for rounding.
         const double reach = 1.001 * std::max(length(b - a), length(c - a)) + rounding;
         return distance(a, p, q) <= reach && exact_segment_intersects_triangle(p, q, a, b, c);
     });

@@ -19,7 +19,7 @@ struct BilliardTally {
     std::uint64_t stayed = 0;            ///< contacts after which the particle stood where its path began
     std::uint64_t not_inside = 0;        ///< particles outside, or on the surface, at any check
     std::uint64_t checked_legs = 0;      ///< segments tested again by the exact oracle
-    std::uint64_t crossing_legs = 0;     ///< of these, segments that meet a triangle
+    std::uint64_t crossing_legs = 0;     ///< of these, segments that intersect a triangle
     std::uint64_t budget_exhausted = 0;  ///< steps that spent their bounces
 };
 
@@ -53,8 +53,8 @@ private:
     double mean_free_path_ = 0.0;
 };
 
-/// True when the closed segment meets a triangle of the mesh: exact, and independent of the library's predicates and
-/// hierarchy. Linear in the number of triangles.
+/// True when the closed segment intersects a triangle of the mesh: exact, and independent of the library's predicates
+/// and hierarchy. Linear in the number of triangles.
 [[nodiscard]] bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q);
 
 }  // namespace ricochet::testing

@@ -1,5 +1,5 @@
-// A ball that is dropped on a floor: every impact, every apex, the time to rest and the way, by closed form, whatever
-// the time step and however the floor is cut into triangles.
+// A ball that is dropped on a floor: every impact, every apex, the time to rest and the path length, by closed form,
+// whatever the time step and however the floor is cut into triangles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Restitutions, DroppedBall, ::testing::Values(0.5, 0.8, 
                          [](const auto& e) { return fmt::format("e{}", std::lround(10.0 * e.param)); });
 
 // Impact n at t0 (1 + 2 (e + ... + e^(n - 1))), then an apex of h e^(2n).
-TEST_P(DroppedBall, MeetsTheFloorAndRisesAsTheClosedFormSaysAtAnyTimeStep) {
+TEST_P(DroppedBall, HitsTheFloorAndRisesAsTheClosedFormSaysAtAnyTimeStep) {
     const double e = GetParam();
     for (const double time_step : {1e-4, 1e-3, 1.0 / 60.0, 0.1, 1.0}) {
         SCOPED_TRACE(time_step);
@@ -81,7 +81,7 @@ TEST_P(DroppedBall, MeetsTheFloorAndRisesAsTheClosedFormSaysAtAnyTimeStep) {
     }
 }
 
-TEST_P(DroppedBall, ComesToRestWhenAndAfterTheWayThatTheSeriesSays) {
+TEST_P(DroppedBall, ComesToRestWhenAndAfterThePathLengthThatTheSeriesSays) {
     const double e = GetParam();
     const double total = time_to_rest(e);
     for (const double time_step : {1e-4, 1.0 / 60.0, 1.0}) {
@@ -100,7 +100,7 @@ TEST_P(DroppedBall, ComesToRestWhenAndAfterTheWayThatTheSeriesSays) {
     }
 }
 
-TEST_P(DroppedBall, TakesTheTabulatedTimeAndWay) {
+TEST_P(DroppedBall, TakesTheTabulatedTimeAndPathLength) {
     struct Row {
         double e, time, way;
     };

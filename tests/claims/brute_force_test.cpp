@@ -1,4 +1,4 @@
-// Random meshes, particles and steps: the program with all its culling against the same rules asked of every triangle.
+// Random meshes, particles and steps: the program with all its culling against the same rules for every triangle.
 #include <gtest/gtest.h>
 
 #include <array>

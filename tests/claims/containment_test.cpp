@@ -1,5 +1,5 @@
 // Nothing leaks: particles that start inside a closed mesh end inside it, by an exact parity test that shares nothing
-// with the library; and the segments they travel meet no triangle, by exact rational arithmetic, open meshes included.
+// with the library; and the segments they travel intersect no triangle, by rational arithmetic, open meshes included.
 //
 // A long run: the same claims with ten thousand particles and a thousand steps.
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 /// Impacts a step, about.
 const double kImpacts = test::is_long_run() ? 0.75 : 1.5;
 
-/// How much is done in one place of the world.
+/// How much is done with one placement of the mesh.
 struct Amount {
     int particles;
     int steps;
@@ -103,7 +103,7 @@ TEST_P(ClosedMesh, HoldsWhatIsAimedAtItsVerticesAndEdges) {
     });
 }
 
-TEST_P(MessyMesh, IsNotCrossedByAnyLeg) {
+TEST_P(MessyMesh, IsNotCrossedByAnySegment) {
     everywhere([](const Billiard& billiard, const Amount& n) {
         const int check_every = std::max(1, n.particles * n.steps / 40);
         const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 5);
@@ -113,8 +113,8 @@ TEST_P(MessyMesh, IsNotCrossedByAnyLeg) {
     });
 }
 
-// At a vertex at the world's origin coordinates have no smallest size: places next to it can be far smaller than the
-// rounding of distances from the triangles that meet there.
+// At a vertex at the world's origin coordinates have no smallest size: positions next to it can be far smaller than the
+// rounding of distances from the triangles that share it.
 TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
     const NamedMesh wedge = *mesh_by_name("wedge");
     ASSERT_NE(std::find(wedge.mesh.vertices.begin(), wedge.mesh.vertices.end(), Vec3{}), wedge.mesh.vertices.end());
@@ -123,8 +123,8 @@ TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
     EXPECT_GT(tally.contacts, 0U);
 }
 
-// The reference must be able to tell: a segment through a wall is seen, one beside it is not.
-TEST(LegOracle, TellsALegThroughAWallFromOneBesideIt) {
+// The reference must be able to tell: a segment through a wall is found, one beside it is not.
+TEST(LegOracle, TellsASegmentThroughAWallFromOneBesideIt) {
     const NamedMesh box = made_meshes().front();
     const Billiard billiard(box, {});
     const Vec3 inside = billiard.start_points(1, 1).front();

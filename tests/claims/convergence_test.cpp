@@ -101,7 +101,7 @@ TEST_F(OrderWithBounces, VelocityVerletKeepsOrderTwo) {
 }
 
 // From one step for the whole run down; the error is that of some sub-steps, times what bounces make of it.
-TEST_F(OrderWithBounces, DormandPrinceMeetsItsTolerance) {
+TEST_F(OrderWithBounces, DormandPrinceKeepsItsTolerance) {
     for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
         for (const int steps : {1, 10, 100}) {
             const EndState end = run({IntegratorKind::dormand_prince, {tolerance, tolerance}}, steps);

@@ -119,14 +119,14 @@ TEST(ParabolicMirror, CollectsABeamAlongItsAxisInTheFocus) {
     EXPECT_NEAR(blur_at_focus(128, rays) / coarse, 0.25, test::kSanitized ? 0.1 : 0.03);
 }
 
-/// Place of a coordinate that bounces between -1/2 and 1/2, by unfolding.
+/// Value of a coordinate that bounces between -1/2 and 1/2, by unfolding.
 double folded(double x) {
     const double u = std::fmod(x + 0.5, 2.0);
     const double positive = u < 0.0 ? u + 2.0 : u;
     return (positive < 1.0 ? positive : 2.0 - positive) - 0.5;
 }
 
-TEST(BoxOfMirrors, HoldsTheUnfoldedPlaceAfterAMillionBounces) {
+TEST(BoxOfMirrors, HoldsTheUnfoldedPositionAfterAMillionBounces) {
     Course course({{"box", CuboidShape{{1, 1, 1}, {}}, 0}}, kMirror, {});
     const Vec3 start{0.1, -0.2, 0.3};
     const Vec3 v{1.0, 0.71, 0.33};

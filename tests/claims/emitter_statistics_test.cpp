@@ -104,7 +104,7 @@ TEST(EmitterStatistics, QuantitiesAreNotCorrelated) {
     }
 }
 
-TEST(EmitterStatistics, GivingParticlesLooksChangesNothingElseAboutThem) {
+TEST(EmitterStatistics, GivingParticlesAttributesChangesNothingElseAboutThem) {
     EmitterDescription plain = everything();
     plain.attributes.clear();
     EmitterDescription one = everything();

@@ -1,4 +1,4 @@
-// Exact, rollback, project and penalty in the same places: what each promises and what it does not, and what all agree
+// Exact, rollback, project and penalty side by side: what each promises and what it does not, and what all agree
 // on as steps shrink.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -150,7 +150,7 @@ constexpr double kStiffness = 4e3;  // N/m; under a gram omega = 2000 / s, half 
 
 struct Shot {
     double travel;  ///< m in a step
-    double phase;   ///< the first step ends behind the plate's front by this part of a step's way
+    double phase;   ///< the first step ends behind the plate's front by this part of a step's travel
 };
 
 std::vector<Shot> shots() {
@@ -161,7 +161,7 @@ std::vector<Shot> shots() {
     return list;
 }
 
-/// The bullet's way, its contacts and whether it ends in front of the plate.
+/// The bullet's contacts and penetrations, and whether it ends in front of the plate.
 struct Flown {
     std::uint64_t contacts = 0;
     std::uint64_t penetrations = 0;
@@ -188,7 +188,7 @@ Flown shoot(ResponseKind kind, const Shot& shot) {
             simulation.particles().position[0].x < 0.0 && simulation.particles().velocity[0].x < 0.0};
 }
 
-/// True when some end of a step of this way lies in [from, to] behind the front.
+/// True when some end of a step of this length lies in [from, to] behind the front.
 bool some_step_ends_in(double from, double to, double way, double start) {
     const double first = start + std::ceil((from - start) / way) * way;
     return first <= to;
@@ -335,11 +335,11 @@ Errors errors_of(ResponseKind kind, double factor, const std::function<void(Simu
     return result;
 }
 
-TEST(FourResponses, ExactMeetsTheClosedFormToRoundingWhateverTheStep) {
+TEST(FourResponses, ExactAgreesWithTheClosedFormToRoundingWhateverTheStep) {
     for (const int steps : {1, 7, 97, 1000, 10000}) EXPECT_LT(error_of(ResponseKind::exact, steps), 2e-11) << steps;
 }
 
-TEST(FourResponses, RollbackMeetsTheClosedFormInTheFirstOrderOfItsToleranceWhateverTheStep) {
+TEST(FourResponses, RollbackAgreesWithTheClosedFormInTheFirstOrderOfItsToleranceWhateverTheStep) {
     Errors all;
     for (const int steps : {1, 7, 97, 1000}) {
         for (double tolerance = 1e-3; tolerance > 1e-11; tolerance /= 3.0) {
@@ -354,12 +354,12 @@ TEST(FourResponses, RollbackMeetsTheClosedFormInTheFirstOrderOfItsToleranceWhate
     EXPECT_NEAR(all.slope(), 1.0, 0.1);
 }
 
-TEST(FourResponses, ProjectMeetsTheClosedFormInTheFirstOrderOfTheStep) {
+TEST(FourResponses, ProjectAgreesWithTheClosedFormInTheFirstOrderOfTheStep) {
     EXPECT_NEAR(errors_of(ResponseKind::project, 1.11).slope(), 1.0, 0.2);
 }
 
 // Contacts of two steps, with sub-steps that shrink faster than the steps.
-TEST(FourResponses, PenaltyMeetsTheClosedFormInTheFirstOrderOfTheStepWhereContactsAreResolvedTheBetter) {
+TEST(FourResponses, PenaltyAgreesWithTheClosedFormInTheFirstOrderOfTheStepWhereContactsAreResolvedTheBetter) {
     const auto resolved = [](SimulationOptions& options) {
         options.penalty.substeps = static_cast<std::uint32_t>(std::lround(0.0725 / options.time_step));
         options.penalty.contact_steps = 2.0 * options.penalty.substeps;
@@ -381,7 +381,7 @@ TEST(FourResponses, PenaltyGetsNoNearerThanItsSubstepsAContactAllow) {
               0.3 * *std::max_element(tail, plain.errors.end()));
 }
 
-/// A way to answer, and whether the system goes back as a whole.
+/// A response, and whether the system goes back as a whole.
 struct Answer {
     ResponseKind kind;
     bool global = false;

@@ -24,7 +24,7 @@ struct NamedMesh {
 /// A mesh of made_meshes(), or a real one by its file name (see shared_meshes.h); nothing when there is none.
 [[nodiscard]] std::optional<NamedMesh> mesh_by_name(const std::string& name);
 
-/// A place in the world that is hard on floating-point numbers.
+/// A placement in the world that is hard on floating-point numbers.
 struct HardPlacement {
     std::string name;
     Placement placement;

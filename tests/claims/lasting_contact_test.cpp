@@ -101,7 +101,7 @@ TEST(ACorner, IsHeldByEachSurfaceInItsOwnDirection) {
 }
 
 // Friction turns with the motion, whatever the time step.
-TEST(TurningFriction, StopsASlideAtTheSamePlaceForAnyTimeStep) {
+TEST(TurningFriction, StopsASlideAtTheSamePositionForAnyTimeStep) {
     const auto end = [](double time_step) {
         Course course({plane_collider({0, 0, 0}, {0, 0, 1})}, {"", 0.0, 0.3}, {2, 0, -10});
         MovingParticle point = particle_at({0, 0, 1e-15}, {0.3, 1, 0});

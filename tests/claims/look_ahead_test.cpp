@@ -1,4 +1,4 @@
-// Particles that certainly meet nothing are not searched for, and those that are searched for are moved in spatial
+// Particles that certainly hit nothing are not queried, and those that are queried are moved in spatial
 // order: no bit of any result may tell.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 namespace ricochet {
 namespace {
 
-/// Long flights between small things: most steps of most particles meet nothing. Everything follows from the number.
+/// Long flights between small things: most steps of most particles hit nothing. Everything follows from the number.
 class SparseCase {
 public:
     /// Everything may stand elsewhere than about the origin, m.
@@ -75,7 +75,7 @@ private:
         auto result = std::make_shared<TriangleMesh>();
         const std::size_t kind = pick(3);
         if (kind != 2) {
-            // Along parabolas the boxes of fine triangles can be asked about less than a step.
+            // Along parabolas one query of fine triangles covers less than a step.
             *result = testing::sphere_mesh({}, 1.9, kind == 0 ? 3 : 5);
             for (Vec3& v : result->vertices) v = shift_ + (1.0 + 0.05 * random_.uniform()) * v;
             return result;
@@ -183,7 +183,7 @@ std::tuple<std::uint64_t, std::uint64_t, std::uint64_t> outcome_of(SimulationSet
 }
 
 /// Far from the origin, and so slowly that every step is rounded by more than the sphere gets away from the wall: its
-/// exact way leads away, the stored places lead through.
+/// exact path leads away, the stored positions lead through.
 TEST(Foresight, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
     constexpr double kFar = 5e6;
     constexpr double kUlp = 0x1p-30;
@@ -241,7 +241,7 @@ void add_fountain(SimulationSetup& setup) {
     setup.emitters.push_back(std::move(fountain));
 }
 
-// Stretches of one step, of a few and of more than are deferred at most, some cut short.
+// Runs of one step, of a few and of more than are deferred at most, some cut short.
 TEST(Advance, LeadsToTheBitsOfSingleSteps) {
     int stretches = 0;
     for (int i = 0; i < test::scaled(150); ++i) {

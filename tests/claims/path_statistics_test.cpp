@@ -65,7 +65,7 @@ Vec3 random_place(const Body& body, RandomSequence& random) {
     return p;
 }
 
-/// What one molecule met on its way.
+/// What one molecule hit on its path, and how long that was.
 struct Flown {
     std::vector<ContactRecord> hits;
     double way;
@@ -100,7 +100,7 @@ TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
 }
 
 // Flux through a wall weights by the cosine: its mean is 2/3, and sin^2 30 degrees of the hits come within 30 degrees.
-TEST_P(GasIn, MeetsTheWallsByTheCosineLaw) {
+TEST_P(GasIn, HitsTheWallsByTheCosineLaw) {
     RatioSample cosine(2.0 / 3.0);
     RatioSample within_thirty(0.25);
     fly_gas(GetParam()(), test::scaled(4000), 50.0, [&](const Flown& flown) {

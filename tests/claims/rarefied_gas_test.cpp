@@ -45,7 +45,7 @@ struct Vessel {
     ExactResponse response;
 };
 
-/// Flies until is_out(position); returns the place, and adds up the way inside where `way` is given.
+/// Flies until is_out(position); returns the particle there, and adds up the path length inside where `way` is given.
 template <class IsOut>
 MovingParticle fly_out(const Vessel& vessel, MovingParticle particle, double stride, const IsOut& is_out) {
     MoveScratch scratch;

@@ -34,7 +34,7 @@ double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     return std::sqrt(nearest);
 }
 
-/// Places inside the body and more than their radius away from its surface, which the three radii take in turn.
+/// Positions inside the body and more than their radius away from its surface, which the three radii take in turn.
 std::vector<Particle> gas_in(const TriangleMesh& mesh, const std::vector<double>& radii, int count, double speed) {
     const testing::ParityOracle oracle(mesh);
     const Box3 box = bounds(mesh);
@@ -113,7 +113,7 @@ TEST(SphereGasInATetrahedron, KeepsOutOfCornersTighterThanASphere) {
 }
 
 // Between plates one nanometre wider than the sphere, in a box: every bounce is a double one.
-TEST(SphereBetweenPlates, WithANanometreOfRoomNeitherLeaksNorOverlaps) {
+TEST(SphereBetweenPlates, WithANanometreOfClearanceNeitherLeaksNorOverlaps) {
     constexpr double kRadius = 0.05;
     SimulationSetup setup;
     setup.options.time_step = 0.01;

@@ -7,7 +7,7 @@ namespace {
 
 const std::vector<ColliderDescription> kColliders = {{"floor", PlaneShape{}, 0}, {"tube", MeshShape{}, 0}};
 
-TEST(ViolationReport, NamesParticlePlaceTimeColliderAndTriangle) {
+TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
     const std::vector<Violation> violations = {{ViolationKind::crossing, 7, {1, 0.1, -2}, 0.25, 1, 99},
                                                {ViolationKind::wrong_side, 8, {0, 0, 0}, 1, 0, {}},
                                                {ViolationKind::overlap, 9, {0, 0, 0}, 1, 1, 3},

@@ -95,14 +95,14 @@ TEST(Comparison, ExactUnderGravityAloneIsRightToRoundingAtAnyStep) {
     }
 }
 
-TEST(Comparison, ProjectIsBehindTheFloorByNoMoreThanAStepsWay) {
+TEST(Comparison, ProjectIsBehindTheFloorByNoMoreThanAStepsDistance) {
     const Comparison comparison = compared("project");
     const double fastest = std::sqrt(2.0 * kGravity * (kHeight + 0.2));
     for (const ComparisonRow* row : comparison.listed_rows()) {
         EXPECT_GT(row->figures.statistics.penetration_deepest, 0.0);
         EXPECT_LE(row->figures.statistics.penetration_deepest, (fastest + kGravity * row->time_step) * row->time_step);
         EXPECT_GT(row->errors.position.largest, 1e-6);
-        EXPECT_LE(row->errors.impact.largest, row->time_step * (1.0 + 1e-9));  // seen at the end of the step
+        EXPECT_LE(row->errors.impact.largest, row->time_step * (1.0 + 1e-9));  // detected at the end of the step
         EXPECT_EQ(row->errors.impact.count, 20U);
         EXPECT_EQ(row->equal_error_step, 0.02);  // exact is better even at the longest step
     }
@@ -118,7 +118,7 @@ TEST(Comparison, AThinPlateIsJumpedWhereAStepIsLongerThanIt) {
     EXPECT_EQ(comparison->rows[1].figures.tunnel.tunnelled, 0U);  // exact
 }
 
-TEST(Comparison, ASoftPlateIsPassedInSeveralLegs) {
+TEST(Comparison, ASoftPlateIsPassedInSeveralSegments) {
     for (const bool ball : {false, true}) {
         SimulationSetup setup = falling_points();
         setup.options.penalty.stiffness = 1.0;

@@ -78,7 +78,7 @@ TEST(Reference, FirstImpactsAreMatchedById) {
     EXPECT_EQ(errors.impacts_extra, 1U);
 }
 
-TEST(Reference, LastPlacesAreComparedOfThoseAliveInBoth) {
+TEST(Reference, LastPositionsAreComparedOfThoseAliveInBoth) {
     RunTrace reference = energies({0}, {1}, {1});
     RunTrace run = reference;
     reference.alive = {1, 1, 0, 1};

@@ -23,7 +23,7 @@ Violation wrong_side(std::uint32_t collider) { return {ViolationKind::wrong_side
 TunnelJudge make_judge() {
     return {{ColliderKind::plane, ColliderKind::shape, ColliderKind::closed_mesh, ColliderKind::open_mesh},
             [](const Violation& violation) {
-                return Vec3{0.0, 0.0, violation.place.z};
+                return Vec3{0.0, 0.0, violation.position.z};
             }};
 }
 
@@ -61,7 +61,7 @@ TEST(TunnelJudge, AParticleCountsOnceHoweverManySurfacesItIsBehind) {
     EXPECT_EQ(counts.tunnelled, 1U);
 }
 
-TEST(TunnelJudge, ALegThroughBothFacesOfABodyIsAJump) {
+TEST(TunnelJudge, ASegmentThroughBothFacesOfABodyIsAJump) {
     const TunnelCounts counts =
         verdict_of({{crossing(kBody, 0.0, {0, 0, 1}, 1), crossing(kBody, 0.0, {0, 0, -1}, 2)}}, true);
     EXPECT_EQ(counts.jumped, 1U);
@@ -69,7 +69,7 @@ TEST(TunnelJudge, ALegThroughBothFacesOfABodyIsAJump) {
     EXPECT_EQ(counts.tunnelled, 1U);  // pushed back or not
 }
 
-TEST(TunnelJudge, CrossingsAtOnePlaceThroughNeighboursAreOne) {
+TEST(TunnelJudge, CrossingsAtOnePointThroughNeighboursAreOne) {
     const Vec3 place{100.0, 0.0, 1.0};
     const Vec3 beside{100.0, 1e-12, 1.0};
     EXPECT_EQ(verdict_of({{crossing(kBody, 0.0, place, 1), crossing(kBody, 0.0, beside, 2)}}).jumped, 0U);
@@ -106,7 +106,7 @@ TEST(TunnelJudge, APassageMayBeginAndEndInOneStep) {
     EXPECT_EQ(verdict_of({{crossing(kBody, 0.1, {0, 0, 1}), crossing(kBody, 0.0, {0, 0, 1})}}).passed, 0U);
 }
 
-TEST(TunnelJudge, ALegThroughABallIsAJumpAndOneIntoItIsNot) {
+TEST(TunnelJudge, ASegmentThroughABallIsAJumpAndOneIntoItIsNot) {
     EXPECT_EQ(verdict_of({{crossing(kBall, 0.0, {0, 0, -1})}}).jumped, 1U);
     EXPECT_EQ(verdict_of({{crossing(kBall, 0.0, {0, 0, 1}), wrong_side(kBall)}}).jumped, 0U);
     EXPECT_EQ(verdict_of({{crossing(kBall, 0.0, {0, 0, 1}), crossing(kBall, 0.1, {0, 0, 1})}}).tunnelled, 0U);

@@ -31,7 +31,7 @@ TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
     }
 }
 
-TEST(GrowCapacityBy, MakesExactlyTheRoomThatIsAskedFor) {
+TEST(GrowCapacityBy, AddsExactlyTheCapacityThatIsRequested) {
     std::vector<int> list(10, 3);
     grow_capacity_by(list, 1'000'000);
     EXPECT_EQ(list.capacity(), 1'000'010U);

@@ -141,7 +141,7 @@ TEST(FlowPastSphere, HasNeitherSourcesNorVortices) {
     EXPECT_THROW((void)make_flow_past_sphere({}, 0.0, {1, 0, 0}), InputError);
 }
 
-TEST(CallableFlow, IsCalledWithPlaceAndTime) {
+TEST(CallableFlow, IsCalledWithPositionAndTime) {
     const FlowPointer flow = make_flow([](const Vec3& p, double t) { return p * t; });
     EXPECT_EQ(flow->velocity({1, 2, 3}, 2.0), (Vec3{2, 4, 6}));
     EXPECT_FALSE(flow->is_steady());

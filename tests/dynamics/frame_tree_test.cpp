@@ -123,7 +123,7 @@ Matrix chain_at(const std::vector<FrameDescription>& frames, double time) {
             if (const auto* turn = std::get_if<KeyedRotation>(&motion)) {
                 m = m * turned_by(turn->axis, curve_at(turn->degrees, time));
             } else {
-                m = m * moved_by(way_at(std::get<KeyedTranslation>(motion).way, time));
+                m = m * moved_by(way_at(std::get<KeyedTranslation>(motion).path, time));
             }
         }
     }

@@ -187,7 +187,7 @@ TEST(DormandPrince, IsOfOrderFiveWhereItDoesNotCutTheStep) {
 }
 
 // The tolerance is that of one sub-step; over a run errors add up and, on orbits, grow with time.
-TEST(DormandPrince, MeetsItsToleranceFromOneHugeStep) {
+TEST(DormandPrince, KeepsItsToleranceFromOneHugeStep) {
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
         for (const KnownMotion& motion : {oscillator(), kepler(), drag(), vortex()}) {
             SCOPED_TRACE(motion.name);
@@ -212,7 +212,7 @@ TEST(DormandPrince, SpendsMoreStepsWhereTheToleranceIsSmaller) {
     EXPECT_LT(2 * counts[1], counts[2]);
 }
 
-// The path between a sub-step's ends is what collisions see.
+// The path between a sub-step's ends is what is swept.
 TEST(DormandPrince, ThePathStaysWithinTheToleranceOfTheTrajectory) {
     const double tolerance = 1e-6;
     const KnownMotion motion = kepler();

@@ -79,7 +79,7 @@ TEST_F(PairOnASpring, DerivativeOfAGivenStateIsThatOfTheSystemInThisState) {
     EXPECT_EQ(from_outside, from_inside);
 }
 
-TEST_F(PairOnASpring, PinnedMembersKeepTheirPlaceWhateverTheStateSays) {
+TEST_F(PairOnASpring, PinnedMembersKeepTheirPositionWhateverTheStateSays) {
     std::vector<double> state(18, 5.0);
     system_.set_state(state);
     EXPECT_EQ(system_.positions()[2], (Vec3{3, 4, 0}));

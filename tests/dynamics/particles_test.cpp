@@ -35,7 +35,7 @@ TEST(Particles, GiveBackWhatWasAppended) {
     EXPECT_FALSE(second.pinned);
 }
 
-TEST(Particles, AreTheSameWithRoomMadeForThem) {
+TEST(Particles, AreTheSameWithCapacityReserved) {
     Particles particles;
     particles.keeps_origin = true;
     particles.attributes = AttributeTable({{"heat", 1, {1.5, 0, 0}}, {"wind", 3, {1, 2, 3}}});

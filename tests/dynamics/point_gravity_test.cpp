@@ -48,7 +48,7 @@ TEST(PointGravity, AttractorsAddUpAndMayRepel) {
     EXPECT_GT(make_point_gravity({{{}, -1.0, 0.0}})->acceleration({{1, 0, 0}, {}, 1.0, 0.0, 0.0}).x, 0.0);
 }
 
-TEST(PointGravity, DoesNotPullAtItsVeryPlace) {
+TEST(PointGravity, DoesNotPullAtItsOwnPosition) {
     EXPECT_EQ(make_point_gravity({{{1, 2, 3}, 1.0, 0.0}})->acceleration({{1, 2, 3}, {}, 1.0, 0.0, 0.0}), Vec3{});
 }
 

@@ -204,7 +204,7 @@ TEST(Cloth, OfASheetCountsItsEdges) {
     EXPECT_EQ(make_cloth(sheet, settings).springs.size(), edges + (edges - 14));  // 14 edges on the rim
 }
 
-TEST(Cloth, HasNoBendingSpringWhereThreeFacesMeet) {
+TEST(Cloth, HasNoBendingSpringWhereThreeFacesShareAnEdge) {
     const TriangleMesh fins{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                             {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
     ClothSettings settings;

@@ -18,7 +18,7 @@ constexpr IntegratorKind kAllKinds[] = {IntegratorKind::forward_euler,   Integra
                                         IntegratorKind::velocity_verlet, IntegratorKind::rk4,
                                         IntegratorKind::dormand_prince,  IntegratorKind::ballistic};
 
-/// Particles with springs and forces, stepped without anything in the way.
+/// Particles with springs and forces, stepped without collisions.
 struct FreeSystem {
     explicit FreeSystem(std::vector<Spring> list, std::vector<std::unique_ptr<Force>> pull = {})
         : forces(std::move(pull)), springs(std::move(list)) {}
@@ -112,7 +112,7 @@ TEST(SystemIntegrator, StepsUncoupledParticlesToTheBitsOfSingleOnes) {
         const Flight flight = begin_flight(Integrator(kind, {1.0, 1.0}), system.forces, start, 0.01);
         const bool solved = system.run(Integrator(kind, {1.0, 1.0}), 0.01, 1);
         EXPECT_TRUE(solved) << name_of(kind);
-        if (kind == IntegratorKind::implicit_euler) {  // another way to the same root
+        if (kind == IntegratorKind::implicit_euler) {  // another method for the same root
             EXPECT_LT(length(system.particles.position[0] - flight.path.end), 1e-12);
             EXPECT_LT(length(system.particles.velocity[0] - flight.end_velocity), 1e-10);
             continue;

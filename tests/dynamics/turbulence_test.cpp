@@ -30,7 +30,7 @@ TurbulenceSettings one_octave() {
 }
 
 // Inside a lattice cell the velocity is a polynomial of degree six in each coordinate, whose derivative the difference
-// gives exactly; it does for two thirds of the places, and the others straddle a cell's wall.
+// gives exactly; it does for two thirds of the points, and the others straddle a cell's wall.
 TEST(Turbulence, HasNoDivergenceButForRounding) {
     const FlowPointer flow = make_turbulence(one_octave());
     RandomSequence random(6, 0, 0);

@@ -227,7 +227,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
         const auto middle = box.center();
         const double rounding = 8.0 * ulp(largest_coordinate(middle, c));
         for (int axis = 0; axis < 3; ++axis) {
-            // Far out on this axis the nearest point is the one that touches the box's wall, nearly.
+            // Far out on this axis the nearest point is the one on the box's wall, nearly.
             Vec3 far = middle;
             far[axis] += 1e9 * c.largest;
             const Vec3 touch = c.shape.closest_point(far).point;
@@ -615,7 +615,7 @@ TEST(AnalyticShape, LeadsFromFocusToFocusInsideAnEllipsoid) {
     }
 }
 
-/// 100 shapes with 1000 segments each, aimed anywhere and again and again at the wall just met, fast and slow.
+/// 100 shapes with 1000 segments each, aimed anywhere and again and again at the wall just hit, fast and slow.
 void bounce_about(std::uint32_t stream, bool with_radius) {
     for (int i = 0; i < cases(100); ++i) {
         SCOPED_TRACE(i);

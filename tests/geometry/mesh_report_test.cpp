@@ -24,7 +24,7 @@ struct KnownMesh {
     std::size_t shells;
     std::size_t unused_vertices;
     // The independent checker splits vertices and edges that are not manifold before it counts, which adds the pairs
-    // that touch there: suzanne 163, teapot 4675, cow 101, cycloidal 64765.
+    // that are in contact there: suzanne 163, teapot 4675, cow 101, cycloidal 64765.
     std::size_t self_intersections;
 };
 

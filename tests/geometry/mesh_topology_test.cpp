@@ -84,7 +84,7 @@ TEST(MeshTopology, EdgesOfQuadsHaveNoCornersAcross) {
     }
 }
 
-TEST(MeshTopology, SeparatesLoopsThatTouchAtAVertex) {
+TEST(MeshTopology, SeparatesLoopsThatShareAVertex) {
     // Two triangles that share only vertex 2.
     const MeshTopology topology(faces(5, {{0, 1, 2}, {2, 3, 4}}));
     EXPECT_EQ(topology.report().nonmanifold_vertices, 1U);
@@ -152,7 +152,7 @@ TEST(MeshTopology, TreatsAFaceThatRunsAlongABridgeTwiceAsManifold) {
 }
 
 TEST(MeshTopology, IsLinearAtTheTipOfALargeFan) {
-    // add_face of the half-edge library would search 10^10 edges here.
+    // add_face of the half-edge library would visit 10^10 edges here.
     const auto count = static_cast<std::uint32_t>(test::scaled(100000));
     std::vector<std::vector<std::uint32_t>> fan;
     for (std::uint32_t i = 0; i < count; ++i) fan.push_back({0, 1 + i, 1 + (i + 1) % count});

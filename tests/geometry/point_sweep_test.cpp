@@ -36,7 +36,7 @@ std::optional<Crossing> crossing_of(const Path& path, const SegmentTriangle& s) 
     return first_crossing(path, s.a, s.b, s.c);
 }
 
-// exactness.md 2.10 without the shape and size terms: the plane distances are exact to far below an ulp.
+// The time needs no terms for the shape and size of the triangle: the plane distances are exact to far below an ulp.
 TEST(LineSweep, DecidesExactlyAndTimesWithinAFewUlpWhateverTheTriangle) {
     constexpr double kDuration = 0.75;
     int timed = 0;

@@ -242,7 +242,7 @@ Polynomial polynomial(const std::vector<double>& coefficients, double duration) 
     return p;
 }
 
-TEST(SignChanges, LeaveOutTouchesAndTheEnds) {
+TEST(SignChanges, LeaveOutDoubleRootsAndTheEnds) {
     EXPECT_EQ(sign_changes(polynomial({1, -2, 1}, 2.0)).count, 0);             // (s - 1)^2
     EXPECT_EQ(sign_changes(polynomial({0, 1}, 1.0)).count, 0);                 // root at 0
     EXPECT_EQ(sign_changes(polynomial({-1, 1}, 1.0)).count, 0);                // root at the end
@@ -252,7 +252,7 @@ TEST(SignChanges, LeaveOutTouchesAndTheEnds) {
     EXPECT_NEAR(triple[0], 1.0, 1e-9);
 }
 
-TEST(DownCrossings, CountTouchesAndTheLastMomentButNotAStartAtZero) {
+TEST(DownCrossings, CountDoubleRootsAndTheLastMomentButNotAStartAtZero) {
     const Times touch = down_crossings(polynomial({1, -2, 1}, 2.0), 0.0, 2.0);
     ASSERT_EQ(touch.count, 1);
     EXPECT_EQ(touch[0], 1.0);

@@ -81,7 +81,7 @@ Triangle random_triangle(RandomSequence& random) {
     }
 }
 
-/// A point on the triangle, on its boundary or at a corner, and a direction in which a sphere may touch there.
+/// A point on the triangle, on its boundary or at a corner, and a direction in which a sphere may be in contact there.
 struct Touch {
     Vec3 point;
     Vec3 direction;
@@ -99,7 +99,7 @@ Touch random_touch(RandomSequence& random, const Triangle& t) {
     return {t[static_cast<std::size_t>(whole_between(random, 0, 2))], direction};
 }
 
-/// A path that passes near a touch at some time, often with little speed towards the surface.
+/// A path that comes near contact at some time, often with little speed towards the surface.
 SphereCase random_case(std::uint64_t index) {
     RandomSequence random(kSeed, 1, index);
     SphereCase s;
@@ -223,7 +223,7 @@ std::optional<SphereContact> contact(const Path& path, double radius, const Vec3
     return SphereSweep(path, radius).first_contact(a, b, c);
 }
 
-TEST(SphereSweep, TouchesFaceEdgeAndVertexWhereClosedFormsSay) {
+TEST(SphereSweep, HitsFaceEdgeAndVertexWhereClosedFormsSay) {
     const auto face = contact(line_path({1, 1, 3}, {0, 0, -1}, 4.0), 0.5);
     ASSERT_TRUE(face);
     EXPECT_EQ(face->time, 2.5);
@@ -242,7 +242,7 @@ TEST(SphereSweep, TouchesFaceEdgeAndVertexWhereClosedFormsSay) {
     EXPECT_EQ(vertex->feature, TriangleFeature::kVertexA);
 }
 
-TEST(SphereSweep, TouchesAFaceFromBelowToo) {
+TEST(SphereSweep, HitsAFaceFromBelowToo) {
     const auto below = contact(line_path({1, 1, -3}, {0, 0, 1}, 4.0), 0.5);
     ASSERT_TRUE(below);
     EXPECT_EQ(below->time, 2.5);
@@ -263,7 +263,7 @@ TEST(SphereSweep, CountsContactAtTheLastMomentAndNotAfterIt) {
 }
 
 TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastBit) {
-    // Heights above and below the exact touch by one ulp; the parabola's lowest point is exact.
+    // Heights above and below exact contact by one ulp; the parabola's lowest point is exact.
     for (const double sign : {-1.0, 1.0}) {
         const double lowest = 0.5 + sign * 0x1p-52;
         const Vec3 up{0, 0, 2};
@@ -539,7 +539,7 @@ TEST(SphereSweep, GivesASharedEdgeTheSameBitsInBothTriangles) {
 
 // Culling.
 
-TEST(SphereSweepCulling, NeverCullsATriangleThatIsTouched) {
+TEST(SphereSweepCulling, NeverCullsATriangleThatIsHit) {
     int touched = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);

@@ -1,5 +1,5 @@
-// Golden hashes: the final state, and every impact on the way to it, of the shipped scenes (shortened) and of random
-// scenes, as hashes.csv holds them. They are the same for any number of threads, with every optimisation on or off, for
+// Golden hashes: the final state, and every impact before it, of the shipped scenes (shortened) and of random
+// scenes, as hashes.csv holds them. They are the same for any number of threads, with every acceleration on or off, for
 // every compiler, instruction set and version of Embree. A change of a value needs a reason in its commit.
 //
 // To print the table as the code now is: RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Scene*' (the lines that

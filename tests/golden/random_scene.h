@@ -10,7 +10,7 @@ namespace ricochet::golden {
 inline constexpr int kRandomScenes = 96;
 
 /// The text of scene `number` (0 .. kRandomScenes - 1): the same on every system. The number also is the seed; its
-/// residues decide which features meet. Mesh files are named relative to the repository's scenes folder.
+/// residues decide which features are combined. Mesh files are named relative to the repository's scenes folder.
 [[nodiscard]] std::string random_scene(int number);
 
 }  // namespace ricochet::golden

@@ -217,7 +217,7 @@ TEST(ContactLog, ImpulsesAndHitsAddUpToTheTotalsOfEveryTriangle) {
     EXPECT_GE(hits_of_all, scaled(2000));
 }
 
-TEST(ContactLog, TheBarycentricPlaceLeadsToThePointInTheCollidersFile) {
+TEST(ContactLog, TheBarycentricCoordinatesLeadToThePointInTheCollidersFile) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(scaled(2000)));
     const std::vector<VtkPolyData> colliders = {read_vtp(folder.path(collider_file_name(0, "box"))),

@@ -87,7 +87,7 @@ TEST(JsonParser, MessagesAreOneLineOfPrintableText) {
     EXPECT_LT(only_error("[\"" + std::string(100000, 'x')).size(), 400U);
 }
 
-TEST(JsonParser, AKeyThatAppearsTwiceIsNamedWithItsPlaceAndPath) {
+TEST(JsonParser, AKeyThatAppearsTwiceIsNamedWithItsLocationAndPath) {
     EXPECT_EQ(only_error("{\"a\": [0, {\"b\": 1,\n  \"c\": 2, \"b\": 3}]}"),
               "f:2:11: a[1].b: the key appears twice in one object, keep one");
 }

@@ -1,4 +1,4 @@
-// Attributes, looks, rates and children in scenes, tables and frames.
+// Attributes, colours and sizes, rates and children in scenes, tables and frames.
 #include "io/emitter_scene.h"
 
 #include <gtest/gtest.h>
@@ -164,7 +164,7 @@ TEST(EmitterScene, FramesAndTablesCarryTheAttributes) {
     std::vector<AttributeDescription> declared(shown.columns().begin(), shown.columns().begin() + 3);
     const detail::ParticleTable table = detail::parse_particle_table(state, "state.csv", declared);
     EXPECT_TRUE(table.errors.empty()) << table.errors[0];
-    ASSERT_EQ(table.attributes.size(), 6U);  // those for looks are declared by the table
+    ASSERT_EQ(table.attributes.size(), 6U);  // those for colour and size are declared by the table
     ASSERT_EQ(table.particles.size(), simulation.particles().size());
     EXPECT_EQ(table.particles[0].attributes[1], (Vec3{7, 8, 9}));
     EXPECT_EQ(table.particles[0].attributes[0].x, 450.0);

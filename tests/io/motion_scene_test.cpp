@@ -29,7 +29,7 @@ Lines errors_of(const std::string& scene) {
     return {};
 }
 
-TEST(MotionScene, AFlowByNameOrInPlaceCarriesTheParticles) {
+TEST(MotionScene, AFlowByNameOrInlineCarriesTheParticles) {
     for (const char* flow : {R"("stream")", R"({"type": "uniform", "velocity": [1, 2, 3]})"}) {
         const SceneDescription scene =
             parse_scene(scene_of(std::string(R"("motion": "flow", "flow": )") + flow), "s.json");

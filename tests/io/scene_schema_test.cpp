@@ -37,7 +37,7 @@ const Json& schema() {
     return parsed;
 }
 
-// What the reader's table of keys finds wrong (files and names are not looked at).
+// What the reader's table of keys finds wrong (files and names are not checked).
 Lines reader_errors(const Json& scene) {
     detail::Diagnostics diagnostics("s.json", {});
     auto root = detail::parse_json(scene.dump(), diagnostics);
@@ -71,7 +71,7 @@ TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
         << "ricochet schema --markdown > docs/scene-format.md brings it up to date";
 }
 
-// Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema looks at
+// Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema checks
 // all of a scene for every value that is spoiled in it.
 std::vector<Json> samples() {
     std::vector<Json> scenes = {Json::parse(test::kSampleScene), Json::parse(test::kFrameScene)};

@@ -453,7 +453,7 @@ TEST(Scene, TheVersionMustBeThereAndKnown) {
     EXPECT_EQ(errors_of(folder, "{\"ricochet\": 2}"), (Lines{"s.json:1:14: ricochet: found 2, expected 1"}));
 }
 
-TEST(Scene, ReportsAllErrorsOfASceneAtOnceInTheOrderOfTheirPlaces) {
+TEST(Scene, ReportsAllErrorsOfASceneAtOnceInTheOrderOfTheirLocations) {
     const SampleFolder folder;
     const Lines errors = errors_of(folder, R"({"ricochet": 1,
         "simulation": {"time_step": -1, "durtion": "x"},

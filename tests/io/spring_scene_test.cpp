@@ -148,7 +148,7 @@ TEST(SpringScene, NamesWhatIsWrongByItsPath) {
     EXPECT_EQ(error_of(sample_with("\"nodes\": 5", "\"nodes\": 1")),
               "springs[1].nodes: found 1, expected a whole number >= 2 and <= 100000000");
     EXPECT_EQ(error_of(sample_with("\"to\": [4, 0, 1]", "\"to\": [0, 0, 1]")),
-              "springs[1]: rope: both ends are at the same place, expected two places");
+              "springs[1]: rope: both ends are at the same position, expected two positions");
     EXPECT_NE(error_of(sample_with("\"stiffness\": 100,", "\"stiffness\": 100, \"axial_stiffness\": 2,"))
                   .find("axial_stiffness"),
               std::string::npos);

@@ -24,8 +24,8 @@ namespace ricochet::meshes {
 /// Vertices that no triangle uses.
 [[nodiscard]] std::size_t unused_vertices(const TriangleMesh& mesh);
 
-/// Pairs of triangles that meet anywhere but in the vertices they share, decided exactly by brute force over pairs with
-/// overlapping boxes. Pairs that share an edge are left out.
+/// Pairs of triangles that intersect anywhere but in the vertices they share, decided exactly by brute force over pairs
+/// with overlapping boxes. Pairs that share an edge are left out.
 [[nodiscard]] std::size_t self_intersections(const TriangleMesh& mesh);
 
 }  // namespace ricochet::meshes

@@ -164,7 +164,7 @@ TEST(Rock, WithoutCutsAndRoughnessIsAnEllipsoid) {
     EXPECT_NEAR(signed_volume(make_rock(shape, 0.02)), volume, 1e-3 * volume);
 }
 
-TEST(Cavity, LeavesRoomAtItsCentre) {
+TEST(Cavity, LeavesItsCentreFree) {
     CavityShape shape;
     shape.roughness = 0.8;
     for (shape.seed = 1; shape.seed <= 5; ++shape.seed) {

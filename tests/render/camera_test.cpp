@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-// Place in the picture: -1..1 from edge to edge; nothing sensible behind the camera.
+// Position in the picture: -1..1 from edge to edge; nothing sensible behind the camera.
 struct Seen {
     double x, y, depth;
 };

@@ -67,7 +67,7 @@ TEST(Advect, CarriesRoundACircleAndStoresTheFlowsVelocity) {
 }
 
 // The time of impact on the plane x = 0 of a circle about the origin that starts at an angle of 45 degrees is 1/8.
-TEST(Advect, MeetsAWallAtTheTimeThatTheMethodsOrderAllows) {
+TEST(Advect, HitsAWallAtTheTimeThatTheMethodsOrderAllows) {
     for (const auto& [kind, order] : {std::pair{IntegratorKind::forward_euler, 1.0},
                                       std::pair{IntegratorKind::midpoint, 2.0}, std::pair{IntegratorKind::rk4, 4.0}}) {
         std::vector<double> errors;
@@ -93,7 +93,7 @@ TEST(Advect, MeetsAWallAtTheTimeThatTheMethodsOrderAllows) {
     }
 }
 
-TEST(Advect, DormandPrinceMeetsItsToleranceWithAWallInTheWay) {
+TEST(Advect, DormandPrinceKeepsItsToleranceWithAWallInThePath) {
     SimulationSetup setup = carried(make_rotation({}, {0, 0, 2.0 * kPi}), {plane_collider({}, {1, 0, 0})},
                                     {at({std::sqrt(0.5), std::sqrt(0.5), 0})}, WallRule::stop);
     setup.options.integrator = Integrator(IntegratorKind::dormand_prince, {1e-9, 1e-9});
@@ -225,7 +225,7 @@ TEST(Advect, SlidesRoundABodyAndLeavesItBehind) {
     }
 }
 
-TEST(Advect, SlidesInsideARoundWallToTheLowestPlace) {
+TEST(Advect, SlidesInsideARoundWallToTheLowestPoint) {
     // A ball of points pressed down inside a hollow ball and a hollow cylinder.
     for (const double radius : {0.0, 0.05}) {
         std::vector<ColliderDescription> hollow = {{"ball", BallShape{1.0, {}}, 0}};

@@ -68,7 +68,7 @@ TEST(ContactMode, AValleyOfThreeWallsHoldsWithoutFriction) {
     EXPECT_TRUE(plan_slide({0, 0, -3}, {0, 0, -kG}, valley, 0.0, 1.0).at_rest);
 }
 
-TEST(ContactMode, AValleyOfTwoWallsLeavesTheWayAlongIt) {
+TEST(ContactMode, AValleyOfTwoWallsLeavesTheMotionAlongIt) {
     const std::array<Vec3, 2> valley{normalized(Vec3{1, 0, 1}), normalized(Vec3{-1, 0, 1})};
     const ContactInterval slide = plan_slide({0, 2, -3}, {0, 0, -kG}, valley, 0.0, 1.0);
     EXPECT_FALSE(slide.at_rest);

@@ -161,7 +161,7 @@ TEST(ExactResponse, CountsTheDigitsOfPiInAWedge) {
     }
 }
 
-TEST(ExactResponse, ASpentBudgetKeepsAValidPlaceAndCountsTheTime) {
+TEST(ExactResponse, ASpentBudgetKeepsAValidPositionAndCountsTheTime) {
     const double angle = std::atan(0.01);
     const std::vector<ColliderDescription> walls{plane_collider({0, 0, 0}, {0, 1, 0}),
                                                  plane_collider({0, 0, 0}, {std::sin(angle), -std::cos(angle), 0})};

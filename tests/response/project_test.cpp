@@ -140,7 +140,7 @@ const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 
 // A step's distance from rest is g sin(theta) dt^2 / 2 of the parabola; symplectic Euler's is twice that.
-TEST_P(ProjectOnASlope, CreepsByTheFreeWayOfAStepWhereFrictionHolds) {
+TEST_P(ProjectOnASlope, CreepsByTheFreeDistanceOfAStepWhereFrictionHolds) {
     const double share = GetParam() == IntegratorKind::symplectic_euler ? 1.0 : 0.5;
     for (const double step : {0.02, 0.01, 0.001}) {
         SCOPED_TRACE(step);

@@ -114,7 +114,7 @@ TEST(Rollback, BringsEveryImpactOfAnElasticBallToWithinItsTolerances) {
 
 // Answered a height v d above the floor, at a speed g d short: the apex is (1 - e^2) v d too high, the errors of
 // earlier ones shrink by e^2 each.
-TEST(Rollback, RaisesNoApexByMoreThanTheWayOfOneTolerance) {
+TEST(Rollback, RaisesNoApexByMoreThanTheDistanceOfOneTolerance) {
     for (const double e : {0.5, 0.8, 0.95}) {
         for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
             SCOPED_TRACE(::testing::Message() << "e " << e << ", tolerance " << tolerance);
@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Containment{IntegratorKind::midpoint, true}, Containment{IntegratorKind::rk4, true}),
     [](const auto& of) { return std::string(name_of(of.param.integrator)) + (of.param.global ? "_global" : ""); });
 
-TEST_P(RollbackInRocks, NoLegCrossesASurfaceAndNoParticleEndsOnTheWrongSide) {
+TEST_P(RollbackInRocks, NoSegmentCrossesASurfaceAndNoParticleEndsOnTheWrongSide) {
     std::uint64_t contacts = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         for (const double radius : {0.0, 0.05}) {

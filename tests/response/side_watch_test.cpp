@@ -53,7 +53,7 @@ TEST(SideWatch, ABirthOnASurfaceIsOnTheSideOfItsNormal) {
     EXPECT_TRUE(above.go({0, 0, 0.1}).empty());
 }
 
-TEST(SideWatch, TellsBehindByTheNumberOfSurfacesOnTheWay) {
+TEST(SideWatch, TellsBehindByTheNumberOfSurfacesCrossed) {
     // Two sheets of one mesh, both facing up, and a ball: between the sheets the nearest point says "above" or "below".
     TriangleMesh sheets = floor_mesh(4.0, 1);
     const auto count = static_cast<std::uint32_t>(sheets.vertices.size());

@@ -94,7 +94,7 @@ TEST(SavedSimulation, GoesOnToTheSameBitsWhateverTheResponseAndTheThreads) {
         EXPECT_EQ(saved(resumed), bytes);
         run_to(resumed, 150);
         EXPECT_EQ(resumed.state_hash(), whole.state_hash());
-        // Every column, counter and total, and not only what the hash looks at.
+        // Every column, counter and total, and not only what the hash covers.
         EXPECT_EQ(saved(resumed), saved(whole));
     }
 }

@@ -48,7 +48,7 @@ SimulationSetup box_of_balls(std::size_t count) {
     return setup;
 }
 
-/// Adds, removes and changes forces on the way; the state's hash at the end.
+/// Adds and removes particles and changes forces between steps; the state's hash at the end.
 std::uint64_t changing_run(SimulationSetup setup, int threads, bool at_once) {
     const ThreadLimit limit(threads);
     Simulation simulation(std::move(setup));

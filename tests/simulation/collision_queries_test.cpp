@@ -160,7 +160,7 @@ TEST(CollisionQueries, AnOpenMeshHasNoInside) {
     EXPECT_FALSE(CollisionQueries({mesh_collider(mesh)}).is_inside({1, 0, 0}));
 }
 
-TEST(CollisionQueries, AskPlanesAndShapesToo) {
+TEST(CollisionQueries, CoverPlanesAndShapesToo) {
     const CollisionQueries queries(
         {{"floor", PlaneShape{{0, 0, -1}, {0, 0, 2}}, 0}, {"ball", BallShape{1.0, {{0, 0, 3}}}, 0}});
     const auto down = queries.first_hit({1, 2, 0}, {0, 0, -7});

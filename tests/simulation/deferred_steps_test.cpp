@@ -21,7 +21,7 @@ std::array<std::uint64_t, 6> bits(const PhaseState& state) {
             of(state.velocity.x), of(state.velocity.y), of(state.velocity.z)};
 }
 
-/// Ordinary numbers, both zeros, tiny ones, and such as bring a place back to exactly zero.
+/// Ordinary numbers, both zeros, tiny ones, and such as bring a coordinate back to exactly zero.
 double odd_number(RandomSequence& random) {
     const auto kind = static_cast<int>(8.0 * random.uniform());
     if (kind == 0) return 0.0;
@@ -60,7 +60,7 @@ TEST(DeferredSteps, MadeAtOnceLeadToTheSameBitsAsMadeOneByOne) {
     }
 }
 
-TEST(DeferredSteps, AreOwedFromTheLastOneThatWasMade) {
+TEST(DeferredSteps, StartAfterTheLastOneThatWasMade) {
     DeferredSteps deferred(2);
     const FreeFlight step(IntegratorKind::ballistic, {}, 1.0);
     deferred.add(step);

@@ -1,4 +1,4 @@
-// Particles born of particles in whole simulations.
+// Particles spawned by particles in whole simulations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ TEST(Offspring, FragmentsOfADeathCarryMassAndMomentumOnAndStartInsideTheStep) {
     EXPECT_LT(length(momentum_of(particles) - Vec3{10, 20, 30}), 1e-12);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         ASSERT_EQ(particles.birth_time[i], 0.437);
-        // Straight on from the parent's place at its death.
+        // Straight on from the parent's position at its death.
         const Vec3 start = Vec3{0, 0, 1} + 0.437 * Vec3{1, 2, 3};
         ASSERT_LT(length(particles.position[i] - (start + 0.563 * particles.velocity[i])), 1e-12);
     }
@@ -146,7 +146,7 @@ TEST(Offspring, SparksOfAnImpactLeaveTheParentAsItIs) {
     EXPECT_EQ(simulation.particles().velocity[0], (Vec3{0.3, 0, 2}));
 }
 
-TEST(Offspring, ATrailIsBornOnTheParentsParabolaAtTimesThatTheStepDoesNotChange) {
+TEST(Offspring, ATrailIsSpawnedOnTheParentsParabolaAtTimesThatTheStepDoesNotChange) {
     std::vector<double> times;
     for (const double time_step : {0.5, 0.1, 1.0 / 60.0}) {
         SimulationSetup setup = setup_of(time_step, 1.0);
@@ -172,8 +172,8 @@ TEST(Offspring, ATrailIsBornOnTheParentsParabolaAtTimesThatTheStepDoesNotChange)
     }
 }
 
-// Springs make an adaptive method cut the step into parts, each with particles due in an order of its own.
-TEST(Offspring, ATrailStaysOnItsParentsWayWhereSpringsCutTheStepIntoParts) {
+// Springs make an adaptive method cut the step into parts, each with an active set in an order of its own.
+TEST(Offspring, ATrailStaysOnItsParentsTrajectoryWhereSpringsCutTheStepIntoParts) {
     SimulationSetup setup = setup_of(0.1, 0.1);
     setup.options.integrator = IntegratorKind::dormand_prince;
     for (const double x : {10.0, 11.1}) {
@@ -252,7 +252,7 @@ TEST(Offspring, TheSameBitsForAnyNumberOfThreadsWithAndWithoutVerificationAndCul
     EXPECT_EQ(hashes.size(), 1U);
 }
 
-TEST(Offspring, NoChildIsEverBornOutsideAClosedMesh) {
+TEST(Offspring, NoChildIsEverSpawnedOutsideAClosedMesh) {
     const ParityOracle oracle(testing::sphere_mesh({}, 1.0, 2));
     for (const double time_step : {0.02, 0.05, 0.2}) {
         Simulation simulation(busy_setup(time_step));

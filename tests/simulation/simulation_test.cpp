@@ -186,7 +186,7 @@ TEST(Simulation, MovesANewbornFromItsBirthOn) {
     }
 }
 
-// exactness.md, acceptance test 9.
+// Each bounce rounds the velocity; the roundings must not add up to a drift.
 TEST(Simulation, KeepsTheSpeedOfAnElasticParticleOverAMillionBounces) {
     SimulationSetup setup = empty_setup(10.0, 10.0 * test::scaled(20000));
     setup.colliders.push_back(
@@ -280,7 +280,7 @@ TEST(Simulation, ReportsParticlesBornOnASurface) {
     EXPECT_GT(simulation.particles().position[1].z, -3.0);
 }
 
-// Particles in free flight may be ahead of what was foreseen then.
+// Particles in free flight may be ahead of what their look-ahead covers then.
 TEST(Simulation, DoesNotGoOnAfterAnErrorInsideAStep) {
     SimulationSetup setup;
     setup.options.time_step = 0.1;

@@ -1,5 +1,5 @@
 /// \file
-/// Distance from a mesh by looking at every triangle.
+/// Distance from a mesh by testing every triangle.
 #pragma once
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 
 namespace ricochet::testing {
 
-/// The folder looked into, whether it exists or not.
+/// The folder that is read, whether it exists or not.
 [[nodiscard]] std::filesystem::path shared_mesh_folder();
 
 /// The path of a file there; nothing when it is missing.

@@ -99,7 +99,7 @@ private:
 
 using Interval = std::array<double, 2>;
 
-/// Appends the parts of [from, to] that a bound on the speed does not prove clear, joined where they touch.
+/// Appends the parts of [from, to] that a bound on the speed does not prove clear, joined where they adjoin.
 void collect_doubtful(const Clearance<long double>& clearance, double speed, double slack, double smallest, double from,
                       double to, std::vector<Interval>& doubtful) {
     const double middle = 0.5 * (from + to);

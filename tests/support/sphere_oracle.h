@@ -1,5 +1,5 @@
 /// \file
-/// Slow reference answers for swept spheres, in 100 decimal digits: the true distance function, searched without any
+/// Slow reference answers for swept spheres, in 100 decimal digits: the true distance function, without any
 /// feature's polynomial.
 #pragma once
 
@@ -28,7 +28,7 @@ using Triangle = std::array<Vec3, 3>;
 [[nodiscard]] DigitsVec3 nearest_point(const DigitsVec3& p, const Triangle& triangle);
 [[nodiscard]] Digits distance(const DigitsVec3& p, const Triangle& triangle);
 
-/// What a search of the distance function finds.
+/// What the distance function tells.
 struct OracleContact {
     std::optional<Digits> time;  ///< first time at which the distance shrinks to the radius; none: it stays above
     /// How close the distance comes to the radius before `time` without reaching it, or by how much it goes below soon
@@ -37,7 +37,8 @@ struct OracleContact {
 };
 
 /// First contact of a sphere that starts clear of the triangle. Intervals of time are halved until the distance, which
-/// changes no faster than the path's speed, proves them clear; what is left is searched for its minimum and bisected.
+/// changes no faster than the path's speed, proves them clear; in what is left its minimum is found, and the root
+/// before that.
 [[nodiscard]] OracleContact first_contact(const Path& path, double radius, const Triangle& triangle);
 
 }  // namespace ricochet::testing

@@ -32,7 +32,7 @@ AffineMap random_map(RandomSequence& random) {
     return world_from_local(placement);
 }
 
-/// Places at all scales of nearness to the surface.
+/// Positions at all scales of nearness to the surface.
 Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     Vec3 local = random.unit_vector();
     if (random.uniform() < 0.5) local.z = local.z < 0.0 ? -1.0 : 1.0;
@@ -40,7 +40,7 @@ Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     return map.point((random.uniform() < 0.5 ? 1.0 + off : 1.0 - off) * local);
 }
 
-TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
+TEST(CheckedShape, HasTheSidesSegmentsAndDistancesOfFiftyDigits) {
     int met = 0;
     int free = 0;
     for (int i = 0; i < test::scaled(4000); ++i) {
@@ -54,7 +54,7 @@ TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
         SCOPED_TRACE(i);
         ASSERT_EQ(shape.side(p), oracle.value(real(p)).sign());
         const bool meets = oracle.intersects(real(p), real(q));
-        ASSERT_EQ(shape.meets(p, q), meets);
+        ASSERT_EQ(shape.intersects(p, q), meets);
         (meets ? met : free) += 1;
         const auto& half = oracle.half_axes();
         const double distance = std::fabs(static_cast<double>(oracle.nearest(real(p)).distance));
@@ -67,10 +67,10 @@ TEST(CheckedShape, HasTheSidesLegsAndDistancesOfFiftyDigits) {
     EXPECT_GT(free, 0);
 }
 
-TEST(CheckedShape, LetsALegLeaveTheSurfaceButNotPassThrough) {
+TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
     const CheckedShape ball(AffineMap{}, false);
     EXPECT_EQ(ball.side({1, 0, 0}), 0);
-    EXPECT_TRUE(ball.meets({1, 0, 0}, {2, 0, 0}));
+    EXPECT_TRUE(ball.intersects({1, 0, 0}, {2, 0, 0}));
     EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {2, 0, 0}));
     EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {1, 1, 0}));    // along the tangent
     EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {0.5, 0, 0}));  // inward
@@ -82,8 +82,8 @@ TEST(CheckedShape, LetsALegLeaveTheSurfaceButNotPassThrough) {
     EXPECT_TRUE(cylinder.meets_after_start({0, 0, 1}, {5, 0, 0.5}));
     EXPECT_FALSE(cylinder.meets_after_start({0, 0, 1}, {0, 0, 0}));
     // The tip of a segment that only just dips in.
-    EXPECT_TRUE(ball.meets({-1, 1 - 0x1p-40, 0}, {1, 1 - 0x1p-40, 0}));
-    EXPECT_FALSE(ball.meets({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));
+    EXPECT_TRUE(ball.intersects({-1, 1 - 0x1p-40, 0}, {1, 1 - 0x1p-40, 0}));
+    EXPECT_FALSE(ball.intersects({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));
 }
 
 }  // namespace

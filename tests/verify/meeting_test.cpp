@@ -13,24 +13,24 @@ constexpr std::uint64_t kSeed = 78;
 const Corners kTriangle{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
 
 TEST(Meeting, KnowsInsideEdgesCornersAndMisses) {
-    EXPECT_TRUE(meets({1, 1, 1}, {1, 1, -1}, kTriangle));
-    EXPECT_TRUE(meets({2, 2, 1}, {2, 2, -1}, kTriangle));  // an edge
-    EXPECT_TRUE(meets({4, 0, 1}, {4, 0, -1}, kTriangle));  // a corner
-    EXPECT_TRUE(meets({1, 1, 1}, {1, 1, 0}, kTriangle));   // ends on it
-    EXPECT_TRUE(meets({1, 1, 0}, {1, 1, 0}, kTriangle));   // a point of it
-    EXPECT_FALSE(meets({1, 1, 1}, {1, 1, 0x1p-60}, kTriangle));
-    EXPECT_FALSE(meets({2, 2 + 0x1p-50, 1}, {2, 2 + 0x1p-50, -1}, kTriangle));
-    EXPECT_FALSE(meets({5, 5, 0}, {5, 5, 0}, kTriangle));
+    EXPECT_TRUE(intersects({1, 1, 1}, {1, 1, -1}, kTriangle));
+    EXPECT_TRUE(intersects({2, 2, 1}, {2, 2, -1}, kTriangle));  // an edge
+    EXPECT_TRUE(intersects({4, 0, 1}, {4, 0, -1}, kTriangle));  // a corner
+    EXPECT_TRUE(intersects({1, 1, 1}, {1, 1, 0}, kTriangle));   // ends on it
+    EXPECT_TRUE(intersects({1, 1, 0}, {1, 1, 0}, kTriangle));   // a point of it
+    EXPECT_FALSE(intersects({1, 1, 1}, {1, 1, 0x1p-60}, kTriangle));
+    EXPECT_FALSE(intersects({2, 2 + 0x1p-50, 1}, {2, 2 + 0x1p-50, -1}, kTriangle));
+    EXPECT_FALSE(intersects({5, 5, 0}, {5, 5, 0}, kTriangle));
 }
 
 TEST(Meeting, KnowsSegmentsInTheTrianglesPlane) {
-    EXPECT_TRUE(meets({-1, 1, 0}, {5, 1, 0}, kTriangle));   // through
-    EXPECT_TRUE(meets({1, 1, 0}, {1.5, 1, 0}, kTriangle));  // within
-    EXPECT_TRUE(meets({3, -1, 0}, {5, 1, 0}, kTriangle));   // touches a corner
-    EXPECT_TRUE(meets({5, -1, 0}, {-1, 5, 0}, kTriangle));  // along an edge
-    EXPECT_FALSE(meets({5, 0, 0}, {6, 0, 0}, kTriangle));   // on an edge's line, beyond it
-    EXPECT_FALSE(meets({3, 2, 0}, {2, 3, 0}, kTriangle));   // beside
-    EXPECT_FALSE(meets({5, 0, 0}, {5, 0, 0}, kTriangle));   // a point on an edge's line
+    EXPECT_TRUE(intersects({-1, 1, 0}, {5, 1, 0}, kTriangle));   // through
+    EXPECT_TRUE(intersects({1, 1, 0}, {1.5, 1, 0}, kTriangle));  // within
+    EXPECT_TRUE(intersects({3, -1, 0}, {5, 1, 0}, kTriangle));   // through a corner
+    EXPECT_TRUE(intersects({5, -1, 0}, {-1, 5, 0}, kTriangle));  // along an edge
+    EXPECT_FALSE(intersects({5, 0, 0}, {6, 0, 0}, kTriangle));   // on an edge's line, beyond it
+    EXPECT_FALSE(intersects({3, 2, 0}, {2, 3, 0}, kTriangle));   // beside
+    EXPECT_FALSE(intersects({5, 0, 0}, {5, 0, 0}, kTriangle));   // a point on an edge's line
 }
 
 TEST(Meeting, AgreesWithTheEliminationOfInequalities) {
@@ -43,7 +43,7 @@ TEST(Meeting, AgreesWithTheEliminationOfInequalities) {
         SCOPED_TRACE(testing::description(s));
         ++compared;
         const bool expected = testing::exact_segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c);
-        ASSERT_EQ(meets(s.p, s.q, {s.a, s.b, s.c}), expected);
+        ASSERT_EQ(intersects(s.p, s.q, {s.a, s.b, s.c}), expected);
         met += expected ? 1 : 0;
     }
     EXPECT_GT(met, 0);
@@ -57,7 +57,7 @@ TEST(Meeting, ASegmentMayLeaveATriangleToEitherSideButNotAlongIt) {
     EXPECT_TRUE(meets_after_start({1, 1, 1}, {1, 1, -1}, kTriangle));
 }
 
-TEST(Meeting, NamesThePlace) {
+TEST(Meeting, NamesThePoint) {
     EXPECT_EQ(place_of_meeting({1, 1, 3}, {1, 1, -1}, kTriangle), Vec3(1, 1, 0));
     EXPECT_EQ(place_of_meeting({-1, 1, 0}, {5, 1, 0}, kTriangle), Vec3(-1, 1, 0));
 }

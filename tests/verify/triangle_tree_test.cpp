@@ -24,7 +24,7 @@ std::vector<NamedTriangle> triangles_of(const TriangleMesh& mesh) {
 }
 
 // Small and large triangles, near the origin and far away; segments through vertices, along axes, points.
-TEST(TriangleTree, LeavesNoTriangleOutThatASegmentMeets) {
+TEST(TriangleTree, LeavesNoTriangleOutThatASegmentIntersects) {
     std::size_t met = 0;
     std::size_t visited = 0;
     for (const double distance : {0.0, 1e6}) {
@@ -48,7 +48,7 @@ TEST(TriangleTree, LeavesNoTriangleOutThatASegmentMeets) {
             });
             visited += near.size();
             for (const NamedTriangle& t : triangles) {
-                if (!meets(p, q, t.corners)) continue;
+                if (!intersects(p, q, t.corners)) continue;
                 ++met;
                 ASSERT_TRUE(near.contains(t.triangle)) << "case " << i;
             }
@@ -58,7 +58,7 @@ TEST(TriangleTree, LeavesNoTriangleOutThatASegmentMeets) {
     EXPECT_LT(visited, 100 * met);
 }
 
-TEST(TriangleTree, FindsWhatTouchesABox) {
+TEST(TriangleTree, FindsWhatOverlapsABox) {
     const TriangleTree tree(triangles_of(testing::box_mesh({0, 0, 0}, {2, 2, 2})));
     const auto count = [&](const Vec3& lower, const Vec3& upper) {
         int found = 0;

@@ -16,7 +16,7 @@ using testing::box_mesh;
 /// A box from 0 to 4.
 Verifier box_verifier() { return Verifier({box_mesh({0, 0, 0}, {4, 4, 4})}); }
 
-/// One step of a particle along the places given, from the first to the last.
+/// One step of a particle along the positions given, from the first to the last.
 std::vector<Violation> travel(const Verifier& verifier, VerifiedParticle& particle, const std::vector<Vec3>& places,
                               double radius = 0.0) {
     std::vector<Segment> segments;
@@ -38,51 +38,51 @@ std::size_t count(const std::vector<Violation>& violations, ViolationKind kind) 
     return found;
 }
 
-TEST(Verifier, FindsNothingWrongWithLegsInsideABox) {
+TEST(Verifier, FindsNothingWrongWithSegmentsInsideABox) {
     EXPECT_TRUE(travel(box_verifier(), {{1, 1, 1}, {3, 3, 0x1p-60}, {1, 2, 3}}).empty());
     EXPECT_TRUE(travel(box_verifier(), {{1, 1, 1}, {3, 3, 1}}, 1.0).empty());
     EXPECT_TRUE(travel(box_verifier(), {{9, 1, 1}, {9, 9, 9}}).empty());
 }
 
-TEST(Verifier, NamesParticlePlaceTimeColliderAndTriangleOfACrossing) {
+TEST(Verifier, NamesParticlePositionTimeColliderAndTriangleOfACrossing) {
     const TriangleMesh far = testing::moved(box_mesh({0, 0, 0}, {1, 1, 1}), {50, 0, 0});
     const TriangleMesh box = box_mesh({0, 0, 0}, {4, 4, 4});
-    // The same triangles: which of the box's two on the side x = 4 is met tells its number.
+    // The same triangles: which of the box's two on the side x = 4 is hit tells its number.
     const auto violations = travel(Verifier({far, box}), {{1, 1, 3}, {7, 1, 3}});
     ASSERT_EQ(violations.size(), 2U);
     const Violation& crossing = violations[0];
     EXPECT_EQ(crossing.kind, ViolationKind::crossing);
     EXPECT_EQ(crossing.particle, 42U);
-    EXPECT_EQ(crossing.place, Vec3(4, 1, 3));
+    EXPECT_EQ(crossing.position, Vec3(4, 1, 3));
     EXPECT_EQ(crossing.time, 7.0);
     EXPECT_EQ(crossing.collider, 1U);
     ASSERT_TRUE(crossing.triangle);
     for (const std::uint32_t corner : box.triangles[*crossing.triangle]) EXPECT_EQ(box.vertices[corner].x, 4.0);
     EXPECT_EQ(violations[1].kind, ViolationKind::wrong_side);
-    EXPECT_EQ(violations[1].place, Vec3(7, 1, 3));
+    EXPECT_EQ(violations[1].position, Vec3(7, 1, 3));
     EXPECT_EQ(violations[1].time, 8.0);
     EXPECT_EQ(violations[1].collider, 1U);
 }
 
-TEST(Verifier, CatchesALegThroughAnEdgeAndACorner) {
-    // Both triangles of an edge are named; six meet in this corner at most.
+TEST(Verifier, CatchesASegmentThroughAnEdgeAndACorner) {
+    // Both triangles of an edge are named; six share this corner at most.
     EXPECT_EQ(count(travel(box_verifier(), {{3, 1, 3}, {5, 1, 5}}), ViolationKind::crossing), 2U);
     EXPECT_GE(count(travel(box_verifier(), {{3, 3, 3}, {5, 5, 5}}), ViolationKind::crossing), 3U);
 }
 
-TEST(Verifier, CatchesALegThatEndsOnATriangle) {
+TEST(Verifier, CatchesASegmentThatEndsOnATriangle) {
     const auto violations = travel(box_verifier(), {{1, 1, 3}, {4, 1, 3}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 1U);
     EXPECT_EQ(count(violations, ViolationKind::wrong_side), 1U);
 }
 
-TEST(Verifier, CatchesALegOutAndInAgainWithinOneStep) {
+TEST(Verifier, CatchesASegmentOutAndInAgainWithinOneStep) {
     const auto violations = travel(box_verifier(), {{1, 1, 3}, {5, 1, 3}, {5, 2, 3}, {1, 2, 3}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 2U);
     EXPECT_EQ(violations.size(), 2U);
 }
 
-TEST(Verifier, CatchesALegThroughAnOpenMesh) {
+TEST(Verifier, CatchesASegmentThroughAnOpenMesh) {
     TriangleMesh open = box_mesh({0, 0, 0}, {4, 4, 4});
     open.triangles.resize(2);  // the lower side only
     const Verifier verifier({open});

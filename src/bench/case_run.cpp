@@ -88,7 +88,8 @@ TriangleMesh make_ground(Ground ground, double edge) {
 // Particles per unit of parallel work.
 constexpr std::size_t kBlock = 4096;
 
-// The radii's random numbers have a stream of their own: points and spheres start at the same places where these suit.
+// The radii's random numbers have a stream of their own: points and spheres start at the same positions where these
+// suit.
 constexpr std::uint32_t kPlaceStream = 0;
 constexpr std::uint32_t kRadiusStream = 1;
 
@@ -100,10 +101,10 @@ double radius_of(const Case& c, std::uint64_t index) {
 
 Vec3 place_in(const Case& c, RandomSequence& random) {
     const Vec3 size = c.box.size();
-    Vec3 place = c.box.lower;
-    for (int axis = 0; axis < 3; ++axis) place[axis] += random.uniform() * size[axis];
-    if (c.start == Start::above_terrain) place.z += meshes::terrain_height({}, place.x, place.y);
-    return place;
+    Vec3 position = c.box.lower;
+    for (int axis = 0; axis < 3; ++axis) position[axis] += random.uniform() * size[axis];
+    if (c.start == Start::above_terrain) position.z += meshes::terrain_height({}, position.x, position.y);
+    return position;
 }
 
 }  // namespace
@@ -178,7 +179,7 @@ MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh
     const double mesh_bytes =
         static_cast<double>(sizeof(Vec3) * mesh->vertices.capacity() + sizeof(Triangle) * mesh->triangles.capacity());
     MemoryUse use;
-    // Counted, not asked of the allocator: the ray library maps large blocks past it.
+    // Counted, not asked of the allocator: Embree maps large blocks past it.
     const CollisionWorld world(make_setup(c, mesh).colliders);
     use.bytes_per_triangle =
         (mesh_bytes + static_cast<double>(world.memory_bytes())) / static_cast<double>(mesh->triangles.size());
@@ -197,7 +198,7 @@ std::vector<Flight> flights_of(const Particles& particles) {
     return flights;
 }
 
-/// True before the steps whose stretches the references get.
+/// True before the steps whose segments the references get.
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;
@@ -252,11 +253,11 @@ bool CaseRun::prepare(const Announce& announce) {
 
 bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
     Simulation simulation = make_simulation();
-    std::size_t place = 0;
+    std::size_t offset = 0;
     simulation.restore([&](std::span<std::byte> bytes) {
-        if (bytes.size() > start_.size() - place) throw RunError("the benchmark's saved state is too short");
-        std::memcpy(bytes.data(), start_.data() + place, bytes.size());
-        place += bytes.size();
+        if (bytes.size() > start_.size() - offset) throw RunError("the benchmark's saved state is too short");
+        std::memcpy(bytes.data(), start_.data() + offset, bytes.size());
+        offset += bytes.size();
     });
     if (!announce("simulation", 1)) return false;
     if (case_.warm_up > 0) simulation.step();  // a simulation just restored searches for every particle

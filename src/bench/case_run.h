@@ -23,7 +23,7 @@ namespace ricochet::bench {
 
 // From a case to its mesh, its particles and its simulation.
 
-/// A place that sees every point inside the ground in a straight line; nothing where the ground has no inside.
+/// A point that sees every point inside the ground in a straight line; nothing where the ground has no inside.
 [[nodiscard]] std::optional<Vec3> heart_of(Ground ground);
 
 /// The case's mesh, with about as many triangles as it wants.
@@ -36,7 +36,7 @@ namespace ricochet::bench {
 /// Everything for a simulation but the particles: the case's response, ballistic steps, as many as the case has.
 [[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
 
-// Which points are inside a closed mesh that has a heart: a place that sees its whole inside in straight lines.
+// Which points are inside a closed mesh that has a heart: a point that sees its whole inside in straight lines.
 
 /// The inside of one mesh. Safe from any number of threads.
 class Insides {
@@ -44,7 +44,7 @@ public:
     /// The mesh must be closed, star-shaped about the heart, and outlive this.
     Insides(const TriangleMesh& mesh, const Vec3& heart);
 
-    /// Exact: true when the straight line from the heart to p meets no triangle.
+    /// Exact: true when the straight line from the heart to p hits no triangle.
     [[nodiscard]] bool contains(const Vec3& p) const;
     /// The same for a ball's middle, which must be at least the radius (m, >= 0) away from every triangle, to rounding.
     [[nodiscard]] bool contains_ball(const Vec3& middle, double radius) const;
@@ -69,7 +69,7 @@ struct MemoryUse {
     double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
 };
 
-/// Builds the case's simulation with and without its particles and looks at what it has allocated.
+/// Builds the case's simulation with and without its particles and counts what it has allocated.
 [[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                                        const std::vector<Particle>& particles);
 

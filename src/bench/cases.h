@@ -38,7 +38,7 @@ enum class Against {
     exact,   ///< the same particles with the exact response
 };
 
-/// One case. Particles start at random places with random directions, so their order in memory is arbitrary.
+/// One case. Particles start at random positions with random directions, so their order in memory is arbitrary.
 struct Case {
     std::string_view suite = {};
     std::string_view name = {};  ///< unique in its suite
@@ -50,7 +50,7 @@ struct Case {
     double friction = 0.0;
     double gravity = 0.0;  ///< m/s^2, downward
     Start start = Start::box;
-    Box3 box = {};              ///< m, of starting places
+    Box3 box = {};              ///< m, of starting positions
     Vec3 drift = {};            ///< m/s, mean velocity
     double speed = 0.0;         ///< m/s, added to the drift in a random direction
     double spread = 0.0;        ///< m/s, the speed varies by as much up and down
@@ -74,7 +74,7 @@ struct Case {
 
 // The benchmark's suites by name.
 
-/// The suite whose cases are files, see load_cases.h; those of the others are in cases.h.
+/// The suite whose cases are files, see load.h; those of the others are in cases.h.
 inline constexpr std::string_view kLoadSuite = "load";
 
 /// The suite that is measured with several numbers of threads unless told otherwise.

@@ -1,5 +1,5 @@
 /// \file
-/// Measures cases: the simulation and, on the same stretches, what the ray library does by itself.
+/// Measures cases: the simulation and, on the same segments, what Embree does by itself.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 /// \file
-/// What the ray library does by itself, as the reference that the benchmark divides by: native float triangles, robust
+/// What Embree does by itself, as the reference that the benchmark divides by: native float triangles, robust
 /// traversal, no certificate. None of the sweep's code runs here.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace ricochet::bench {
 
-/// In place of a triangle's number: none.
+/// Instead of a triangle's number: none.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A ray as the ray library takes it.
+/// A ray as Embree takes it.
 struct RaySegment {
     std::array<float, 3> from;   ///< m
     std::array<float, 3> along;  ///< m, to the other end
@@ -28,7 +28,7 @@ struct Flight {
     Vec3 velocity;  ///< m/s
 };
 
-/// A mesh in the ray library's own form. Safe from any number of threads; every loop uses all of them.
+/// A mesh in Embree's own form. Safe from any number of threads; every loop uses all of them.
 class NativeRays {
 public:
     /// The mesh need not outlive it. Throws RunError when memory is short.
@@ -48,7 +48,7 @@ public:
         double restitution = 1.0;  ///< of every surface
     };
     /// Flies every particle straight on from bounce to bounce: the hit is sharpened in double precision on the plane of
-    /// the triangle hit, and the next ray starts a little way off it along the normal. Writes where each ends and
+    /// the triangle hit, and the next ray starts a little off it along the normal. Writes where each ends and
     /// returns the number of bounces. It may pass through walls.
     [[nodiscard]] std::uint64_t bounce(std::span<const Flight> flights, const BounceRules& rules,
                                        std::span<Vec3> ends) const;

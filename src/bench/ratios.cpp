@@ -19,9 +19,9 @@ constexpr const char* kRaw = "ratio_raw";
 constexpr const char* kNativeBounces = "ratio_native_bounces";
 
 const CaseRatios* find(const SuiteRatios& ratios, const std::string& name) {
-    const auto place =
+    const auto found =
         std::find_if(ratios.cases.begin(), ratios.cases.end(), [&](const CaseRatios& c) { return c.name == name; });
-    return place == ratios.cases.end() ? nullptr : &*place;
+    return found == ratios.cases.end() ? nullptr : &*found;
 }
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }

@@ -112,8 +112,8 @@ Cell cell_of(const std::optional<Number>& number) {
 }
 
 void set(Record& record, std::string_view name, Cell value) {
-    const auto place = std::find_if(record.begin(), record.end(), [&](const Field& f) { return f.name == name; });
-    place->value = std::move(value);
+    const auto found = std::find_if(record.begin(), record.end(), [&](const Field& f) { return f.name == name; });
+    found->value = std::move(value);
 }
 
 Cell ratio_of(double over, double under) { return under > 0.0 ? Cell(over / under) : Cell(); }

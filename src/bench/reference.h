@@ -18,7 +18,7 @@ namespace ricochet::bench {
 /// of the list. Points must be finite. Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
 [[nodiscard]] std::vector<std::uint32_t> morton_order(std::span<const Vec3> points);
 
-// The work that the ray library does by itself on a case's stretches, ready to be timed.
+// The work that Embree does by itself on a case's segments, ready to be timed.
 
 /// Rays and flights, in arbitrary and in spatial order. What can be prepared is prepared: rays are single precision
 /// already, and sorting takes no part in what is timed.

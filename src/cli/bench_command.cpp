@@ -244,7 +244,7 @@ void add_options(cli::Command command, BenchArguments& a) {
 
 void add_bench_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<BenchArguments>();
-    cli::Command command = program.add_command("bench", "What collisions cost, beside bare rays on the same stretches");
+    cli::Command command = program.add_command("bench", "What collisions cost, beside bare rays on the same segments");
     add_options(command, *arguments);
     command.on_call([arguments, &exit_code] { exit_code = run_bench(*arguments); });
 }

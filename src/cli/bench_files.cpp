@@ -104,7 +104,7 @@ std::string lines(std::string_view suite, std::span<const Row> rows, const Axes&
     return text + "\nset output\n";
 }
 
-/// One place on the axis for every row, with its name.
+/// One tick on the axis for every row, with its name.
 template <class AnyRow>
 std::string name_axis(std::span<const AnyRow> rows) {
     std::string tics;
@@ -208,7 +208,7 @@ std::string threads_plot(std::span<const Row> rows) {
 
 std::string ratios_plot(std::string_view suite, std::span<const Row> rows) {
     return bars<Row>(
-        suite, rows, fmt::format("Suite {}: rates over those of the ray library by itself", suite), "ratio",
+        suite, rows, fmt::format("Suite {}: rates over those of Embree by itself", suite), "ratio",
         {{"particle-steps / bare rays", [](const Row& row) { return row.ratio_raw; }},
          {"particle-steps / sorted packets of rays", [](const Row& row) { return row.ratio_raw_sorted; }},
          {"impacts / native bounces", [](const Row& row) { return or_nothing(row.ratio_native_bounces); }}},

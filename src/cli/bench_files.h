@@ -16,8 +16,8 @@ namespace ricochet::cli {
 /// Where the results of one machine go.
 class BenchResults {
 public:
-    /// Makes DIR/MACHINE and looks whether it can be written to. Throws InputError when something else than a folder
-    /// is in the way or the folder cannot be made.
+    /// Makes DIR/MACHINE and checks whether it can be written to. Throws InputError when something else than a folder
+    /// stands there or the folder cannot be made.
     BenchResults(const std::filesystem::path& folder, bench::Environment environment);
 
     /// Writes SUITE.csv and SUITE.gp and draws SUITE.png, over those of an earlier run. Returns why there is no

@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-/// `bench`: what collisions cost, beside what the ray library does by itself on the same stretches.
+/// `bench`: what collisions cost, beside what Embree does by itself on the same segments.
 void add_bench_command(cli::Command program, int& exit_code);
 
 /// `check SCENE [--set PATH=VALUE ...]`: all that is wrong with a scene, without running it.

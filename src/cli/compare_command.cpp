@@ -41,7 +41,7 @@ std::string progress_text(const ComparisonProgress& progress) {
                        progress.response, progress.time_step, kind, progress.step, progress.steps);
 }
 
-// Finds out whether the scene can run at all before anything in the output folder is touched.
+// Finds out whether the scene can run at all before anything in the output folder is changed.
 void check_setup(const cli::SceneArguments& arguments) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {

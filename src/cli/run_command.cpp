@@ -89,7 +89,7 @@ private:
     double seconds_per_step_ = 0.0;
 };
 
-// What a run needs to know on its way.
+// What a run needs to know while it goes on.
 struct RunPlan {
     OutputOptions output;
     std::uint64_t fingerprint = 0;
@@ -259,7 +259,7 @@ void add_options(cli::Command command, RunArguments& a) {
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
         .type_name("FILE.csv");
     command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
-    command.add_option("--response", a.response, "How impacts are answered, in place of what the scene says")
+    command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
         .type_name("exact|rollback|project|penalty");
     command.add_flag("--quiet", a.quiet, "No progress, no report");
     command.add_flag(

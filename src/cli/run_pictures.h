@@ -72,7 +72,7 @@ struct PictureStyle {
 /// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
 class RunPictures {
 public:
-    /// Reads the colliders and looks at the chosen frames. Throws InputError on files that are not a run's, and on
+    /// Reads the colliders and checks the chosen frames. Throws InputError on files that are not a run's, and on
     /// names that the run does not have.
     RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style, double aspect);
 

@@ -72,7 +72,7 @@ namespace {
 const char* text_of(ViolationKind kind) {
     switch (kind) {
         case ViolationKind::crossing:
-            return "a segment meets";
+            return "a segment crosses";
         case ViolationKind::gap:
             return "its segments do not join";
         case ViolationKind::wrong_side:
@@ -84,9 +84,9 @@ const char* text_of(ViolationKind kind) {
 }
 
 std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {
-    std::string line =
-        fmt::format("leak: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}", violation.particle,
-                    violation.position.x, violation.position.y, violation.position.z, violation.time, text_of(violation.kind));
+    std::string line = fmt::format("leak: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}",
+                                   violation.particle, violation.position.x, violation.position.y, violation.position.z,
+                                   violation.time, text_of(violation.kind));
     if (violation.collider) line += fmt::format(" collider \"{}\"", colliders[*violation.collider].name);
     if (violation.triangle) line += fmt::format(", triangle {}", *violation.triangle);
     return line;

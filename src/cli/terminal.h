@@ -51,7 +51,7 @@ private:
 /// Most violations that are listed.
 inline constexpr std::size_t kMostListedViolations = 20;
 
-/// One line for every violation, up to kMostListedViolations, with particle, place, time, collider and triangle; and
+/// One line for every violation, up to kMostListedViolations, with particle, position, time, collider and triangle; and
 /// one with the number of those that are not listed. violations: the first of the `count` that there are.
 [[nodiscard]] std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
                                                        const std::vector<ColliderDescription>& colliders);

@@ -609,7 +609,7 @@ TEST(SceneOverride, ErrorsNameTheArgumentAndThePath) {
     EXPECT_EQ(error("colliders[2].name=x"),
               "s.json: --set colliders[2].name=x: colliders[2]: there is no such item, the list has 2");
     EXPECT_EQ(error("colliders[0].name.x=1"),
-              "s.json: --set colliders[0].name.x=1: colliders[0].name.x: found \"floor\" in its place, expected an "
+              "s.json: --set colliders[0].name.x=1: colliders[0].name.x: found \"floor\" there, expected an "
               "object");
     EXPECT_EQ(error("simulation[0]=1"),
               "s.json: --set simulation[0]=1: simulation[0]: found an object, expected a list");

@@ -16,7 +16,7 @@ set style line 1 linecolor '#0072B2' linewidth 2 pointtype 7 pointsize 2.2
 set style line 2 linecolor '#D55E00' linewidth 2 pointtype 5 pointsize 1.7
 set style line 3 linecolor '#009E73' linewidth 2 pointtype 9 pointsize 1.7
 set output 'rain.png'.ending
-set title 'Suite rain: rates over those of the ray library by itself'
+set title 'Suite rain: rates over those of Embree by itself'
 set key outside top center horizontal
 set ylabel 'ratio'
 set style fill solid 0.85 noborder

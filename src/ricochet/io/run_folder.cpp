@@ -133,7 +133,7 @@ void make_folder(const std::filesystem::path& path) {
 bool is_empty_folder(const std::filesystem::path& path) {
     std::error_code error;
     const bool empty = std::filesystem::is_empty(path, error);
-    if (error) fail(path, "look into the output folder", error.message());
+    if (error) fail(path, "list the output folder", error.message());
     return empty;
 }
 
@@ -185,7 +185,7 @@ void remove_files(const std::filesystem::path& folder, Wanted&& is_wanted) {
         const bool file = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::symlink;
         if (file && is_wanted(entry->path().filename().string())) files.push_back(entry->path());
     }
-    if (error) fail(folder, "look into the output folder", error.message());
+    if (error) fail(folder, "list the output folder", error.message());
     for (const std::filesystem::path& file : files) {
         std::filesystem::remove(file, error);
         if (error) fail(file, "remove the earlier run's file", error.message());

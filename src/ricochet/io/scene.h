@@ -41,7 +41,8 @@ struct SceneDescription {
     std::uint64_t fingerprint = 0;
 };
 
-/// Sum of the accelerations that are the same everywhere, m/s^2: which way things fall. Zero where there are none.
+/// Sum of the accelerations that are the same everywhere, m/s^2: the direction in which things fall. Zero where there
+/// are none.
 [[nodiscard]] Vec3 uniform_acceleration(const SimulationSetup& setup);
 
 /// All that is wrong with a scene.

@@ -75,7 +75,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     return contact_phase_.begin(flight, contact, arriving);
 }
 
-/// How far ahead the last flight of a step may look: as far as its path is known, which it is where the acceleration is
+/// The horizon of the last flight of a step: as far as its path is known, which it is where the acceleration is
 /// uniform and the steps are those of the run.
 std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const ForceInput& state = particle_.state;

@@ -22,10 +22,10 @@ namespace ricochet {
 // Steps of free flights, integrated together later. A particle that makes many of
 // them at once is fetched from memory once.
 
-/// Which particle has made which of the latest steps. Particles that coast make none of them before they are asked to.
+/// Which particle has made which of the latest steps. Those in free flight make none of them until they need a query.
 class DeferredSteps {
 public:
-    /// No more steps are kept, so that they stay in the nearest memory and numbers small.
+    /// No more steps are kept, so that they stay in the L1 cache and numbers small.
     static constexpr std::size_t kMost = 64;
 
     /// Nothing is deferred by any of `count` particles.

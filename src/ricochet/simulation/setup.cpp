@@ -77,7 +77,7 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
                     setup.options.time_step, bound, name_of(kind))};
 }
 
-/// By how much paths may leave their chords: more where parabolas are looked ahead along.
+/// By how much paths may leave their chords: more where the look-ahead follows parabolas.
 double chord_margin(const AccelerationSwitches& acceleration, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
     return acceleration.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;

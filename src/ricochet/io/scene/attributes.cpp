@@ -1,4 +1,4 @@
-// What particles carry besides position and motion: attributes, looks and their curves over life.
+// What particles carry besides position and motion: attributes, appearance and their curves over life.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace ricochet::detail {
 namespace {
 
-// Keys of looks, as emitters and particles name them, with their columns.
+// Keys of appearance, as emitters and particles name them, with their columns.
 struct Look {
     std::string_view key;
     std::string_view column;

@@ -152,8 +152,8 @@ private:
 };
 
 void build_colliders(SceneContext& context, SimulationSetup& setup);
-/// The declared attributes, and those for looks that emitters and explicit particles use. Reports names and defaults
-/// that cannot be.
+/// The declared attributes, and those of appearance that emitters and explicit particles use. Reports names and
+/// defaults that cannot be.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);
 /// The scene's frames; without errors so far only, their parents too.
 [[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const SceneContext& context);
@@ -175,13 +175,14 @@ void warn_of_forces_without_radius(const SceneContext& context, const Simulation
 /// What a table holds, and what is wrong with it.
 struct ParticleTable {
     std::vector<Particle> particles;
-    std::vector<std::string> errors;               ///< "start.csv:12: found ..., expected ..."; the first few
-    std::vector<AttributeDescription> attributes;  ///< those that were declared, and those for looks that the table has
-    std::vector<std::string> unused_columns;       ///< of a run's own final state, which mean nothing at a start
+    std::vector<std::string> errors;  ///< "start.csv:12: found ..., expected ..."; the first few
+    std::vector<AttributeDescription>
+        attributes;                           ///< those that were declared, and those of appearance that the table has
+    std::vector<std::string> unused_columns;  ///< of a run's own final state, which mean nothing at a start
 };
 
 /// Comma-separated values: a header line with the columns x, y, z and, where wanted, vx, vy, vz, mass, radius in any
-/// order, and attributes (name, or name_x, name_y, name_z): those declared, and those for looks; then a line a
+/// order, and attributes (name, or name_x, name_y, name_z): those declared, and those of appearance; then a line a
 /// particle. The final state that a run writes can be read back. Never throws for bad contents.
 [[nodiscard]] ParticleTable parse_particle_table(std::string_view text, const std::string& name,
                                                  std::vector<AttributeDescription> declared = {});

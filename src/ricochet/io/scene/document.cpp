@@ -144,7 +144,7 @@ private:
     std::string_view rest_;
 };
 
-// Walks to the value that a path names and makes objects on the way; reports where that cannot be done.
+// Walks to the value that a path names and makes the objects that it passes; reports where that cannot be done.
 class Walker {
 public:
     Walker(JsonNode& root, const SourceLocation& location, Diagnostics& diagnostics)
@@ -186,7 +186,7 @@ private:
         JsonNode::Object* members = node_->object();
         const std::string path = path_of_key(path_, key);
         if (members == nullptr) {
-            fail(path, fmt::format("found {} in its place, expected an object", described(*node_)));
+            fail(path, fmt::format("found {} there, expected an object", described(*node_)));
             return;
         }
         JsonNode* child = node_->find(key);

@@ -124,8 +124,7 @@ Variant child_variant() {
           "true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share, "
           "radii follow at the same density, and `speed` says how fast they fly apart.",
           Without{"true for impact, false otherwise"}},
-         {"recursive", &C::recursive,
-          "true: the children are parents in the same way too, up to `simulation.max_depth`."},
+         {"recursive", &C::recursive, "true: the children are parents too, in turn, up to `simulation.max_depth`."},
          {"inherit_velocity", &C::inherit_velocity, kCoordinate, "",
           "Part of the parent's velocity that a child begins with; 1 when sharing."},
          {"inherit_color", &C::inherit_color, kFraction, "",

@@ -114,7 +114,7 @@ inline constexpr Rule kRequired = Rule::required;
 inline constexpr Rule kNotZero = Rule::not_zero;
 inline constexpr Rule kNotEmpty = Rule::not_empty;
 inline constexpr Rule kNotBuilt = Rule::not_built;
-/// What the key's absence means, in place of a default.
+/// What the key's absence means, instead of a default.
 struct Without {
     std::string_view words;
 };

@@ -97,7 +97,7 @@ public:
         while (const std::optional<std::string_view> line = next_line()) {
             if (!trimmed(*line).empty()) read_particle(*line);
             if (table_.errors.size() < kMostErrors) continue;
-            fail("the lines after this one were not looked at");
+            fail("the lines after this one were not read");
             break;
         }
         return std::move(table_);
@@ -141,7 +141,7 @@ private:
         }
     }
 
-    // "temperature", or "wind_x" for a vector; those for looks are declared by being there.
+    // "temperature", or "wind_x" for a vector; those of appearance are declared by being there.
     std::optional<AttributeComponent> attribute_component(std::string_view cell) {
         const bool has_end =
             cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
@@ -232,7 +232,7 @@ private:
     ParticleTable table_;
 };
 
-// Columns for looks that only the table has are declared by it.
+// Columns of appearance that only the table has are declared by it.
 std::vector<Particle> particles_from_table(const SceneContext& context, const ObjectView& view,
                                            SimulationSetup& setup) {
     if (!view.has("file")) return {};

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 
 namespace ricochet {
 namespace {

@@ -1,5 +1,5 @@
 /// \file
-/// Points in an order in which neighbours of the list are neighbours in space.
+/// What a case is measured by: Embree alone on the same segments, and rays in spatial order.
 #pragma once
 
 #include <cstddef>

@@ -67,7 +67,7 @@ struct SimulationStatistics {
     double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
     std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
     std::uint64_t asleep = 0;            ///< of the resting ones those that cost nothing
-    std::uint64_t started_inside = 0;    ///< particles born exactly on a surface
+    std::uint64_t started_inside = 0;    ///< particles born on a surface or, as spheres, overlapping one
     std::uint64_t stayed = 0;            ///< impacts after which no certified position nearer to the surface was found
     std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;        ///< what options.verify found wrong

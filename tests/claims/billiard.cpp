@@ -75,8 +75,8 @@ BilliardTally sum_of(const std::vector<BilliardTally>& parts) {
         sum.contacts += part.contacts;
         sum.stayed += part.stayed;
         sum.not_inside += part.not_inside;
-        sum.checked_legs += part.checked_legs;
-        sum.crossing_legs += part.crossing_legs;
+        sum.checked_segments += part.checked_segments;
+        sum.crossing_segments += part.crossing_segments;
         sum.budget_exhausted += part.budget_exhausted;
     }
     return sum;
@@ -155,10 +155,10 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
 /// Every segment of the chain that was followed; a chain that does not join its ends counts as a crossing.
 void Billiard::check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
-    tally.crossing_legs += chain.front() == from && chain.back() == to ? 0 : 1;
+    tally.crossing_segments += chain.front() == from && chain.back() == to ? 0 : 1;
     for (std::size_t k = 1; k < chain.size(); ++k) {
-        ++tally.checked_legs;
-        tally.crossing_legs += oracle_meets(mesh_, chain[k - 1], chain[k]) ? 1 : 0;
+        ++tally.checked_segments;
+        tally.crossing_segments += oracle_meets(mesh_, chain[k - 1], chain[k]) ? 1 : 0;
     }
 }
 

@@ -16,11 +16,11 @@ namespace ricochet::testing {
 /// What came of a run.
 struct BilliardTally {
     std::uint64_t contacts = 0;
-    std::uint64_t stayed = 0;            ///< contacts after which the particle stood where its path began
-    std::uint64_t not_inside = 0;        ///< particles outside, or on the surface, at any check
-    std::uint64_t checked_legs = 0;      ///< segments tested again by the exact oracle
-    std::uint64_t crossing_legs = 0;     ///< of these, segments that intersect a triangle
-    std::uint64_t budget_exhausted = 0;  ///< steps that spent their bounces
+    std::uint64_t stayed = 0;             ///< contacts after which the particle stood where its path began
+    std::uint64_t not_inside = 0;         ///< particles outside, or on the surface, at any check
+    std::uint64_t checked_segments = 0;   ///< segments tested again by the exact oracle
+    std::uint64_t crossing_segments = 0;  ///< of these, segments that intersect a triangle
+    std::uint64_t budget_exhausted = 0;   ///< steps that spent their bounces
 };
 
 /// A mesh placed in the world, with its oracle.

@@ -99,7 +99,7 @@ TEST_P(ClosedMesh, HoldsWhatIsAimedAtItsVerticesAndEdges) {
         const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 4);
         EXPECT_EQ(tally.not_inside, 0U);
         EXPECT_GT(tally.contacts, 0U);
-        EXPECT_EQ(tally.crossing_legs, 0U) << "of " << tally.checked_legs;
+        EXPECT_EQ(tally.crossing_segments, 0U) << "of " << tally.checked_segments;
     });
 }
 
@@ -108,8 +108,8 @@ TEST_P(MessyMesh, IsNotCrossedByAnySegment) {
         const int check_every = std::max(1, n.particles * n.steps / 40);
         const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 5);
         EXPECT_GT(tally.contacts, 0U);
-        EXPECT_GT(tally.checked_legs, 0U);
-        EXPECT_EQ(tally.crossing_legs, 0U);
+        EXPECT_GT(tally.checked_segments, 0U);
+        EXPECT_EQ(tally.crossing_segments, 0U);
     });
 }
 
@@ -124,7 +124,7 @@ TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
 }
 
 // The reference must be able to tell: a segment through a wall is found, one beside it is not.
-TEST(LegOracle, TellsASegmentThroughAWallFromOneBesideIt) {
+TEST(SegmentOracle, TellsASegmentThroughAWallFromOneBesideIt) {
     const NamedMesh box = made_meshes().front();
     const Billiard billiard(box, {});
     const Vec3 inside = billiard.start_points(1, 1).front();

@@ -119,7 +119,7 @@ void expect_same_statistics(const Simulation& a, const Simulation& b) {
 }
 
 /// Returns how many impacts there were.
-std::uint64_t expect_the_same_with_foresight(const Vec3& shift) {
+std::uint64_t expect_the_same_with_look_ahead(const Vec3& shift) {
     std::uint64_t impacts = 0;
     for (int i = 0; i < test::scaled(150); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -143,17 +143,17 @@ std::uint64_t expect_the_same_with_foresight(const Vec3& shift) {
     return impacts;
 }
 
-TEST(Foresight, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
-    EXPECT_GT(expect_the_same_with_foresight({}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
+TEST(LookAheadRuns, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
+    EXPECT_GT(expect_the_same_with_look_ahead({}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
 }
 
-TEST(Foresight, ChangesNothingFarFromTheOriginEither) {
-    EXPECT_GT(expect_the_same_with_foresight({3e6, -5e6, 1e6}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
+TEST(LookAheadRuns, ChangesNothingFarFromTheOriginEither) {
+    EXPECT_GT(expect_the_same_with_look_ahead({3e6, -5e6, 1e6}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
 }
 
 /// A sphere born with its centre on a face that lies there twice, wound both ways: it has no side to leave to, and
 /// stays.
-TEST(Foresight, DoesNotFreeASphereThatCannotLeaveTheSurfaceItWasPutOn) {
+TEST(LookAheadRuns, DoesNotFreeASphereThatCannotLeaveTheSurfaceItWasPutOn) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
         setup.options.time_step = 1.0 / 60.0;
@@ -184,7 +184,7 @@ std::tuple<std::uint64_t, std::uint64_t, std::uint64_t> outcome_of(SimulationSet
 
 /// Far from the origin, and so slowly that every step is rounded by more than the sphere gets away from the wall: its
 /// exact path leads away, the stored positions lead through.
-TEST(Foresight, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
+TEST(LookAheadRuns, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
     constexpr double kFar = 5e6;
     constexpr double kUlp = 0x1p-30;
     const auto run = [](bool look_ahead) {
@@ -211,7 +211,7 @@ TEST(Foresight, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
 }
 
 // Heights over it err by more than the particle is away.
-TEST(Foresight, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
+TEST(LookAheadRuns, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
         setup.options.time_step = 0.1;

@@ -44,9 +44,9 @@ TEST(FreeFlight, LeadsToTheSameBitsAsTheFlightOfEveryIntegrator) {
         const double h = random.uniform();
         for (const IntegratorKind kind : kKinds) {
             const Flight flight = begin_flight(kind, field, state, h);
-            const PhaseState coasted =
+            const PhaseState flown =
                 FreeFlight(kind, field.acceleration(state), h).step(state.position, state.velocity);
-            EXPECT_EQ(bits(coasted), bits({flight.path.end, flight.end_velocity})) << name_of(kind);
+            EXPECT_EQ(bits(flown), bits({flight.path.end, flight.end_velocity})) << name_of(kind);
         }
     }
 }

@@ -17,10 +17,10 @@ SourceTree planted(const std::string& path, const std::string& name) {
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
-    // Planted headers are public, but for what is behind doors or in a folder of details.
+    // Planted headers are public, but for what is behind doors or in a folder `private`.
     for (const SourceFile& file : tree.files) {
         const bool is_library = file.path.starts_with("src/ricochet/") && file.path.ends_with(".h");
-        if (is_library && file.path.find("/detail/") == std::string::npos && !file.path.ends_with("/embree.h")) {
+        if (is_library && file.path.find("/private/") == std::string::npos && !file.path.ends_with("/embree.h")) {
             tree.public_headers.insert(file.path);
         }
     }
@@ -78,13 +78,13 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                    // in a public header
         {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},              // in a public header, of the right layer
         {"src/ricochet/geometry/acceleration/triangle_bvh.h",
-         "ricochet/geometry/acceleration/embree.h"},                    // public includes private
-        {"src/ricochet/io/scene.h", "ricochet/io/detail/json_node.h"},  // the same, by its folder
-        {"src/ricochet/core/error.h", "fmt/core.h"},                    // in a public header
-        {"src/ricochet/core/error.cpp", "Eigen/Core"},                  // a library nobody has declared
-        {"src/ricochet/core/error.cpp", "core/missing.h"},              // names no file
-        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},          // a folder that is no layer
-        {"src/cli/main.cpp", "gtest/gtest.h"},                          // tests only
+         "ricochet/geometry/acceleration/embree.h"},                     // public includes private
+        {"src/ricochet/io/scene.h", "ricochet/io/private/json_node.h"},  // the same, by its folder
+        {"src/ricochet/core/error.h", "fmt/core.h"},                     // in a public header
+        {"src/ricochet/core/error.cpp", "Eigen/Core"},                   // a library nobody has declared
+        {"src/ricochet/core/error.cpp", "core/missing.h"},               // names no file
+        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},           // a folder that is no layer
+        {"src/cli/main.cpp", "gtest/gtest.h"},                           // tests only
     };
     for (const Case& c : cases) {
         SCOPED_TRACE(fmt::format("{} includes {}", c.file, c.include));

@@ -71,16 +71,16 @@ TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
     const CheckedShape ball(AffineMap{}, false);
     EXPECT_EQ(ball.side({1, 0, 0}), 0);
     EXPECT_TRUE(ball.intersects({1, 0, 0}, {2, 0, 0}));
-    EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {2, 0, 0}));
-    EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {1, 1, 0}));    // along the tangent
-    EXPECT_FALSE(ball.meets_after_start({1, 0, 0}, {0.5, 0, 0}));  // inward
-    EXPECT_TRUE(ball.meets_after_start({1, 0, 0}, {-2, 0, 0}));
-    EXPECT_TRUE(ball.meets_after_start({1, 0, 0}, {0.999, 2, 0}));
-    EXPECT_TRUE(ball.meets_after_start({1, 0, 0}, {-1, 0, 0}));
+    EXPECT_FALSE(ball.intersects_after_start({1, 0, 0}, {2, 0, 0}));
+    EXPECT_FALSE(ball.intersects_after_start({1, 0, 0}, {1, 1, 0}));    // along the tangent
+    EXPECT_FALSE(ball.intersects_after_start({1, 0, 0}, {0.5, 0, 0}));  // inward
+    EXPECT_TRUE(ball.intersects_after_start({1, 0, 0}, {-2, 0, 0}));
+    EXPECT_TRUE(ball.intersects_after_start({1, 0, 0}, {0.999, 2, 0}));
+    EXPECT_TRUE(ball.intersects_after_start({1, 0, 0}, {-1, 0, 0}));
     const CheckedShape cylinder(AffineMap{}, true);
-    EXPECT_FALSE(cylinder.meets_after_start({0, 0, 1}, {5, 0, 2}));
-    EXPECT_TRUE(cylinder.meets_after_start({0, 0, 1}, {5, 0, 0.5}));
-    EXPECT_FALSE(cylinder.meets_after_start({0, 0, 1}, {0, 0, 0}));
+    EXPECT_FALSE(cylinder.intersects_after_start({0, 0, 1}, {5, 0, 2}));
+    EXPECT_TRUE(cylinder.intersects_after_start({0, 0, 1}, {5, 0, 0.5}));
+    EXPECT_FALSE(cylinder.intersects_after_start({0, 0, 1}, {0, 0, 0}));
     // The tip of a segment that only just dips in.
     EXPECT_TRUE(ball.intersects({-1, 1 - 0x1p-40, 0}, {1, 1 - 0x1p-40, 0}));
     EXPECT_FALSE(ball.intersects({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));

@@ -51,15 +51,15 @@ TEST(Meeting, AgreesWithTheEliminationOfInequalities) {
 }
 
 TEST(Meeting, ASegmentMayLeaveATriangleToEitherSideButNotAlongIt) {
-    EXPECT_FALSE(meets_after_start({1, 1, 0}, {1, 1, 1}, kTriangle));
-    EXPECT_FALSE(meets_after_start({1, 1, 0}, {3, 3, -1}, kTriangle));
-    EXPECT_TRUE(meets_after_start({1, 1, 0}, {2, 1, 0}, kTriangle));
-    EXPECT_TRUE(meets_after_start({1, 1, 1}, {1, 1, -1}, kTriangle));
+    EXPECT_FALSE(intersects_after_start({1, 1, 0}, {1, 1, 1}, kTriangle));
+    EXPECT_FALSE(intersects_after_start({1, 1, 0}, {3, 3, -1}, kTriangle));
+    EXPECT_TRUE(intersects_after_start({1, 1, 0}, {2, 1, 0}, kTriangle));
+    EXPECT_TRUE(intersects_after_start({1, 1, 1}, {1, 1, -1}, kTriangle));
 }
 
 TEST(Meeting, NamesThePoint) {
-    EXPECT_EQ(place_of_meeting({1, 1, 3}, {1, 1, -1}, kTriangle), Vec3(1, 1, 0));
-    EXPECT_EQ(place_of_meeting({-1, 1, 0}, {5, 1, 0}, kTriangle), Vec3(-1, 1, 0));
+    EXPECT_EQ(crossing_point({1, 1, 3}, {1, 1, -1}, kTriangle), Vec3(1, 1, 0));
+    EXPECT_EQ(crossing_point({-1, 1, 0}, {5, 1, 0}, kTriangle), Vec3(-1, 1, 0));
 }
 
 }  // namespace

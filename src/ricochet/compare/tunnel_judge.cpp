@@ -64,8 +64,8 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-// A segment that crossed a shape has gone in, come out, or passed through it. Ins and outs change the side, so where the
-// number of segments and the change of side do not agree, one has passed through.
+// A segment that crossed a shape has gone in, come out, or passed through it. Ins and outs change the side, so where
+// the number of segments and the change of side do not agree, one has passed through.
 void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
     std::size_t count = 0;
     for (const auto& [time, crossings] : segments) count += crossings.size();

@@ -26,8 +26,8 @@ struct LifeBirth {
 /// Children of one event. event: its number in the parent's life.
 [[nodiscard]] std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event);
 
-/// One child. parent: as it is at the birth. The child's position is the parent's, its velocity is its own launch plus the
-/// inherited part; attributes that the emitter does not name are the parent's.
+/// One child. parent: as it is at the birth. The child's position is the parent's, its velocity is its own launch plus
+/// the inherited part; attributes that the emitter does not name are the parent's.
 [[nodiscard]] Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time);
 
 /// Children that share the parent's mass and momentum, all at its position. Masses are the parent's by the weights that

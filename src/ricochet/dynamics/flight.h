@@ -119,8 +119,8 @@ struct FlowPath {
 /// position and velocity separately and have no meaning here.
 [[nodiscard]] bool carries_along_flows(IntegratorKind kind);
 
-/// The path from a position at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of its
-/// first sub-step, for which it tries `first` seconds. Throws InputError for a method that has no meaning here.
+/// The path from a position at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of
+/// its first sub-step, for which it tries `first` seconds. Throws InputError for a method that has no meaning here.
 ///
 /// forward_euler is a straight line with the flow's velocity at the start (first order). midpoint (second order) and
 /// rk4 (fourth) make their ordinary step; the path is the cubic Hermite polynomial through both ends with the flow's

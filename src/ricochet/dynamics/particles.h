@@ -30,8 +30,8 @@ using AttributeValue = Vec3;
 [[nodiscard]] AttributeValue missing_attribute();
 [[nodiscard]] inline bool is_missing(const AttributeValue& value) { return value.x != value.x; }
 
-/// Names of the columns of appearance. They may be declared only with the components and fallbacks that looks_attribute()
-/// gives; a scene declares them by using them.
+/// Names of the columns of appearance. They may be declared only with the components and fallbacks that
+/// looks_attribute() gives; a scene declares them by using them.
 inline constexpr std::string_view kColorAttribute = "color";      ///< red, green, blue, 0..1, as linear light
 inline constexpr std::string_view kOpacityAttribute = "opacity";  ///< 0 (not seen) to 1
 inline constexpr std::string_view kSizeAttribute = "size";        ///< radius that is drawn, m; default the radius

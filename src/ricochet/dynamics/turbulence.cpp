@@ -71,7 +71,8 @@ public:
         }
         Vec3 sum;
         for (std::uint32_t i = 0; i < 2; ++i) {
-            // The slice is hashed first: a sum of slice and position would make the next slice this one, moved by a point.
+            // The slice is hashed first: a sum of slice and position would make the next slice this one, moved by a
+            // point.
             const std::uint32_t row = hashed(hashed(0, slice), at[0].point + i);
             for (std::uint32_t j = 0; j < 2; ++j) {
                 const std::uint32_t column = hashed(row, at[1].point + j);

@@ -260,7 +260,7 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
 
 /// The body is convex: a segment from its surface to an inner point is inside; one to an outer point is outside unless
 /// it dips in, and then it does so at once, also in the first 2^-40 of its length (or by less than that).
-bool CheckedShape::meets_after_start(const Vec3& p, const Vec3& q) const {
+bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;
     const VectorOf<Digits> from = impl_->local(p);

@@ -27,7 +27,7 @@ public:
     /// True when the closed segment [p, q] intersects the surface.
     [[nodiscard]] bool intersects(const Vec3& p, const Vec3& q) const;
     /// The same for a segment that starts on the surface: true when it intersects it again.
-    [[nodiscard]] bool meets_after_start(const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool intersects_after_start(const Vec3& p, const Vec3& q) const;
     /// True when the distance of p from the surface is below `least` (m, > 0). Errs, on the side of true, by 1e-15 of
     /// the half axes at most.
     [[nodiscard]] bool is_nearer(const Vec3& p, double least) const;

@@ -201,12 +201,12 @@ bool intersects(const Vec3& p, const Vec3& q, const Corners& t) {
     return of_p == 0 && of_q == 0 ? meets_in_plane(p, q, t) : passes_through(p, q, t);
 }
 
-bool meets_after_start(const Vec3& p, const Vec3& q, const Corners& t) {
+bool intersects_after_start(const Vec3& p, const Vec3& q, const Corners& t) {
     const bool leaves_plane = spatial_sign(t.a, t.b, t.c, p) == 0 && spatial_sign(t.a, t.b, t.c, q) != 0;
     return !leaves_plane && intersects(p, q, t);
 }
 
-Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& t) {
+Vec3 crossing_point(const Vec3& p, const Vec3& q, const Corners& t) {
     const Vec3 normal = cross(t.b - t.a, t.c - t.a);
     const double from = std::fabs(dot(normal, p - t.a));
     const double to = std::fabs(dot(normal, q - t.a));
@@ -237,8 +237,8 @@ Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// The offset from the nearest point of the triangle to p: the shortest of those from the three sides and, when its foot
-/// lies on the triangle, from the plane.
+/// The offset from the nearest point of the triangle to p: the shortest of those from the three sides and, when its
+/// foot lies on the triangle, from the plane.
 template <class Real>
 VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     VectorOf<Real> best = difference<Real>(p, t.a);

@@ -33,10 +33,10 @@ struct Corners {
 [[nodiscard]] bool intersects(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 /// The same for a segment whose start may lie on the triangle: true when any other point of it does.
-[[nodiscard]] bool meets_after_start(const Vec3& p, const Vec3& q, const Corners& triangle);
+[[nodiscard]] bool intersects_after_start(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 /// About where [p, q] crosses the triangle's plane (rounded); p when it runs in that plane.
-[[nodiscard]] Vec3 place_of_meeting(const Vec3& p, const Vec3& q, const Corners& triangle);
+[[nodiscard]] Vec3 crossing_point(const Vec3& p, const Vec3& q, const Corners& triangle);
 
 // Is a point nearer to a surface than it may be? In doubles with their error where that leaves no doubt, with a
 // hundred digits otherwise.

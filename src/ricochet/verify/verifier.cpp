@@ -157,13 +157,13 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
     }
     for (const auto& [collider, shape] : shapes) {
         if (!shape.intersects(p, q)) continue;
-        const bool leaves = starts_on_surface && shape.side(p) == 0 && !shape.meets_after_start(p, q);
+        const bool leaves = starts_on_surface && shape.side(p) == 0 && !shape.intersects_after_start(p, q);
         if (!leaves) judged.report(ViolationKind::crossing, q, segment.time, collider);
     }
     triangles.near_segment(p, q, [&](const NamedTriangle& t) {
         if (!verify::intersects(p, q, t.corners)) return;
-        if (starts_on_surface && !verify::meets_after_start(p, q, t.corners)) return;
-        judged.report(ViolationKind::crossing, verify::place_of_meeting(p, q, t.corners), segment.time, t.collider,
+        if (starts_on_surface && !verify::intersects_after_start(p, q, t.corners)) return;
+        judged.report(ViolationKind::crossing, verify::crossing_point(p, q, t.corners), segment.time, t.collider,
                       t.triangle);
     });
     std::sort(judged.violations.begin() + static_cast<std::ptrdiff_t>(first), judged.violations.end(),

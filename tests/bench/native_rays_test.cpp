@@ -7,6 +7,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet::bench {
@@ -31,7 +32,7 @@ std::vector<RaySegment> random_segments(std::size_t count) {
     std::vector<RaySegment> segments;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 from = 1.5 * random.in_unit_ball();
-        segments.push_back({floats(from), floats(random.uniform() * 2.0 * random.unit_vector())});
+        segments.push_back({floats(from), floats(testing::scaled({random.unit_vector(), random.uniform() * 2.0}))});
     }
     return segments;
 }

@@ -13,6 +13,7 @@
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -31,7 +32,7 @@ public:
         setup.options.time_step = std::array{1e-3, 0.02, 0.1, 0.5}[pick(4)];
         setup.options.duration = 12.0 * setup.options.time_step;
         setup.options.record_contacts = true;
-        if (pick(4) != 0) setup.forces.push_back(make_gravity(4.0 * random_.uniform() * random_.unit_vector()));
+        if (pick(4) != 0) setup.forces.push_back(make_gravity(testing::random_vector(random_, 4.0)));
         if (pick(2) == 0) setup.forces.push_back(make_linear_drag(random_.uniform()));
         setup.materials.push_back({"wall", pick(2) == 0 ? 1.0 : random_.uniform(), pick(2) == 0 ? 0.0 : 0.3});
         setup.colliders.push_back({"mesh", MeshShape{mesh(), {}, "", {}}, 0});
@@ -48,7 +49,7 @@ private:
     Particle particle(double largest_radius) {
         Particle particle;
         particle.position = place();
-        particle.velocity = std::array{0.1, 1.0, 10.0}[pick(3)] * random_.unit_vector();
+        particle.velocity = testing::scaled({random_.unit_vector(), std::array{0.1, 1.0, 10.0}[pick(3)]});
         particle.radius = pick(2) == 0 ? largest_radius : largest_radius * random_.uniform();
         return particle;
     }

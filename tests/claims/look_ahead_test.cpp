@@ -15,6 +15,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -35,7 +36,7 @@ public:
         setup.options.duration = (150.0 + (pick(2) == 0 ? 0.37 : 0.0)) * setup.options.time_step;
         setup.options.record_contacts = true;
         setup.options.verify = pick(3) == 0;
-        if (pick(2) == 0) setup.forces.push_back(make_gravity(9.0 * random_.uniform() * random_.unit_vector()));
+        if (pick(2) == 0) setup.forces.push_back(make_gravity(testing::random_vector(random_, 9.0)));
         setup.materials.push_back({"wall", pick(2) == 0 ? 1.0 : random_.uniform(), pick(2) == 0 ? 0.0 : 0.3});
         setup.colliders.push_back({"mesh", MeshShape{mesh(), {}, "", {}}, 0});
         if (pick(2) == 0)
@@ -63,7 +64,7 @@ private:
     Particle particle(double largest_radius) {
         Particle particle;
         particle.position = shift_ + place();
-        particle.velocity = std::array{0.5, 2.0, 8.0}[pick(3)] * random_.unit_vector();
+        particle.velocity = testing::scaled({random_.unit_vector(), std::array{0.5, 2.0, 8.0}[pick(3)]});
         particle.radius = largest_radius * random_.uniform();
         particle.birth_time = pick(4) == 0 ? 0.2 * random_.uniform() : 0.0;
         if (pick(3) == 0) particle.lifetime = random_.uniform();

@@ -15,6 +15,7 @@
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/parity.h"
+#include "support/random_draws.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 
@@ -49,7 +50,7 @@ std::vector<Particle> gas_in(const TriangleMesh& mesh, const std::vector<double>
         particle.radius = radii[gas.size() % radii.size()];
         if (!oracle.inside(particle.position)) continue;
         if (particle.radius > 0.0 && distance_from(mesh, particle.position) < 1.001 * particle.radius) continue;
-        particle.velocity = speed * (0.5 + random.uniform()) * random.unit_vector();
+        particle.velocity = testing::scaled({random.unit_vector(), speed * (0.5 + random.uniform())});
         gas.push_back(particle);
     }
     return gas;

@@ -14,6 +14,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -68,8 +69,8 @@ TEST(SphereAmongTriangles, HitsFirstWhatATestOfEveryTriangleHitsFirst) {
         SCOPED_TRACE("case " + std::to_string(i) + " of seed " + std::to_string(kSeed));
         const double radius = std::pow(10.0, -3.0 + 2.5 * random.uniform());
         world.prepare_radius(radius);
-        const Vec3 start = 1.2 * random.uniform() * random.unit_vector();
-        const Vec3 v = std::pow(10.0, random.uniform()) * random.unit_vector();
+        const Vec3 start = testing::random_vector(random, 1.2);
+        const Vec3 v = testing::scaled({random.unit_vector(), std::pow(10.0, random.uniform())});
         const Vec3 a = i % 2 == 0 ? Vec3{} : 5.0 * random.unit_vector();
         const Path path = i % 2 == 0 ? line_path(start, v, 0.5) : parabola_path(start, v, a, 0.5);
         const auto expected = first_of_all(world, path, radius);

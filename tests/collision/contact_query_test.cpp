@@ -79,6 +79,11 @@ void expect_same(const std::optional<Contact>& contact, const std::optional<Refe
     }
 }
 
+Path random_parabola(RandomSequence& random, const Vec3& start, double speed, double acceleration) {
+    const Vec3 pull = acceleration * random.unit_vector();
+    return parabola_path(start, speed * random.unit_vector(), pull, 1.0);
+}
+
 Path random_path(const CollisionWorld& world, int kind, RandomSequence& random) {
     const Vec3 start = 1.5 * random.in_unit_ball();
     const auto& t =
@@ -90,9 +95,9 @@ Path random_path(const CollisionWorld& world, int kind, RandomSequence& random) 
         case 1:
             return line_path(start, target - start, 1.5);  // at a vertex
         case 2:
-            return parabola_path(start, 3.0 * random.unit_vector(), 4.0 * random.unit_vector(), 1.0);
+            return random_parabola(random, start, 3.0, 4.0);
         case 3:  // strongly curved: many pieces
-            return parabola_path(start, 30.0 * random.unit_vector(), 60.0 * random.unit_vector(), 1.0);
+            return random_parabola(random, start, 30.0, 60.0);
         case 4:  // a parabola through a vertex
             return parabola_path(start, (target - start) - Vec3{0, 0, -2.0}, {0, 0, -4.0}, 1.5);
         case 5:  // from and to far away

@@ -17,6 +17,7 @@
 #include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/parity.h"
+#include "support/random_draws.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 
@@ -416,8 +417,9 @@ TEST(SignedDistance, SegmentsIntersectACollidersSurfacesExactly) {
     int intersected = 0;
     for (int i = 0; i < cases(1000); ++i) {
         const Vec3 p = 3.0 * random.in_unit_ball();
-        const Vec3 q = i % 3 == 0 ? world.vertices()[static_cast<std::size_t>(500.0 * random.uniform())]
-                                  : p + std::pow(10.0, -6.0 * random.uniform()) * random.unit_vector();
+        const Vec3 q = i % 3 == 0
+                           ? world.vertices()[static_cast<std::size_t>(500.0 * random.uniform())]
+                           : p + testing::scaled({random.unit_vector(), std::pow(10.0, -6.0 * random.uniform())});
         for (std::uint32_t c = 0; c < world.colliders().size(); ++c) {
             bool expected = false;
             for (SurfaceId s = 0; s < world.surface_count_of(c) && !expected; ++s) {

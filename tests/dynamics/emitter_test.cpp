@@ -346,7 +346,8 @@ TEST(Emitter, MeshBirthsAreOffTheirTriangleByTheExactSignWhateverItsShape) {
         const double size = std::ldexp(1.0, round % 40 - 20);
         const Vec3 a = 1000.0 * (round % 3) * random.unit_vector();
         const Vec3 b = a + size * random.unit_vector();
-        const Vec3 c = a + random.uniform() * (b - a) + std::ldexp(size, -(round % 25)) * random.unit_vector();
+        const Vec3 off = std::ldexp(size, -(round % 25)) * random.unit_vector();
+        const Vec3 c = a + random.uniform() * (b - a) + off;
         auto mesh = std::make_shared<TriangleMesh>();
         mesh->vertices = {a, b, c};
         mesh->triangles = {{0, 1, 2}};

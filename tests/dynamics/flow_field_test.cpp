@@ -9,6 +9,7 @@
 #include "dynamics/finite_difference.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
+#include "support/random_draws.h"
 
 namespace ricochet {
 namespace {
@@ -73,7 +74,7 @@ TEST(Vortex, HasNoDivergence) {
     for (const VortexProfile profile : {VortexProfile::rankine, VortexProfile::lamb_oseen}) {
         const FlowPointer vortex = make_vortex({{1, 2, 3}, {1, -2, 0.5}, 3.0, 1e-3, profile});
         for (int i = 0; i < 50; ++i) {
-            const Vec3 place = Vec3(1, 2, 3) + (2.0 + random.uniform()) * random.unit_vector();
+            const Vec3 place = Vec3(1, 2, 3) + testing::scaled({random.unit_vector(), 2.0 + random.uniform()});
             EXPECT_NEAR(divergence(*vortex, place, 0.0, 1e-3), 0.0, 1e-7);
         }
     }
@@ -134,7 +135,7 @@ TEST(FlowPastSphere, HasNeitherSourcesNorVortices) {
     const FlowPointer flow = make_flow_past_sphere({}, 0.5, {1, 2, 3});
     RandomSequence random(5, 0, 0);
     for (int i = 0; i < 50; ++i) {
-        const Vec3 place = (1.0 + random.uniform()) * random.unit_vector();
+        const Vec3 place = testing::scaled({random.unit_vector(), 1.0 + random.uniform()});
         EXPECT_NEAR(divergence(*flow, place, 0.0, 1e-2), 0.0, 1e-8);
         EXPECT_NEAR(length(vorticity(*flow, place, 0.0, 1e-2)), 0.0, 1e-8);
     }

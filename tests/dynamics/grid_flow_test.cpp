@@ -28,7 +28,7 @@ TEST(GridFlow, ReproducesLinearFields) {
     const FlowPointer flow = make_grid_flow(sampled_grid());
     RandomSequence random(2, 0, 0);
     for (int i = 0; i < 1000; ++i) {
-        const Vec3 p(-1 + 1.5 * random.uniform(), 2 + 0.5 * random.uniform(), 3 + 8 * random.uniform());
+        const Vec3 p{-1 + 1.5 * random.uniform(), 2 + 0.5 * random.uniform(), 3 + 8 * random.uniform()};
         EXPECT_NEAR(length(flow->velocity(p, 0.0) - linear(p)), 0.0, 1e-13);
     }
     EXPECT_TRUE(flow->is_steady());

@@ -10,6 +10,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/shape_oracle.h"
 
 namespace ricochet {
@@ -114,7 +115,8 @@ Path random_path(Draws& draws, const Vec3& from, const Vec3& to, double bend) {
     const Vec3 a = (bend / (duration * duration)) * draws.direction();
     if (degree == 1) return line_path(from, mean, duration);
     if (degree == 2) return parabola_path(from, mean - (0.5 * duration) * a, a, duration);
-    return hermite_path(from, mean + duration * a, to, mean + duration * length(a) * draws.direction(), duration);
+    const Vec3 end_velocity = mean + duration * length(a) * draws.direction();
+    return hermite_path(from, mean + duration * a, to, end_velocity, duration);
 }
 
 double largest_speed(const Path& path) {
@@ -171,7 +173,8 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
         const auto error = static_cast<double>(abs(nearest.distance - reference.distance));
         // Away from the surface, rounding the coordinates counts too.
         const bool is_away = size >= 0.25 * c.smallest * c.smallest / c.largest;
-        EXPECT_LE(error, 0x1p-49 * size + (is_away ? 0x1p-52 : 0x1p-92) * c.largest);
+        const double away = length(p - c.placement.position) + c.largest;
+        EXPECT_LE(error, 0x1p-49 * size + (is_away ? 0x1p-52 * away : 0x1p-92 * c.largest));
         const double rounding = 4.0 * ulp(largest_coordinate(p, c)) + 0x1p-49 * (c.largest + size);
         EXPECT_LE(std::fabs(length(p - nearest.point) - size), rounding);
         EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(nearest.point)).distance)), rounding);
@@ -372,7 +375,7 @@ TEST(AnalyticShape, TimesTheContactWithASphereAsTheQuadraticFormulaDoes) {
         Placement placement;
         const double radius = draws.power_of_ten(-3, 3);
         placement.scale = {radius, radius, radius};
-        placement.position = draws.power_of_ten(-3, 6) * draws.direction();
+        placement.position = testing::scaled({draws.direction(), draws.power_of_ten(-3, 6)});
         const double swept = draws.one_of(2) == 0 ? 0.0 : radius * draws.uniform(0, 0.9);
         const bool is_inside = draws.one_of(2) == 0;
         const double from =
@@ -525,8 +528,9 @@ TEST(AnalyticShape, CullsOnlyPathsThatStayAway) {
         Draws draws(10, i);
         const Case c = random_case(draws);
         const Vec3 p = random_point(draws, c);
-        const Path path = random_path(draws, p, p + c.largest * draws.power_of_ten(-2, 1) * draws.direction(),
-                                      c.largest * draws.power_of_ten(-3, 0));
+        const double bend = c.largest * draws.power_of_ten(-3, 0);
+        const Vec3 there = testing::scaled({draws.direction(), c.largest * draws.power_of_ten(-2, 1)});
+        const Path path = random_path(draws, p, p + there, bend);
         const double margin = c.smallest * draws.power_of_ten(-6, 1);
         double least = std::numeric_limits<double>::infinity();
         const int side = c.shape.side(p);
@@ -629,7 +633,7 @@ void bounce_about(std::uint32_t stream, bool with_radius) {
         int bounces = 0;
         for (int segment = 0; segment < 1000; ++segment) {
             const Vec3 before = particle.p;
-            const Vec3 target = c.map.point(draws.uniform(0, 3) * draws.direction());
+            const Vec3 target = c.map.point(testing::scaled({draws.direction(), draws.uniform(0, 3)}));
             const Path path = draws.one_of(2) == 0
                                   ? line_path(before, target - before, 1.0)
                                   : parabola_path(before, target - before, c.largest * draws.direction(), 1.0);

@@ -14,6 +14,7 @@
 #include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
+#include "support/random_draws.h"
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet {
@@ -199,7 +200,7 @@ std::vector<ReferenceHit> reference_hits(const Path& path, const Vec3& a, const 
 
 /// A parabola that passes through a point near the triangle at some time, from anywhere.
 Path random_parabola(const Vec3& target, RandomSequence& random) {
-    const Vec3 a = 4.0 * random.uniform() * random.unit_vector();
+    const Vec3 a = testing::random_vector(random, 4.0);
     const double when = 0.05 + random.uniform();
     const Vec3 v = 2.0 * random.unit_vector();
     const Vec3 start = target - when * (v + (0.5 * when) * a);
@@ -276,8 +277,8 @@ TEST(PlaneSweep, SideIsExact) {
     for (int i = 0; i < test::scaled(5000); ++i) {
         const Plane plane{random.unit_vector(), random.unit_vector()};
         const auto frame = tangent_frame(plane.normal);
-        const Vec3 p =
-            plane.point + random.uniform() * frame[0] + random.uniform() * frame[1];  // rounded off the plane
+        const double along = random.uniform();
+        const Vec3 p = plane.point + random.uniform() * frame[0] + along * frame[1];  // rounded off the plane
         Rational value = 0;
         for (int axis = 0; axis < 3; ++axis) {
             value += exact(plane.normal[axis]) * (exact(p[axis]) - exact(plane.point[axis]));
@@ -312,8 +313,10 @@ TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
         if (!stays_on_one_side(path, TrianglePlane(s.a, s.b, s.c), slack)) continue;
         ++cleared;
-        const Vec3 from = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();
-        const Vec3 to = path.position(random.uniform()) + 0.5 * slack * random.unit_vector();
+        const Vec3 off_from = 0.5 * slack * random.unit_vector();
+        const Vec3 from = path.position(random.uniform()) + off_from;
+        const Vec3 off_to = 0.5 * slack * random.unit_vector();
+        const Vec3 to = path.position(random.uniform()) + off_to;
         ASSERT_FALSE(segment_intersects_triangle(flush_tiny(from), flush_tiny(to), s.a, s.b, s.c))
             << testing::description(s);
     }
@@ -336,7 +339,8 @@ TEST(SignedDistance, HasTheRightSignAndSizeNextToThePlane) {
         const Vec3 a = random.unit_vector();
         const Vec3 b = random.unit_vector();
         const Vec3 c = random.unit_vector();
-        const Vec3 p = a + random.uniform() * (b - a) + random.uniform() * (c - a);  // rounded off the plane
+        const double along = random.uniform();
+        const Vec3 p = a + random.uniform() * (b - a) + along * (c - a);  // rounded off the plane
         const auto area = testing::exact_area_vector(a, b, c);
         const Digits size = sqrt(Digits(Rational(area[0] * area[0] + area[1] * area[1] + area[2] * area[2])));
         const auto reference = static_cast<double>(Digits(testing::exact_orient3d(a, b, c, p)) / size);

@@ -37,7 +37,10 @@ PointCase random_case(std::uint64_t index) {
     const Vec3 b = random_point(random);
     Vec3 c = random_point(random);
     const auto kind = static_cast<int>(6.0 * random.uniform());
-    if (kind == 0) c = a + random.uniform() * (b - a) + std::pow(10.0, -16.0 * random.uniform()) * c;
+    if (kind == 0) {
+        const double off = std::pow(10.0, -16.0 * random.uniform());
+        c = a + random.uniform() * (b - a) + off * c;
+    }
     if (kind == 1) c = random.uniform() < 0.5 ? a : 0.5 * (a + b);
     const double away = std::pow(10.0, 2.0 - 14.0 * random.uniform());
     const double u = random.uniform();

@@ -50,7 +50,8 @@ TriangleMesh soup(int count, std::uint64_t seed) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.push_back(center + along);
         mesh.vertices.push_back(center - along);
-        mesh.vertices.push_back(center + std::pow(10.0, -4.0 * random.uniform()) * size * random.unit_vector());
+        const Vec3 across = random.unit_vector();
+        mesh.vertices.push_back(center + std::pow(10.0, -4.0 * random.uniform()) * size * across);
         mesh.triangles.push_back({first, first + 1, first + 2});
     }
     return mesh;

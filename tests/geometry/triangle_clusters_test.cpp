@@ -25,7 +25,8 @@ TriangleMesh neighbours(RandomSequence& random, double scale, const Vec3& center
         const Vec3 corner = center + 0.5 * scale * random.in_unit_ball();
         mesh.vertices.push_back(corner);
         mesh.vertices.push_back(corner + size * random.unit_vector());
-        mesh.vertices.push_back(corner + (random.uniform() < 0.05 ? 0.0 : width) * random.unit_vector());
+        const Vec3 across = random.unit_vector();
+        mesh.vertices.push_back(corner + (random.uniform() < 0.05 ? 0.0 : width) * across);
         mesh.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
     }
     return mesh;

@@ -18,6 +18,7 @@
 #include "ricochet/io/run_writer.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 #include "support/temporary_folder.h"
 
@@ -70,10 +71,11 @@ SimulationSetup gas(int count) {
     setup.colliders.push_back({"floor", PlaneShape{{0, 0, -0.2}, {0, 0, 2}}, 0});
     RandomSequence random(kSeed, 0, 0);
     for (int i = 0; i < count; ++i) {
-        const Vec3 start = Vec3(100, -50, 0.25) + (0.4 + 0.3 * random.uniform()) * random.unit_vector();
+        const Vec3 start = Vec3(100, -50, 0.25) + testing::scaled({random.unit_vector(), 0.4 + 0.3 * random.uniform()});
         const double radius = i % 3 == 0 ? 0.02 : 0.0;
-        add_particle(setup, start, (1.0 + 5.0 * random.uniform()) * random.unit_vector(), 0.5 + random.uniform(),
-                     radius);
+        const double mass = 0.5 + random.uniform();
+        const Vec3 velocity = testing::scaled({random.unit_vector(), 1.0 + 5.0 * random.uniform()});
+        add_particle(setup, start, velocity, mass, radius);
     }
     return setup;
 }

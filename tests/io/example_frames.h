@@ -9,6 +9,7 @@
 #include "ricochet/io/frame_writer.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/simulation.h"
+#include "support/random_draws.h"
 
 namespace ricochet::test {
 
@@ -20,7 +21,7 @@ inline Particles example_particles(std::uint64_t count) {
         Particle particle;
         particle.id = (std::uint64_t{1} << 40) + count - i;
         particle.position = 3.0 * random.unit_vector();
-        particle.velocity = random.unit_vector() * random.uniform();
+        particle.velocity = testing::scaled({random.unit_vector(), random.uniform()});
         particle.mass = 1.0 + random.uniform();
         particle.radius = 0.01 * random.uniform();
         particle.birth_time = -random.uniform();

@@ -42,7 +42,8 @@ TEST(Bounce, FrictionKeepsTheHeading) {
     for (int i = 0; i < test::scaled(2000); ++i) {
         const Vec3 n = random.unit_vector();
         const Vec3 v = 3.0 * random.unit_vector();
-        const Vec3 after = bounced(v, n, random.uniform(), random.uniform());
+        const double friction = random.uniform();
+        const Vec3 after = bounced(v, n, random.uniform(), friction);
         const Vec3 before_along = v - dot(v, n) * n;
         const Vec3 after_along = after - dot(after, n) * n;
         EXPECT_LE(length(cross(before_along, after_along)), 1e-14);

@@ -380,7 +380,8 @@ TEST(ExactResponse, BouncesAlikeOnTwoTrianglesManyTrianglesAndAPlane) {
             Course many({mesh_collider(floor_mesh(50.0, 81))}, {"", restitution, 0.1}, {0, 0, -kG}, kind);
             RandomSequence random(5, 0, 0);
             for (int i = 0; i < test::scaled(100); ++i) {
-                ForceInput a = at({random.uniform(), random.uniform(), 1.0}, 3.0 * random.unit_vector());
+                const Vec3 velocity = 3.0 * random.unit_vector();
+                ForceInput a = at({random.uniform(), random.uniform(), 1.0}, velocity);
                 ForceInput b = a;
                 ForceInput c = a;
                 for (int k = 0; k < 60; ++k) {

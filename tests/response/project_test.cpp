@@ -15,6 +15,7 @@
 #include "ricochet/core/tolerances.h"
 #include "support/counts.h"
 #include "support/parity.h"
+#include "support/random_draws.h"
 
 namespace ricochet {
 namespace {
@@ -207,9 +208,10 @@ TEST_P(ProjectAtSolids, WhatIsInsideStaysInsideAtModerateSpeed) {
         RandomSequence random(7, 0, 0);
         Flock flock;
         while (flock.particles.size() < 20) {
-            const Vec3 position = 1.2 * random.uniform() * random.unit_vector();
+            const Vec3 position = testing::random_vector(random, 1.2);
             if (!oracle.inside(position)) continue;
-            flock.particles.push_back(particle_at(position, (0.5 + random.uniform()) * random.unit_vector(), radius));
+            flock.particles.push_back(
+                particle_at(position, testing::scaled({random.unit_vector(), 0.5 + random.uniform()}), radius));
         }
         EXPECT_EQ(flock.fly(course, 400, 0.02, [&](const Vec3& p) { return oracle.inside(p); }), 0);
         EXPECT_GT(flock.bounces, 20U);
@@ -230,7 +232,8 @@ TEST_P(ProjectAtSolids, WhatIsOutsideStaysOutsideAtModerateSpeed) {
             const Vec3 position =
                 1.4 * (Vec3{random.uniform(), random.uniform(), random.uniform()} * 2.0 - Vec3{1, 1, 1});
             if (oracle.side(position) != Side::outside) continue;
-            flock.particles.push_back(particle_at(position, (0.5 + random.uniform()) * random.unit_vector(), radius));
+            flock.particles.push_back(
+                particle_at(position, testing::scaled({random.unit_vector(), 0.5 + random.uniform()}), radius));
         }
         EXPECT_EQ(flock.fly(course, 400, 0.02, is_right), 0);
         EXPECT_GT(flock.bounces, 20U);

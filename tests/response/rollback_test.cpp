@@ -15,6 +15,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -218,8 +219,8 @@ TEST_P(RollbackInRocks, NoSegmentCrossesASurfaceAndNoParticleEndsOnTheWrongSide)
             RandomSequence random(seed, 1, 0);
             for (int i = 0; i < test::scaled(25); ++i) {
                 Particle particle;
-                particle.position = 0.3 * random.uniform() * random.unit_vector();
-                particle.velocity = 8.0 * random.uniform() * random.unit_vector();
+                particle.position = testing::random_vector(random, 0.3);
+                particle.velocity = testing::random_vector(random, 8.0);
                 particle.radius = radius;
                 setup.particles.push_back(particle);
             }

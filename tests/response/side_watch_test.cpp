@@ -8,6 +8,7 @@
 #include "response/solids.h"
 #include "ricochet/core/random.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 
 namespace ricochet {
 namespace {
@@ -145,13 +146,13 @@ TEST(SideWatch, SeesTheSameAfterASurvey) {
     RandomSequence random(3, 0, 0);
     int seen_any = 0;
     for (int i = 0; i < test::scaled(2000); ++i) {
-        const Vec3 start = 1.5 * random.uniform() * random.unit_vector();
+        const Vec3 start = testing::random_vector(random, 1.5);
         Watched plain(distance, 2, start, 0.05);
         Watched surveyed(distance, 2, start, 0.05);
         const double reach = 0.6 * random.uniform();
         surveyed.watch.survey(start, reach);
         for (int k = 0; k < 3; ++k) {
-            const Vec3 to = start + 1.5 * reach * random.uniform() * random.unit_vector();
+            const Vec3 to = start + testing::random_vector(random, 1.5 * reach);
             const auto a = plain.go(to);
             const auto b = surveyed.go(to);
             ASSERT_EQ(a.size(), b.size()) << i;

@@ -79,6 +79,11 @@ void expect_same(const std::optional<Contact>& contact, const std::optional<Refe
     }
 }
 
+Path random_line(RandomSequence& random) {
+    const Vec3 velocity = 2.0 * random.unit_vector();
+    return line_path(random.in_unit_ball(), velocity, 1.0);
+}
+
 Path random_parabola(RandomSequence& random, const Vec3& start, double speed, double acceleration) {
     const Vec3 pull = acceleration * random.unit_vector();
     return parabola_path(start, speed * random.unit_vector(), pull, 1.0);
@@ -179,7 +184,7 @@ TEST(ContactQuery, DecidesAboutSegmentsNearThePathExactly) {
     const auto world = world_of(mesh_collider(mesh));
     ContactScratch scratch;
     for (int i = 0; i < test::scaled(400); ++i) {
-        const Path path = line_path(random.in_unit_ball(), 2.0 * random.unit_vector(), 1.0);
+        const Path path = random_line(random);
         const auto found = query(world, scratch, path, 0.0);
         const auto& contact = found.contact;
         const double until = contact ? contact->time : 1.0;

@@ -25,13 +25,18 @@ using testing::distance_from;
 
 double height(const Plane& plane, const Vec3& p) { return dot(plane.normal, p - plane.point); }
 
+Path random_path(RandomSequence& random, const Vec3& acceleration) {
+    const Vec3 velocity = 2.0 * random.in_unit_ball();
+    return parabola_path(3.0 * random.in_unit_ball(), velocity, acceleration, 3.0);
+}
+
 TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(5000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
         const Plane plane{random.in_unit_ball(), random.unit_vector()};
         const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
-        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const Path path = random_path(random, acceleration);
         const double margin = 0.1 * random.uniform();
         const double time = time_free_of_plane(path, plane, margin);
         ASSERT_GE(time, 0.0);
@@ -62,7 +67,7 @@ TEST(TimeOutside, IsFreeOfTheBoxAndLongWhereTheBoxIsFarAway) {
         box.include(random.in_unit_ball());
         box.include(random.in_unit_ball());
         const Vec3 acceleration = i % 3 == 0 ? Vec3{} : 10.0 * random.in_unit_ball();
-        const Path path = parabola_path(3.0 * random.in_unit_ball(), 2.0 * random.in_unit_ball(), acceleration, 3.0);
+        const Path path = random_path(random, acceleration);
         const double time = time_outside(path, box);
         ASSERT_LE(time, path.duration);
         EXPECT_EQ(time > 0.0, !box.contains(path.c[0]));

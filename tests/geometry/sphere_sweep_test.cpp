@@ -66,8 +66,10 @@ Triangle random_triangle(RandomSequence& random) {
     const Vec3 b = random_point(random);
     const Vec3 c = random_point(random);
     switch (whole_between(random, 0, 5)) {
-        case 0:
-            return {a, b, a + random.uniform() * (b - a) + std::pow(10.0, between(random, -8.0, -4.0)) * c};
+        case 0: {
+            const Vec3 off = std::pow(10.0, between(random, -8.0, -4.0)) * c;
+            return {a, b, a + random.uniform() * (b - a) + off};
+        }
         case 1:
             return {Vec3{a.x, a.y, 0.25}, Vec3{b.x, b.y, 0.25}, Vec3{c.x, c.y, 0.25}};
         case 2: {
@@ -107,9 +109,11 @@ SphereCase random_case(std::uint64_t index) {
     s.radius = std::pow(10.0, between(random, -4.0, 0.5));
     const Touch touch = random_touch(random, s.triangle);
     const bool grazes = whole_between(random, 0, 2) == 0;
-    const double offset = grazes ? std::pow(10.0, between(random, -18.0, -2.0)) * between(random, -1.0, 1.0) : 0.0;
+    const double size = grazes ? std::pow(10.0, between(random, -18.0, -2.0)) : 0.0;
+    const double offset = grazes ? size * between(random, -1.0, 1.0) : 0.0;
     const Vec3 target = touch.point + (s.radius * (1.0 + offset)) * touch.direction;
-    Vec3 v = std::pow(10.0, between(random, -2.0, 2.0)) * random.unit_vector();
+    const Vec3 heading = random.unit_vector();
+    Vec3 v = std::pow(10.0, between(random, -2.0, 2.0)) * heading;
     if (grazes) v -= dot(v, touch.direction) * touch.direction;
     const double time = std::pow(10.0, between(random, -3.0, 0.0));
     const double duration = whole_between(random, 0, 4) == 0 ? time : between(random, 1.0, 2.0) * time;
@@ -124,7 +128,8 @@ SphereCase random_case(std::uint64_t index) {
         s.path = hermite_path(start, v + 0.3 * length(v) * random_point(random), end, v, duration);
     }
     if (whole_between(random, 0, 3) == 0) {
-        const Vec3 far = std::pow(10.0, between(random, 0.0, 6.0)) * random_point(random);
+        const Vec3 direction = random_point(random);
+        const Vec3 far = std::pow(10.0, between(random, 0.0, 6.0)) * direction;
         for (Vec3& corner : s.triangle) corner += far;
         s.path.c[0] += far;
         s.path.end += far;

@@ -154,7 +154,10 @@ std::optional<RayHit> CollisionQueries::first_hit(const Vec3& origin, const Vec3
     const std::optional<Contact> contact = find_first_contact(geometry, {path, 0.0}, scratch).contact;
     if (!contact) return std::nullopt;
     const double distance = contact->time * longest;
-    return RayHit{distance, start + distance * along, contact->first().normal, world.name_of(contact->first().surface)};
+    // From very far away a shape's own rounding decides which side its normal is seen from.
+    const ContactSurface& hit = contact->first();
+    const Vec3 normal = dot(hit.normal, along) > 0.0 ? -hit.normal : hit.normal;
+    return RayHit{distance, start + distance * along, normal, world.name_of(hit.surface)};
 }
 
 std::optional<ClosestPoint> CollisionQueries::closest_point(const Vec3& point, double within) const {

@@ -39,11 +39,16 @@ class CollisionQueries {
 public:
     /// Throws InputError that names the collider and the value when one cannot be.
     explicit CollisionQueries(std::vector<ColliderDescription> colliders);
+    // Moves are copies, so that there is none that cannot be asked.
+    CollisionQueries(const CollisionQueries&) = default;
+    CollisionQueries& operator=(const CollisionQueries&) = default;
+    ~CollisionQueries() = default;
 
     /// The first surface on the ray from `origin` along `direction` (of any length above 0), at most most_distance
     /// (m, >= 0) away; of surfaces that are hit at the same distance the first under (collider, triangle). Which
     /// triangles and planes the ray hits is decided exactly, for the straight segment from the origin to the ray's
-    /// end, rounded; the distance has an error of a few ulp of the segment's length. A ray that begins on a surface
+    /// end, rounded; the distance has an error of a few ulp of the segment's length. Balls and cylinders are found from
+    /// up to some 1e12 times their size away. A ray that begins on a surface
     /// hits it at distance 0. Surfaces are hit from both sides. Hits with coordinates beyond kLargestCoordinate are not
     /// found. Throws InputError for arguments that are not finite or out of range.
     [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,

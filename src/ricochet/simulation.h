@@ -119,9 +119,11 @@ public:
     /// Writes everything that the steps so far have left behind, so that another simulation of the same setup can go on
     /// from here to the same bits. The bytes are those of this version of the library and this kind of machine.
     void save(const ByteSink& sink) const;
-    /// Takes such a state over. To be called before the first step() of a simulation made from the same setup (threads
-    /// and options.verify may differ). Throws InputError when the bytes are not such a state or belong to another
-    /// setup; the simulation cannot be used then. What options.verify found before it is not known, and particles are
+    /// Takes such a state over, in a simulation made from the same setup (threads, options.duration and options.verify
+    /// may differ); one with emitters must not have made a step. Throws InputError when the bytes are damaged or not
+    /// such a state, or belong to other colliders, materials, options or bounds, or to other numbers of emitters,
+    /// springs or attributes (forces and the settings of emitters and springs are not compared); the simulation cannot
+    /// be used then. What options.verify found before it is not known, and particles are
     /// watched from where they are.
     void restore(const ByteSource& source);
 

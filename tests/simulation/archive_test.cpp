@@ -1,7 +1,9 @@
 // A simulation that is saved, restored in another one and run on gives the same bits as one that was never stopped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -143,6 +145,48 @@ TEST(SavedSimulation, IsRefusedByAnotherSetupAndWhenItIsCutShort) {
     bytes.pop_back();
     Simulation same(busy_setup());
     EXPECT_THROW(restore(same, bytes), InputError);
+}
+
+TEST(SavedSimulation, IsRefusedByOtherOptionsMaterialsAndBounds) {
+    Simulation whole(busy_setup());
+    run_to(whole, 20);
+    const std::vector<std::byte> bytes = saved(whole);
+    const std::vector<std::function<void(SimulationSetup&)>> changes{
+        [](SimulationSetup& s) { s.options.seed += 1; },
+        [](SimulationSetup& s) { s.options.integrator = IntegratorKind::midpoint; },
+        [](SimulationSetup& s) { s.options.bounce_budget += 1; },
+        [](SimulationSetup& s) { s.materials[0].restitution *= 0.5; },
+        [](SimulationSetup& s) {
+            s.bounds = Box3{{-1e3, -1e3, -1e3}, {1e3, 1e3, 1234.0}};
+        }};
+    for (const auto& change : changes) {
+        SimulationSetup other = busy_setup();
+        change(other);
+        Simulation simulation(std::move(other));
+        EXPECT_THROW(restore(simulation, bytes), InputError);
+    }
+}
+
+TEST(SavedSimulation, IsRefusedWhereAnyByteIsDamaged) {
+    Simulation whole(busy_setup());
+    run_to(whole, 3);
+    std::vector<std::byte> bytes = saved(whole);
+    const std::size_t every = std::max<std::size_t>(1, bytes.size() / 200);
+    for (std::size_t k = 0; k < bytes.size(); k += every) {
+        bytes[k] ^= std::byte{0x81};
+        Simulation same(busy_setup());
+        EXPECT_THROW(restore(same, bytes), InputError) << "byte " << k << " of " << bytes.size();
+        bytes[k] ^= std::byte{0x81};
+    }
+    Simulation same(busy_setup());
+    restore(same, bytes);
+    EXPECT_EQ(same.state_hash(), whole.state_hash());
+}
+
+TEST(SavedSimulation, IsNotTakenOverByEmittersThatHaveEmitted) {
+    Simulation whole(busy_setup());
+    run_to(whole, 3);
+    EXPECT_THROW(restore(whole, saved(whole)), InputError);
 }
 
 TEST(SavedSimulation, GoesOnWhereAnErrorInsideAStepHasEndedTheRun) {

@@ -242,5 +242,27 @@ TEST(OnContact, WhatItThrowsComesOutOfAStepThatIsDone) {
     EXPECT_EQ(simulation.state_hash(), plain.state_hash());
 }
 
+TEST(ContactCallback, MayPutAnotherInItsPlaceOrEndItself) {
+    SimulationSetup setup;
+    setup.options.time_step = 0.01;
+    setup.options.duration = 2.0;
+    setup.forces.push_back(make_gravity({0, 0, -9.81}));
+    setup.materials.push_back({"wall", 0.9});
+    setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
+    setup.particles.emplace_back().position = {0, 0, 0.2};
+    Simulation simulation(std::move(setup));
+    std::vector<std::string> calls;
+    const std::string long_enough_to_be_elsewhere(100, 'x');
+    simulation.on_contact([&, long_enough_to_be_elsewhere](std::span<const ContactRecord> records) {
+        simulation.on_contact([&](std::span<const ContactRecord>) {
+            calls.emplace_back("second");
+            simulation.on_contact({});
+        });
+        calls.emplace_back("first " + std::to_string(records.size()) + long_enough_to_be_elsewhere.substr(99));
+    });
+    simulation.advance(simulation.step_count());
+    EXPECT_EQ(calls, (std::vector<std::string>{"first 1x", "second"}));
+}
+
 }  // namespace
 }  // namespace ricochet

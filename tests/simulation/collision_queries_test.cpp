@@ -182,6 +182,27 @@ TEST(CollisionQueries, CoverPlanesAndShapesToo) {
     EXPECT_EQ(queries.closest_point({0, 0, 1.5})->surface.collider, 1U);
 }
 
+TEST(CollisionQueries, FaceTheRayAlsoFromVeryFarAway) {
+    const CollisionQueries queries({{"ball", BallShape{1.0, {}}, 0}});
+    for (const double away : {10.0, 1e6, 1e9, 1e12}) {
+        const auto hit = queries.first_hit({away, 0, 0}, {-1, 0, 0});
+        ASSERT_TRUE(hit) << away;
+        EXPECT_NEAR(hit->distance, away - 1.0, 0x1p-50 * away);
+        EXPECT_LT(hit->normal.x * -1.0, 0.0) << away;
+    }
+    const auto farther = queries.first_hit({1e18, 0, 0}, {-1, 0, 0});
+    if (farther) {
+        EXPECT_GT(farther->normal.x, 0.0);
+    }
+}
+
+TEST(CollisionQueries, CanStillBeAskedAfterAMove) {
+    CollisionQueries queries({{"ball", BallShape{1.0, {}}, 0}});
+    const CollisionQueries moved = std::move(queries);
+    EXPECT_TRUE(moved.is_inside({}));
+    EXPECT_TRUE(queries.is_inside({}));  // NOLINT(bugprone-use-after-move,hicpp-invalid-access-moved)
+}
+
 TEST(CollisionQueries, OfNothingFindNothing) {
     const CollisionQueries queries(std::vector<ColliderDescription>{});
     EXPECT_FALSE(queries.first_hit({0, 0, 0}, {1, 0, 0}).has_value());

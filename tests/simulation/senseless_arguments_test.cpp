@@ -92,6 +92,9 @@ TEST(SenselessArguments, OptionsAreRefused) {
                           [](auto& s, double x) { s.options.resting_speed = x; });
     expect_refused({"bounce_budget", [](auto& s) { s.options.bounce_budget = 0; }});
     expect_refused({"most_particles", [](auto& s) { s.options.most_particles = 1ULL << 40U; }});
+    expect_refused({"most_particles", [](auto& s) { s.options.most_particles = 0; }});
+    expect_refused({"walls", [](auto& s) { s.options.walls = static_cast<WallRule>(9); }});
+    expect_refused({"tolerance", [](auto& s) { s.options.integrator.tolerance.position = 1e-300; }});
     expect_refused({"response", [](auto& s) { s.options.response = static_cast<ResponseKind>(99); }});
     expect_refused({"integrator", [](auto& s) { s.options.integrator.kind = static_cast<IntegratorKind>(99); }});
     expect_values_refused("tolerance.position", no_time,
@@ -203,6 +206,16 @@ TEST(SenselessArguments, ForcesSpringsAndEmittersAreRefused) {
                     }});
     expect_values_refused("births", {1e200, 1e15}, [](auto& s, double x) { s.emitters[0].rate.mean = x; });
     expect_values_refused("source", {kNan, kInfinity}, [](auto& s, double x) { s.emitters[0].rate.mean = x; });
+    expect_values_refused("source", {-1.0}, [](auto& s, double x) { s.emitters[0].rate.mean = x; });
+    expect_values_refused("source", {1e-200, 1e200, kNan}, [](auto& s, double x) {
+        s.emitters[0].direction = {x, 0, 0};
+    });
+    expect_values_refused("source", {1e80, kNan}, [](auto& s, double x) { s.emitters[0].speed.mean = x; });
+    expect_values_refused("source", {1e200, 1e-200}, [](auto& s, double x) {
+        s.emitters[0].shape = DiskShape{{}, {x, 0, 0}, 1.0};
+    });
+    expect_values_refused("source", {1e80}, [](auto& s, double x) { s.emitters[0].shape = SphereShape{{}, x}; });
+    expect_refused({"burst", [](auto& s) { s.emitters[0].burst = 1ULL << 32U; }});
     expect_values_refused("source", {kNan, -1.0}, [](auto& s, double x) { s.emitters[0].mass.mean = x; });
     expect_values_refused("source", {kNan, -1.0}, [](auto& s, double x) { s.emitters[0].radius.mean = x; });
     expect_values_refused("center", {kNan, kInfinity}, [](auto& s, double x) {
@@ -237,12 +250,15 @@ TEST(SenselessArguments, FunctionsOfASimulationRefuseThem) {
     ContactRecord record;
     record.surface = 1U << 30U;
     EXPECT_THROW((void)simulation.contact_point(record), InputError);
-    EXPECT_THROW(
-        simulation.restore([](std::span<std::byte> bytes) { std::fill(bytes.begin(), bytes.end(), std::byte{7}); }),
-        InputError);
-    EXPECT_THROW(simulation.step(), RunError);
-    EXPECT_THROW((void)simulation.add_particle(Particle{}), RunError);
+    EXPECT_THROW(simulation.save({}), InputError);
+    EXPECT_THROW(simulation.restore({}), InputError);
     EXPECT_EQ(simulation.state_hash(), hash);
+    Simulation restored(sensible());
+    EXPECT_THROW(
+        restored.restore([](std::span<std::byte> bytes) { std::fill(bytes.begin(), bytes.end(), std::byte{7}); }),
+        InputError);
+    EXPECT_THROW(restored.step(), RunError);
+    EXPECT_THROW((void)restored.add_particle(Particle{}), RunError);
 }
 
 TEST(SenselessArguments, ThereIsRoomForMostParticlesOnly) {
@@ -258,6 +274,8 @@ TEST(SenselessArguments, ThereIsRoomForMostParticlesOnly) {
 
 TEST(SenselessArguments, CollisionQueriesRefuseThem) {
     EXPECT_THROW(CollisionQueries({{"ball", BallShape{-1.0, {}}, 0}}), InputError);
+    EXPECT_THROW(CollisionQueries({{"ball", BallShape{1e160, {}}, 0}}), InputError);
+    EXPECT_THROW(CollisionQueries({{"can", CylinderShape{1e160, 1.0, {}}, 0}}), InputError);
     EXPECT_THROW(CollisionQueries({{"mesh", MeshShape{}, 0}}), InputError);
     const CollisionQueries queries({{"ball", BallShape{1.0, {}}, 5}});
     for (const double bad : {kNan, kInfinity, -kInfinity, 1e80}) {

@@ -1,9 +1,11 @@
 /// \file
-/// The state hash that reports print: equal hashes mean equal bits.
+/// The state hash that reports print, and the checksum of what is saved: equal hashes mean equal bits.
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "ricochet/core/vec3.h"
 
@@ -20,6 +22,10 @@ public:
             value_ ^= (word >> (8 * byte)) & 0xffU;
             value_ *= 0x100000001b3ULL;
         }
+    }
+    /// In the order in which they are.
+    void add(std::span<const std::byte> bytes) {
+        for (const std::byte byte : bytes) value_ = (value_ ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
     }
     void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
     void add(const Vec3& v) {

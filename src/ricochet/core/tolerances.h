@@ -245,4 +245,14 @@ inline constexpr double kImpulseUnit = 0x1p-100;
     return kSphereTolerance * (radius + largest_coordinate);
 }
 
+/// Smallest tolerance, m and m/s, of the integrator that chooses its own steps. Reason: what it asks for is kept by
+/// ever shorter sub-steps, whose number grows with its fifth root. Smaller: a step that never ends. Larger: systems of
+/// 1e-15 m and less could not be followed closely.
+inline constexpr double kSmallestTolerance = 1e-30;
+
+/// Error of an adaptive sub-step, relative to the largest component of the state, that is as good as none: a quarter of
+/// its rounding. Smaller: sub-steps shorten without end where the tolerance asks for more than doubles hold. Larger:
+/// tolerances that could be kept are not.
+inline constexpr double kStateRounding = 0x1p-54;
+
 }  // namespace ricochet

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "ricochet/core/tolerances.h"
+
 namespace ricochet {
 namespace {
 
@@ -50,6 +52,11 @@ StepErrors estimated_errors(const std::array<Vec3, kStages>& v, const std::array
     }
     return {length(position_error), length(velocity_error),
             h * h / 384.0 * length(second_difference(a[0], a[2], a[kStages - 1], kC[2]))};
+}
+
+ErrorTolerance attainable(const ErrorTolerance& tolerance, const Vec3& position, const Vec3& velocity) {
+    return {std::max(tolerance.position, kStateRounding * max_abs(position)),
+            std::max(tolerance.velocity, kStateRounding * max_abs(velocity))};
 }
 
 double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance) {

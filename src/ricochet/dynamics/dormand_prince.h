@@ -38,6 +38,9 @@ struct StepErrors {
 /// From the velocities and accelerations of all stages of one particle.
 [[nodiscard]] StepErrors estimated_errors(const std::array<Vec3, kDormandPrinceStages>& v,
                                           const std::array<Vec3, kDormandPrinceStages>& a, double h);
+/// The tolerance, but no less than the rounding of the state: what is added to it below that is lost.
+[[nodiscard]] ErrorTolerance attainable(const ErrorTolerance& tolerance, const Vec3& position, const Vec3& velocity);
+
 /// The largest of them, each as a part of its tolerance.
 [[nodiscard]] double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance);
 

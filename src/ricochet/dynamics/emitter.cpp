@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 
@@ -58,18 +59,23 @@ void check(const EmitterDescription& emitter, const ParentRule& rule) {
 }
 
 void check(const EmitterDescription& emitter) {
-    require(std::isfinite(emitter.rate.mean) && is_spread(emitter.rate), emitter, "the rate must be finite");
+    require(std::isfinite(emitter.rate.mean) && emitter.rate.mean >= 0.0, emitter, "the rate must be finite and >= 0");
+    require(is_spread(emitter.rate), emitter, "the rate's spread must be finite and >= 0");
     require(std::isfinite(emitter.start) && emitter.start >= 0.0, emitter, "start must be >= 0 s");
     require(!std::isnan(emitter.stop), emitter, "stop must be a time");
-    require(is_finite(emitter.direction), emitter, "the direction must be finite");
+    const bool has_direction = length(emitter.direction) > 0.0 && std::isfinite(length(emitter.direction));
+    require(emitter.direction == Vec3{} || has_direction, emitter,
+            "the direction must be of finite length above 0, or zero");
     require(emitter.cone_degrees >= 0.0 && emitter.cone_degrees <= 180.0, emitter, "the cone must be 0 to 180 degrees");
-    require(std::isfinite(emitter.speed.mean) && is_spread(emitter.speed), emitter, "the speed must be finite");
+    require(std::fabs(emitter.speed.mean) + emitter.speed.spread <= kLargestCoordinate && is_spread(emitter.speed),
+            emitter, "the speed must be at most 1e75 m/s");
     require(is_finite(emitter.velocity), emitter, "the velocity must be finite");
     require(std::isfinite(emitter.mass.mean) && is_spread(emitter.mass) && emitter.mass.mean > emitter.mass.spread,
             emitter, "every mass must be > 0 kg");
-    require(
-        std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) && emitter.radius.mean >= emitter.radius.spread,
-        emitter, "every radius must be >= 0 m");
+    require(std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) &&
+                emitter.radius.mean >= emitter.radius.spread &&
+                emitter.radius.mean + emitter.radius.spread <= kLargestCoordinate,
+            emitter, "every radius must be >= 0 and at most 1e75 m");
     require(emitter.frames == nullptr || emitter.frame < emitter.frames->size(), emitter, "there is no such frame");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
     for (const AttributeSpread& attribute : emitter.attributes) {

@@ -19,29 +19,42 @@ void require(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
-bool is_length(double x) { return std::isfinite(x) && x > 0.0; }
+bool is_length(double x) { return x > 0.0 && x <= kLargestCoordinate; }
+
+/// Can be made a unit vector.
+bool is_direction(const Vec3& v) { return length(v) > 0.0 && std::isfinite(length(v)); }
+
+void require_mesh(const TriangleMesh* mesh) {
+    require(mesh != nullptr, "the mesh is missing");
+    for (const Triangle& triangle : mesh->triangles) {
+        for (const std::uint32_t corner : triangle) {
+            require(corner < mesh->vertices.size(), "a triangle of the mesh has a corner past the end of its vertices");
+        }
+    }
+}
 
 struct CheckShape {
     void operator()(const PointShape& /*point*/) const {}
     void operator()(const DiskShape& disk) const {
-        require(is_finite(disk.normal) && length(disk.normal) > 0.0, "the disk's normal must not be zero");
-        require(is_length(disk.radius), "the disk's radius must be > 0");
+        require(is_direction(disk.normal), "the disk's normal must be of finite length above 0");
+        require(is_length(disk.radius), "the disk's radius must be > 0 and at most 1e75 m");
     }
     void operator()(const BoxShape& box) const {
-        const bool good = is_finite(box.size) && std::min({box.size.x, box.size.y, box.size.z}) >= 0.0;
-        require(good, "the box's size must be >= 0");
+        const bool good =
+            max_abs(box.size) <= kLargestCoordinate && std::min({box.size.x, box.size.y, box.size.z}) >= 0.0;
+        require(good, "the box's size must be >= 0 and at most 1e75 m");
     }
     void operator()(const SphereShape& sphere) const {
-        require(is_length(sphere.radius), "the sphere's radius must be > 0");
+        require(is_length(sphere.radius), "the sphere's radius must be > 0 and at most 1e75 m");
     }
-    void operator()(const MeshSurfaceShape& surface) const { require(surface.mesh != nullptr, "the mesh is missing"); }
+    void operator()(const MeshSurfaceShape& surface) const { require_mesh(surface.mesh.get()); }
     void operator()(const ConeShape& cone) const {
-        require(is_finite(cone.axis) && length(cone.axis) > 0.0, "the cone's axis must not be zero");
+        require(is_direction(cone.axis), "the cone's axis must be of finite length above 0");
         require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0,
                 "the cone's angle must be 0 to below 90 degrees");
-        require(is_length(cone.height), "the cone's height must be > 0");
+        require(is_length(cone.height), "the cone's height must be > 0 and at most 1e75 m");
     }
-    void operator()(const MeshVolumeShape& volume) const { require(volume.mesh != nullptr, "the mesh is missing"); }
+    void operator()(const MeshVolumeShape& volume) const { require_mesh(volume.mesh.get()); }
 };
 
 // Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate triangles,

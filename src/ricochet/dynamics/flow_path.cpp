@@ -36,6 +36,7 @@ FlowPath rk4_path(const FlowField& flow, const Vec3& x, double time, double h) {
 // Halving, not a formula of the error: its powers would differ between systems in their last bits.
 FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, double time, double duration,
                        double first) {
+    tolerance = attainable({tolerance, 0.0}, x, Vec3{}).position;
     double h = std::min(first > 0.0 ? first : duration, duration);
     double next = h;
     EmbeddedFlowStep step;

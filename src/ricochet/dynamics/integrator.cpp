@@ -98,7 +98,8 @@ Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, c
     EmbeddedStep step;
     for (int halvings = 0;; ++halvings, h *= 0.5) {
         step = dormand_prince_step(forces, state, h);
-        const double error = relative_error(step.errors, integrator.tolerance);
+        const double error =
+            relative_error(step.errors, attainable(integrator.tolerance, state.position, state.velocity));
         next = error < kErrorToDouble ? 2.0 * h : h;
         if (error <= 1.0 || halvings == kMostHalvings) break;
     }

@@ -105,7 +105,9 @@ TriedStep dormand_prince_system(const ParticleSystem& system, double h, const Er
             own_v[s] = v[s][i];
             own_a[s] = a[s][i];
         }
-        tried.error = std::max(tried.error, relative_error(estimated_errors(own_v, own_a, h), tolerance));
+        tried.error =
+            std::max(tried.error, relative_error(estimated_errors(own_v, own_a, h),
+                                                 attainable(tolerance, system.positions()[i], system.velocities()[i])));
     }
     tried.step.velocities = std::move(v.back());
     tried.step.start_accelerations = std::move(a.front());

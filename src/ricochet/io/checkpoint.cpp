@@ -9,24 +9,13 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
 
 namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last digit changes with the layout.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b32ULL;
-
-/// FNV-1a over the bytes, to notice damage (not malice).
-class Checksum {
-public:
-    void add(std::span<const std::byte> bytes) {
-        for (const std::byte byte : bytes) value_ = (value_ ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
-    }
-    [[nodiscard]] std::uint64_t value() const { return value_; }
-
-private:
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b33ULL;
 
 template <class Archive>
 void archive_series(Archive& a, std::vector<PvdEntry>& series) {
@@ -64,9 +53,9 @@ struct Close {
 
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation) {
     AtomicFile target(file);
-    Checksum checksum;
+    StateHash head;
     const ByteSink sink = [&](std::span<const std::byte> bytes) {
-        checksum.add(bytes);
+        head.add(bytes);
         target.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     };
     BinaryWriter writer(sink);
@@ -74,8 +63,8 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
     writer(checkpoint.scene);
     Checkpoint copy = checkpoint;
     archive_checkpoint(writer, copy);
-    simulation.save(sink);
-    writer(checksum.value());
+    writer(head.value());
+    simulation.save(sink);  // with a checksum of its own
     target.commit();
 }
 
@@ -87,12 +76,12 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
                         "its first checkpoint (output.checkpoint_every); run it without --resume",
                         file.string()));
     }
-    Checksum checksum;
+    StateHash head;
     const ByteSource source = [&](std::span<std::byte> bytes) {
         if (std::fread(bytes.data(), 1, bytes.size(), opened.get()) != bytes.size()) {
             throw InputError("the file ends too early");
         }
-        checksum.add(bytes);
+        head.add(bytes);
     };
     Checkpoint checkpoint;
     try {
@@ -103,11 +92,11 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
         reader(checkpoint.scene);
         if (checkpoint.scene != scene) throw InputError("the scene is not the one that was interrupted");
         archive_checkpoint(reader, checkpoint);
-        simulation.restore(source);
-        const std::uint64_t expected = checksum.value();
+        const std::uint64_t expected = head.value();
         std::uint64_t found = 0;
         reader(found);
         if (found != expected) throw InputError("the file is damaged (its checksum is wrong)");
+        simulation.restore(source);
     } catch (const InputError& error) {
         refuse(file, error.what());
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/response/advect.h"
 #include "ricochet/response/exact.h"
@@ -31,6 +32,12 @@ void require_positive(double value, std::string_view what, std::string_view unit
     throw InputError(fmt::format("{}: found {}, expected a finite number above 0 ({})", what, value, unit));
 }
 
+void require_tolerance(double value, std::string_view what, std::string_view unit) {
+    if (value >= kSmallestTolerance && std::isfinite(value)) return;
+    throw InputError(fmt::format("{}: found {}, expected a finite number of at least {:g} ({})", what, value,
+                                 kSmallestTolerance, unit));
+}
+
 void check(const ResponseSettings& settings) {
     require_positive(settings.time_step, "time_step", "s");
     require_positive(settings.rollback.time_tolerance, "rollback.time_tolerance", "s");
@@ -44,8 +51,8 @@ void check(const ResponseSettings& settings) {
 
 /// What steps together, or in sub-steps of its own, cannot let each particle choose its steps.
 void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
-    require_positive(settings.integrator.tolerance.position, "tolerance.position", "m");
-    require_positive(settings.integrator.tolerance.velocity, "tolerance.velocity", "m/s");
+    require_tolerance(settings.integrator.tolerance.position, "tolerance.position", "m");
+    require_tolerance(settings.integrator.tolerance.velocity, "tolerance.velocity", "m/s");
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
     const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
     const bool is_implicit = settings.integrator.kind == IntegratorKind::implicit_euler;

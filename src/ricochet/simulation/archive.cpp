@@ -1,7 +1,10 @@
 // A running simulation as bytes and back.
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <new>
 #include <type_traits>
 
 #include "ricochet/core/binary_archive.h"
@@ -13,7 +16,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f53540002ULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f53540003ULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -53,10 +56,32 @@ std::uint64_t Simulation::Impl::collider_hash() const {
     return hash.value();
 }
 
+/// The settings that results depend on; a run may be made longer.
+std::uint64_t Simulation::Impl::settings_hash() const {
+    StateHash hash;
+    const auto add = [&hash](auto... values) { (hash.add(static_cast<double>(values)), ...); };
+    add(options.integrator.kind, options.integrator.tolerance.position, options.integrator.tolerance.velocity);
+    hash.add(options.seed);
+    add(options.response, options.resting_speed, options.bounce_budget, options.rollback.time_tolerance,
+        options.rollback.global, options.project.offset, options.penalty.stiffness.value_or(0.0),
+        options.penalty.contact_steps, options.penalty.substeps, options.penalty.friction_speed, options.walls,
+        options.flow != nullptr, options.frame_rate, options.max_depth, options.most_particles);
+    for (const Material& m : materials) {
+        add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.diffuse,
+            m.wall_temperature.value_or(0.0), m.absorption);
+    }
+    if (bounds) {
+        hash.add(bounds->lower);
+        hash.add(bounds->upper);
+    }
+    return hash.value();
+}
+
 template <class Archive>
 void Simulation::Impl::archive(Archive& a) {
     expect(a, kStateFormat, "not a state that this version can read");
     expect(a, collider_hash(), "the state belongs to other colliders");
+    expect(a, settings_hash(), "the state belongs to other options, materials or bounds");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
     expect(a, static_cast<std::uint64_t>(coupled.springs().springs().size()), "the state belongs to other springs");
     expect(a, static_cast<std::uint64_t>(particles().attributes.columns().size()),
@@ -93,15 +118,42 @@ void Simulation::Impl::forget_queries() {
 }
 
 void Simulation::save(const ByteSink& sink) const {
-    BinaryWriter writer(sink);
+    if (!sink) throw InputError("save: found an empty function, expected one that takes the bytes");
+    StateHash checksum;
+    BinaryWriter writer([&](std::span<const std::byte> bytes) {
+        checksum.add(bytes);
+        sink(bytes);
+    });
     impl_->archive(writer);
+    writer(checksum.value());
+}
+
+/// Reads a whole state, or throws.
+void Simulation::Impl::read_state(const ByteSource& source) {
+    StateHash checksum;
+    BinaryReader reader([&](std::span<std::byte> bytes) {
+        source(bytes);
+        checksum.add(bytes);
+    });
+    try {
+        archive(reader);
+    } catch (const std::bad_alloc&) {
+        throw InputError("the state is damaged: it says that it is longer than the memory");
+    }
+    expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
 }
 
 void Simulation::restore(const ByteSource& source) {
-    BinaryReader reader(source);
+    if (!source) throw InputError("restore: found an empty function, expected one that gives the bytes");
+    if (!impl_->emitters.empty() && step_index() > 0) {
+        throw InputError(
+            fmt::format("restore: found a simulation with emitters that has made {} steps, expected one "
+                        "before its first step",
+                        step_index()));
+    }
     impl_->free_flights.drop_deferred();
     impl_->inside_step = true;  // until all is there
-    impl_->archive(reader);
+    impl_->read_state(source);
     impl_->forget_queries();
     for (const double radius : impl_->particles().radius) impl_->world.prepare_radius(radius);
     impl_->replay_emitters();

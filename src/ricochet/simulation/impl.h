@@ -60,7 +60,9 @@ struct Simulation::Impl {
 
     template <class Archive>
     void archive(Archive& a);
+    void read_state(const ByteSource& source);
     [[nodiscard]] std::uint64_t collider_hash() const;
+    [[nodiscard]] std::uint64_t settings_hash() const;
     void replay_emitters();
     void forget_queries();
 
@@ -87,9 +89,10 @@ struct Simulation::Impl {
     FreeFlights free_flights;
     ActiveMover mover;
     Retirement retirement;
-    ContactCallback callback;   ///< of on_contact(); may be empty
-    bool inside_step = false;   ///< a step has begun and not ended, perhaps by an error
-    bool is_reporting = false;  ///< the callback runs
+    ContactCallback callback;       ///< of on_contact(); may be empty
+    bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error
+    bool is_reporting = false;      ///< the callback runs
+    bool has_new_callback = false;  ///< on_contact() was called by the callback
 };
 
 }  // namespace ricochet

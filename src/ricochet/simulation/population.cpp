@@ -153,6 +153,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
 
 void Simulation::on_contact(ContactCallback callback) {
     impl_->require_between_steps();
+    impl_->has_new_callback = impl_->is_reporting;
     impl_->callback = std::move(callback);
     impl_->recorder.show_contacts(options().record_contacts || impl_->callback);
 }
@@ -164,14 +165,21 @@ void Simulation::Impl::require_between_steps() const {
 
 void Simulation::Impl::report_contacts() {
     if (!callback || recorder.contact_records().empty()) return;
+    // The callback may put another in its place, and must not be destroyed by that while it runs.
+    ContactCallback running = std::exchange(callback, {});
     is_reporting = true;
-    try {
-        callback(recorder.contact_records());
-    } catch (...) {
+    has_new_callback = false;
+    const auto end = [&] {
         is_reporting = false;
+        if (!has_new_callback) callback = std::move(running);
+    };
+    try {
+        running(recorder.contact_records());
+    } catch (...) {
+        end();
         throw;
     }
-    is_reporting = false;
+    end();
 }
 
 // A free flight ends before the particle's life does.

@@ -37,6 +37,11 @@ public:
             refuse(what, value, fmt::format("a finite number above 0 ({})", unit));
         }
     }
+    /// Lengths that positions are made of.
+    void require_length(double value, std::string_view what) const {
+        require_positive(value, what, "m");
+        if (value > kLargestCoordinate) refuse(what, value, fmt::format("at most {:g} m", kLargestCoordinate));
+    }
     void require_not_negative(double value, std::string_view what, std::string_view unit) const {
         if (!(value >= 0.0) || !std::isfinite(value)) {
             refuse(what, value,
@@ -83,6 +88,9 @@ void validate(const SimulationOptions& options) {
     const auto kinds = response_kinds();
     if (std::find(kinds.begin(), kinds.end(), options.response) == kinds.end()) {
         subject.refuse("response", static_cast<int>(options.response), "one of the responses");
+    }
+    if (options.walls != WallRule::slide && options.walls != WallRule::stop) {
+        subject.refuse("walls", static_cast<int>(options.walls), "slide or stop");
     }
     const auto method = static_cast<std::size_t>(options.integrator.kind);
     subject.require_index(method, integrator_names().size(), "integrator", "methods");
@@ -138,14 +146,14 @@ void validate(const ColliderShape& shape, const Subject& subject, std::size_t ma
     } else if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
         validate(*mesh, subject, materials);
     } else if (const auto* ball = std::get_if<BallShape>(&shape)) {
-        subject.require_positive(ball->radius, "radius", "m");
+        subject.require_length(ball->radius, "radius");
         validate(ball->placement, subject);
     } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
-        subject.require_positive(cylinder->radius, "radius", "m");
-        subject.require_positive(cylinder->height, "height", "m");
+        subject.require_length(cylinder->radius, "radius");
+        subject.require_length(cylinder->height, "height");
         validate(cylinder->placement, subject);
     } else if (const auto* cuboid = std::get_if<CuboidShape>(&shape)) {
-        for (int axis = 0; axis < 3; ++axis) subject.require_positive(cuboid->size[axis], "size", "m");
+        for (int axis = 0; axis < 3; ++axis) subject.require_length(cuboid->size[axis], "size");
         validate(cuboid->placement, subject);
     }
 }
@@ -177,6 +185,9 @@ void validate_emitters(const SimulationSetup& setup) {
         const EmitterDescription& emitter = setup.emitters[k];
         const Subject subject("emitter", k, emitter.name);
         validate(emitter.shape, subject);
+        if (emitter.burst > std::numeric_limits<std::uint32_t>::max()) {
+            subject.refuse("burst", emitter.burst, "a number below 2^32");
+        }
         if (emitter.parent) {
             subject.require_index(emitter.parent->emitter, setup.emitters.size(), "parent", "emitters");
         }
@@ -255,6 +266,10 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.materials.size(); ++k) validate(setup.materials[k], k);
     for (std::size_t k = 0; k < setup.colliders.size(); ++k) validate(setup.colliders[k], k, setup.materials.size());
     for (std::size_t k = 0; k < setup.particles.size(); ++k) validate(setup.particles[k], k, setup.attributes.size());
+    if (setup.particles.size() > setup.options.most_particles) {
+        Subject("options").refuse("most_particles", setup.options.most_particles,
+                                  fmt::format("at least the {} particles that are there", setup.particles.size()));
+    }
     validate_emitters(setup);
     validate_springs(setup);
     if (setup.bounds) validate(*setup.bounds);

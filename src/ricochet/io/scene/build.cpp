@@ -22,12 +22,14 @@ struct OutputKeys : OutputOptions {
     bool contacts = false;
 };
 
+constexpr Range kTolerance{.lower = kSmallestTolerance};
+
 const ObjectSpec& tolerance_spec() {
     using T = ErrorTolerance;
     static const ObjectSpec spec =
         object<T>("tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
-                  {{"position", &T::position, kPositive, "m", "Of the position, also between a sub-step's ends."},
-                   {"velocity", &T::velocity, kPositive, "m/s", "Of the velocity."}});
+                  {{"position", &T::position, kTolerance, "m", "Of the position, also between a sub-step's ends."},
+                   {"velocity", &T::velocity, kTolerance, "m/s", "Of the velocity."}});
     return spec;
 }
 

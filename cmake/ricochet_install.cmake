@@ -32,11 +32,15 @@ file(RELATIVE_PATH ricochet_prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/ricochet.pc.in ricochet.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/ricochet.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(FILES LICENSE README.md THIRD_PARTY.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md ARCHITECTURE.md CHANGELOG.md CITATION.cff CONTRIBUTING.md SECURITY.md THIRD_PARTY.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN scene.schema.json EXCLUDE)
 set(ricochet_data_dir ${CMAKE_INSTALL_DATADIR}/ricochet)
 install(FILES docs/scene.schema.json DESTINATION ${ricochet_data_dir})
 install(DIRECTORY scenes DESTINATION ${ricochet_data_dir})
+# What documents link to lies beside them.
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
 # Scenes name meshes beside their folder.
 install(DIRECTORY meshes DESTINATION ${ricochet_data_dir} FILES_MATCHING PATTERN *.obj PATTERN README.md PATTERN generators EXCLUDE)
 

@@ -49,8 +49,8 @@ public:
     /// triangles and planes the ray hits is decided exactly, for the straight segment from the origin to the ray's
     /// end, rounded; the distance has an error of a few ulp of the segment's length. Balls and cylinders are found from
     /// up to some 1e12 times their size away. A ray that begins on a surface
-    /// hits it at distance 0. Surfaces are hit from both sides. Hits with coordinates beyond kLargestCoordinate are not
-    /// found. Throws InputError for arguments that are not finite or out of range.
+    /// hits it at distance 0. Surfaces are hit from both sides. Hits with coordinates beyond 1e75 are not found. Throws
+    /// InputError for arguments that are not finite or out of range.
     [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
                                                   double most_distance = std::numeric_limits<double>::infinity()) const;
 

@@ -1,7 +1,5 @@
 #include "ricochet/simulation.h"
 
-#include <fmt/format.h>
-
 #include <atomic>
 #include <cmath>
 #include <utility>
@@ -14,35 +12,31 @@
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
-namespace {
-
-void require_below(std::size_t index, std::size_t count, const char* what) {
-    if (index >= count) throw InputError(fmt::format("{} {}: there are {}, numbered from 0", what, index, count));
-}
-
-}  // namespace
-
 Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
-bool Simulation::finished() const { return impl_->recorder.statistics().steps >= impl_->clock.steps(); }
-double Simulation::time() const { return impl_->clock.time_at(impl_->recorder.statistics().steps); }
-std::uint64_t Simulation::step_index() const { return impl_->recorder.statistics().steps; }
-std::uint64_t Simulation::step_count() const { return impl_->clock.steps(); }
+Simulation::Impl& Simulation::impl() const {
+    if (!impl_) throw RunError("this simulation has been moved from; use the one that it was moved to");
+    return *impl_;
+}
+bool Simulation::finished() const { return impl().recorder.statistics().steps >= impl().clock.steps(); }
+double Simulation::time() const { return impl().clock.time_at(impl().recorder.statistics().steps); }
+std::uint64_t Simulation::step_index() const { return impl().recorder.statistics().steps; }
+std::uint64_t Simulation::step_count() const { return impl().clock.steps(); }
 CollisionQueries Simulation::queries_of(std::shared_ptr<const CollisionWorld> world) {
     return CollisionQueries(std::move(world));
 }
-const CollisionQueries& Simulation::collisions() const { return impl_->queries; }
-const SimulationOptions& Simulation::options() const { return impl_->options; }
-const Particles& Simulation::particles() const { return impl_->particles(); }
+const CollisionQueries& Simulation::collisions() const { return impl().queries; }
+const SimulationOptions& Simulation::options() const { return impl().options; }
+const Particles& Simulation::particles() const { return impl().particles(); }
 AttributeTable Simulation::shown_attributes() const {
-    const Particles& particles = impl_->particles();
+    const Particles& particles = impl().particles();
     AttributeTable shown = particles.attributes;
     if (!particles.keeps_origin || shown.empty()) return shown;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (particles.origin[i].emitter == kNoEmitter) continue;
-        const auto& curves = impl_->emitters[particles.origin[i].emitter].description().curves;
+        const auto& curves = impl().emitters[particles.origin[i].emitter].description().curves;
         if (curves.empty()) continue;
         for (std::size_t k = 0; k < shown.columns().size(); ++k) {
             const double age = time() - particles.birth_time[i];
@@ -52,58 +46,58 @@ AttributeTable Simulation::shown_attributes() const {
     }
     return shown;
 }
-const std::vector<SpringFace>& Simulation::spring_faces() const { return impl_->spring_faces; }
-const SimulationStatistics& Simulation::statistics() const { return impl_->recorder.statistics(); }
-const std::vector<ColliderDescription>& Simulation::colliders() const { return impl_->world.colliders(); }
-const SpringNetwork& Simulation::springs() const { return impl_->coupled.springs(); }
+const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
+const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }
+const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().world.colliders(); }
+const SpringNetwork& Simulation::springs() const { return impl().coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
-    require_below(i, impl_->world.colliders().size(), "collider");
-    const ColliderShape& shape = impl_->world.colliders()[i].shape;
+    require_index(i, impl().world.colliders().size(), "collider");
+    const ColliderShape& shape = impl().world.colliders()[i].shape;
     if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
         return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
     }
-    return impl_->world.mesh_of(i);
+    return impl().world.mesh_of(i);
 }
-std::size_t Simulation::triangle_count() const { return impl_->world.triangles().size(); }
-std::size_t Simulation::degenerate_triangles() const { return impl_->world.degenerate_triangles(); }
+std::size_t Simulation::triangle_count() const { return impl().world.triangles().size(); }
+std::size_t Simulation::degenerate_triangles() const { return impl().world.degenerate_triangles(); }
 
-const std::vector<ContactRecord>& Simulation::contact_records() const { return impl_->recorder.contact_records(); }
+const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
 SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
-    require_below(record.surface, impl_->world.surface_count(), "surface");
-    return impl_->world.closest_point_on(record.surface, record.position);
+    require_index(record.surface, impl().world.surface_count(), "surface");
+    return impl().world.closest_point_on(record.surface, record.position);
 }
 SurfaceName Simulation::surface_name(SurfaceId surface) const {
-    require_below(surface, impl_->world.surface_count(), "surface");
-    return impl_->world.name_of(surface);
+    require_index(surface, impl().world.surface_count(), "surface");
+    return impl().world.name_of(surface);
 }
 
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
-    require_below(i, impl_->world.colliders().size(), "collider");
+    require_index(i, impl().world.colliders().size(), "collider");
     TriangleTotals result;
-    if (impl_->recorder.totals().empty()) return result;
+    if (impl().recorder.totals().empty()) return result;
     // Sleepers' weight is lent to the totals: it comes out exactly as it went in.
-    impl_->add_weights_of_sleepers(1.0);
-    const std::size_t first = impl_->world.first_surface_of(i);
-    for (std::size_t k = 0; k < impl_->world.surface_count_of(i); ++k) {
-        result.hits.push_back(impl_->recorder.totals().hits(first + k));
-        result.impulse.push_back(impl_->recorder.totals().impulse(first + k));
+    impl().add_weights_of_sleepers(1.0);
+    const std::size_t first = impl().world.first_surface_of(i);
+    for (std::size_t k = 0; k < impl().world.surface_count_of(i); ++k) {
+        result.hits.push_back(impl().recorder.totals().hits(first + k));
+        result.impulse.push_back(impl().recorder.totals().impulse(first + k));
     }
-    impl_->add_weights_of_sleepers(-1.0);
+    impl().add_weights_of_sleepers(-1.0);
     return result;
 }
 
-const std::vector<Violation>& Simulation::last_violations() const { return impl_->recorder.last_violations(); }
+const std::vector<Violation>& Simulation::last_violations() const { return impl().recorder.last_violations(); }
 
 bool Simulation::is_penetrating(std::size_t i) const {
-    require_below(i, impl_->store.size(), "particle");
-    const std::span<const SideMemory> sides = impl_->store.sides_of(i);
+    require_index(i, impl().store.size(), "particle");
+    const std::span<const SideMemory> sides = impl().store.sides_of(i);
     return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
 }
 
-const std::vector<std::string>& Simulation::warnings() const { return impl_->warnings; }
+const std::vector<std::string>& Simulation::warnings() const { return impl().warnings; }
 
-bool Simulation::has_spheres() const { return impl_->has_spheres; }
+bool Simulation::has_spheres() const { return impl().has_spheres; }
 
 // An impulse too large for the totals is counted when the weight is added for good.
 void Simulation::Impl::add_weights_of_sleepers(double sign) {
@@ -116,16 +110,16 @@ bool Simulation::Impl::has_energy(std::size_t i) const {
     const Particles& p = particles();
     return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
 }
-const std::vector<Violation>& Simulation::violations() const { return impl_->recorder.violations(); }
+const std::vector<Violation>& Simulation::violations() const { return impl().recorder.violations(); }
 
 double Simulation::kinetic_energy() const {
-    const Particles& particles = impl_->particles();
-    const std::vector<std::uint32_t> order = impl_->particles().order_by_id();
+    const Particles& particles = impl().particles();
+    const std::vector<std::uint32_t> order = impl().particles().order_by_id();
     return ordered_sum(order.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = order[k];
-            if (!impl_->has_energy(i)) continue;
+            if (!impl().has_energy(i)) continue;
             const double r = particles.radius[i];
             const double turning = 0.4 * r * r * length_squared(particles.spin[i]);  // solid sphere, 2/5 m r^2
             sum += 0.5 * particles.mass[i] * (length_squared(particles.velocity[i]) + turning);
@@ -135,29 +129,29 @@ double Simulation::kinetic_energy() const {
 }
 
 std::optional<double> Simulation::potential_energy() const {
-    const std::vector<std::uint32_t> order = impl_->particles().order_by_id();
+    const std::vector<std::uint32_t> order = impl().particles().order_by_id();
     std::atomic<bool> defined{true};
     const double now = time();
     const double sum = ordered_sum(order.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
-            if (!impl_->has_energy(order[k])) continue;
-            const auto energy = impl_->forces.potential_energy(impl_->store.force_input(order[k], now));
+            if (!impl().has_energy(order[k])) continue;
+            const auto energy = impl().forces.potential_energy(impl().store.force_input(order[k], now));
             if (!energy) defined = false;
             partial += energy.value_or(0.0);
         }
         return partial;
     });
-    const double stored = impl_->coupled.springs().potential_energy(particles().position);
+    const double stored = impl().coupled.springs().potential_energy(particles().position);
     return defined ? std::optional(sum + stored) : std::nullopt;
 }
 
 std::uint64_t Simulation::state_hash() const {
     StateHash hash;
-    for (const std::uint32_t i : impl_->particles().order_by_id()) {
-        hash.add(impl_->particles().id[i]);
-        hash.add(impl_->particles().position[i]);
-        hash.add(impl_->particles().velocity[i]);
+    for (const std::uint32_t i : impl().particles().order_by_id()) {
+        hash.add(impl().particles().id[i]);
+        hash.add(impl().particles().position[i]);
+        hash.add(impl().particles().velocity[i]);
     }
     return hash.value();
 }

@@ -78,7 +78,7 @@ struct SimulationStatistics {
     std::uint64_t springs_broken = 0;    ///< stretched beyond their limit
     std::uint64_t springs_lost = 0;      ///< removed because a particle at an end was gone
     std::uint64_t unsolved_steps = 0;    ///< steps whose implicit equations were not solved to the tolerance
-    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond kLargestCoordinate
+    std::uint64_t frozen = 0;            ///< particles stopped because their state was not finite or beyond 1e75
 };
 
 /// Per-triangle totals of one mesh collider, since the start.
@@ -92,7 +92,8 @@ class CollisionWorld;
 /// Is given the contact records of a step.
 using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
-/// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count.
+/// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count. One that has
+/// been moved from can be assigned to and destroyed; everything else throws RunError.
 class Simulation {
 public:
     /// Builds the colliders. Throws InputError when the setup cannot work (degenerate placement, extent too large,
@@ -117,7 +118,8 @@ public:
     [[nodiscard]] std::uint64_t step_count() const;  ///< steps in all
 
     /// Writes everything that the steps so far have left behind, so that another simulation of the same setup can go on
-    /// from here to the same bits. The bytes are those of this version of the library and this kind of machine.
+    /// from here to the same bits. The bytes are those of this version of the library and this kind of machine. Throws
+    /// what the sink throws, and RunError after a step that has ended with an error.
     void save(const ByteSink& sink) const;
     /// Takes such a state over, in a simulation made from the same setup (threads, options.duration and options.verify
     /// may differ); one with emitters must not have made a step. Throws InputError when the bytes are damaged or not
@@ -200,11 +202,12 @@ public:
     /// Energies leave frozen particles out: what is known of them is where they were stopped, not how they would move.
     [[nodiscard]] double kinetic_energy() const;                   ///< J
     [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential
-    /// StateHash over id, position and velocity in id order.
+    /// A hash (FNV-1a) over id, position and velocity in id order: the same for the same bits.
     [[nodiscard]] std::uint64_t state_hash() const;
 
 private:
     struct Impl;
+    [[nodiscard]] Impl& impl() const;
     [[nodiscard]] static CollisionQueries queries_of(std::shared_ptr<const CollisionWorld> world);
     std::unique_ptr<Impl> impl_;
 };

@@ -16,7 +16,7 @@ inline ColliderDescription mesh_collider(TriangleMesh mesh, const Placement& pla
     return {name, MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), placement, ""}, 0};
 }
 
-inline ColliderDescription plane_collider(const Vec3& point, const Vec3& normal, const std::string& name = "plane") {
+inline ColliderDescription plane_collider(const Vec3& point, const Vec3& normal, const std::string& name = {}) {
     return {name, PlaneShape{point, normal}, 0};
 }
 

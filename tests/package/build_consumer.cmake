@@ -41,6 +41,9 @@ foreach(file IN ITEMS doc/ricochet/docs/scene-format.md ricochet/scene.schema.js
   endif()
 endforeach()
 
+run(${CMAKE_COMMAND} -D root=${prefix}/share/doc/ricochet -D installed=ON
+  -P ${source_dir}/tests/documents/check_documents.cmake)
+
 # The consumer runs a scene.
 function(check_output program)
   execute_process(COMMAND ${program} "${prefix}/share/ricochet/scenes/bouncing_ball.json"
@@ -61,6 +64,15 @@ if(position EQUAL -1)
 endif()
 run(${CMAKE_COMMAND} --build ${work_dir}/consumer)
 check_output(${work_dir}/consumer/consumer)
+execute_process(COMMAND ${work_dir}/consumer/walkthrough "${prefix}/share/ricochet/meshes/bowl.obj"
+  OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+file(READ ${source_dir}/docs/library.md library_document)
+string(STRIP "${output}" output)
+string(REPLACE "\n" "\n    " shown "    ${output}")
+string(FIND "${library_document}" "${shown}" position)
+if(position EQUAL -1)
+  message(FATAL_ERROR "the walkthrough printed '${output}', which is not what docs/library.md shows")
+endif()
 
 # By pkg-config.
 if(NOT pkg_config)

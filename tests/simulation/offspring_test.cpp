@@ -36,7 +36,6 @@ EmitterDescription parents(std::uint64_t count, const Vec3& place, const Vec3& v
 
 EmitterDescription children(BirthEvent on, bool share, const MeanSpread& count) {
     EmitterDescription emitter;
-    emitter.name = "children";
     ParentRule rule;
     rule.on = on;
     rule.share = share;

@@ -16,7 +16,7 @@ namespace ricochet {
 namespace {
 
 ColliderDescription mesh_collider(TriangleMesh mesh) {
-    return {"mesh", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, "", {}}, 0};
+    return {"", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, "", {}}, 0};
 }
 
 /// `count` particles that start in a ball about `center` and fly everywhere.

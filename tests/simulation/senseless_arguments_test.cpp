@@ -130,6 +130,7 @@ TEST(SenselessArguments, MaterialsAreRefused) {
 TEST(SenselessArguments, CollidersAreRefused) {
     expect_refused({"collider \"ball\": material: found 7", [](auto& s) { s.colliders[2].material = 7; }});
     expect_refused({"found 1", [](auto& s) { s.colliders[0].material = 1; }});
+    expect_refused({"collider \"floor\": name", [](auto& s) { s.colliders.push_back(s.colliders[0]); }});
     expect_refused({"material", [](auto& s) { s.materials.clear(); }});
     expect_refused({"null pointer", [](auto& s) { std::get<MeshShape>(s.colliders[1].shape).mesh = nullptr; }});
     expect_refused({"corner of a triangle: found 1000", [](auto& s) {
@@ -191,6 +192,11 @@ TEST(SenselessArguments, ParticlesAreRefused) {
 
 TEST(SenselessArguments, ForcesSpringsAndEmittersAreRefused) {
     expect_refused({"force 1: found a null pointer", [](auto& s) { s.forces.push_back(nullptr); }});
+    expect_refused({"springs: number: found 1", [](auto& s) {
+                        s.options.flow = make_wind({1, 0, 0});
+                        s.options.integrator.kind = IntegratorKind::rk4;
+                        s.forces.clear();
+                    }});
     expect_refused({"spring 0: end: found 3", [](auto& s) { s.springs[0].second = 3; }});
     expect_refused({"both ends", [](auto& s) { s.springs[0].second = 0; }});
     expect_refused({"spring 0", [](auto& s) { s.springs[0].stiffness = kNan; }});
@@ -221,6 +227,7 @@ TEST(SenselessArguments, ForcesSpringsAndEmittersAreRefused) {
     expect_values_refused("center", {kNan, kInfinity}, [](auto& s, double x) {
         s.emitters[0].shape = PointShape{{x, 0, 0}};
     });
+    expect_refused({"emitter \"source\": name", [](auto& s) { s.emitters.push_back(s.emitters[0]); }});
     expect_refused({"null pointer", [](auto& s) { s.emitters[0].shape = MeshSurfaceShape{}; }});
     expect_refused({"null pointer", [](auto& s) { s.emitters[0].shape = MeshVolumeShape{}; }});
     expect_refused(
@@ -270,6 +277,32 @@ TEST(SenselessArguments, ThereIsRoomForMostParticlesOnly) {
     EXPECT_THROW((void)simulation.add_particle(Particle{}), InputError);
     EXPECT_TRUE(simulation.remove_particle(0));
     (void)simulation.add_particle(Particle{});
+}
+
+TEST(SenselessArguments, AStepThatHasFailedCannotBeSaved) {
+    SimulationSetup setup = sensible();
+    setup.forces.push_back(make_force([](const ForceInput&) -> Vec3 { throw RunError("no force today"); }));
+    Simulation simulation(std::move(setup));
+    std::size_t bytes = 0;
+    const ByteSink sink = [&](std::span<const std::byte> part) { bytes += part.size(); };
+    simulation.save(sink);
+    EXPECT_GT(bytes, 0U);
+    bytes = 0;
+    EXPECT_THROW(simulation.step(), RunError);
+    EXPECT_THROW(simulation.save(sink), RunError);
+    EXPECT_EQ(bytes, 0U);
+}
+
+// A burst of four thousand million particles, of which a thousand find room.
+TEST(SenselessArguments, BirthsBeyondMostParticlesTakeNoMemory) {
+    SimulationSetup setup = sensible();
+    setup.options.most_particles = 1000;
+    setup.emitters[0].burst = 0xFFFFFFFFU;
+    setup.emitters[0].rate = {};
+    Simulation simulation(std::move(setup));
+    simulation.step();
+    EXPECT_EQ(simulation.particles().size(), 1000U);
+    EXPECT_EQ(simulation.statistics().births_refused_by_population, 0xFFFFFFFFU - 997U);
 }
 
 TEST(SenselessArguments, CollisionQueriesRefuseThem) {

@@ -2,6 +2,7 @@
 /// The kinds of failure that reach the user, and how they read.
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -25,5 +26,20 @@ class DivergedError : public RunError {
 public:
     using RunError::RunError;
 };
+
+namespace detail {
+[[noreturn]] void refuse_index(std::size_t index, std::size_t size, const char* what);
+[[noreturn]] void refuse_length(std::size_t found, std::size_t expected, const char* what);
+}  // namespace detail
+
+/// Throws InputError "what: found 7, expected a number below 3" unless index < size.
+inline void require_index(std::size_t index, std::size_t size, const char* what) {
+    if (index >= size) detail::refuse_index(index, size, what);
+}
+
+/// Throws InputError "what: found 7 entries, expected 3" unless they are equal.
+inline void require_same_length(std::size_t found, std::size_t expected, const char* what) {
+    if (found != expected) detail::refuse_length(found, expected, what);
+}
 
 }  // namespace ricochet

@@ -10,9 +10,23 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/thread_sanitizer.h"
 
 namespace ricochet {
+namespace {
+
+void require_loop(std::size_t block_size, bool has_function) {
+    if (block_size == 0) throw InputError("block size: found 0, expected at least 1");
+    if (!has_function) throw InputError("parallel loop: found an empty function, expected one that can be called");
+}
+
+int checked_threads(int threads) {
+    if (threads < 0) throw InputError("threads: found a number below 0, expected 0 (all) or more");
+    return threads;
+}
+
+}  // namespace
 
 struct ThreadLimit::Impl {
     explicit Impl(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
@@ -20,7 +34,7 @@ struct ThreadLimit::Impl {
 };
 
 ThreadLimit::ThreadLimit(int threads)
-    : impl_(threads > 0 ? std::make_unique<Impl>(static_cast<std::size_t>(threads)) : nullptr) {}
+    : impl_(checked_threads(threads) > 0 ? std::make_unique<Impl>(static_cast<std::size_t>(threads)) : nullptr) {}
 ThreadLimit::~ThreadLimit() = default;
 
 int thread_count() {
@@ -29,6 +43,7 @@ int thread_count() {
 
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
+    require_loop(block_size, static_cast<bool>(body));
     if (count == 0) return;
     const std::size_t blocks = (count + block_size - 1) / block_size;
     LoopSync sync;
@@ -48,6 +63,7 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 
 double ordered_sum(std::size_t count, std::size_t block_size,
                    const std::function<double(std::size_t, std::size_t)>& block_sum) {
+    require_loop(block_size, static_cast<bool>(block_sum));
     const std::size_t blocks = (count + block_size - 1) / block_size;
     std::vector<double> partial(blocks, 0.0);
     parallel_for_blocks(count, block_size, [&](std::size_t block, std::size_t begin, std::size_t end) {

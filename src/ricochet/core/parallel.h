@@ -14,7 +14,8 @@
 
 namespace ricochet {
 
-/// Limits the number of worker threads of the process while it lives. threads = 0 means all hardware threads.
+/// Limits the number of worker threads of the process while it lives. threads = 0 means all hardware threads; throws
+/// InputError for a negative number.
 class ThreadLimit {
 public:
     explicit ThreadLimit(int threads);
@@ -32,11 +33,13 @@ private:
 
 /// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread; serially when
 /// there is one block. A body that waits for tasks of its own is not interrupted by another body on the same thread, so
-/// bodies may use thread_local memory. One of the exceptions thrown by bodies, unspecified which, is rethrown.
+/// bodies may use thread_local memory. One of the exceptions thrown by bodies, unspecified which, is rethrown. Throws
+/// InputError for a block_size of 0 and an empty function.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 
-/// Sum over [0, count) of block sums, added in block order: the same bits for any thread count.
+/// Sum over [0, count) of block sums, added in block order: the same bits for any thread count. Throws like
+/// parallel_for_blocks().
 [[nodiscard]] double ordered_sum(std::size_t count, std::size_t block_size,
                                  const std::function<double(std::size_t begin, std::size_t end)>& block_sum);
 

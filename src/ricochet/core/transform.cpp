@@ -1,5 +1,7 @@
 #include "ricochet/core/transform.h"
 
+#include "ricochet/core/error.h"
+
 namespace ricochet {
 namespace {
 
@@ -22,6 +24,12 @@ SineCosine sine_cosine_degrees(double degrees) {
 
 // Rodrigues' rotation formula; columns are scaled by the placement's scale.
 AffineMap world_from_local(const Placement& placement) {
+    if (!is_finite(placement.position) || !is_finite(placement.scale) || !std::isfinite(placement.rotation_degrees)) {
+        throw InputError("placement: found a number that is not finite, expected finite numbers");
+    }
+    if (!is_finite(placement.rotation_axis) || max_abs(placement.rotation_axis) == 0.0) {
+        throw InputError("placement: rotation axis: found one that is zero or not finite, expected a direction");
+    }
     const Vec3 k = normalized(placement.rotation_axis);
     const auto [s, c] = sine_cosine_degrees(placement.rotation_degrees);
     const double d = 1.0 - c;

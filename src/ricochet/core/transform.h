@@ -28,7 +28,8 @@ struct AffineMap {
     [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
 };
 
-/// The map of a placement. Multiples of 90 degrees about a coordinate axis are exact.
+/// The map of a placement. Throws InputError for numbers that are not finite and an axis without length. Multiples of
+/// 90 degrees about a coordinate axis are exact.
 [[nodiscard]] AffineMap world_from_local(const Placement& placement);
 
 }  // namespace ricochet

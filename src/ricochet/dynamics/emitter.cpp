@@ -51,6 +51,8 @@ void require(bool condition, const EmitterDescription& emitter, const char* what
 bool is_spread(const MeanSpread& pair) { return std::isfinite(pair.spread) && pair.spread >= 0.0; }
 
 void check(const EmitterDescription& emitter, const ParentRule& rule) {
+    require(rule.on == BirthEvent::life || rule.on == BirthEvent::death || rule.on == BirthEvent::impact, emitter,
+            "births must be at life, death or impact");
     require(std::isfinite(rule.count.mean) && is_spread(rule.count), emitter, "the count must be finite");
     require(rule.threshold_impulse >= 0.0, emitter, "the threshold impulse must be >= 0 N s");
     require(std::isfinite(rule.inherit_velocity), emitter, "the inherited part of the velocity must be finite");
@@ -76,12 +78,16 @@ void check(const EmitterDescription& emitter) {
                 emitter.radius.mean >= emitter.radius.spread &&
                 emitter.radius.mean + emitter.radius.spread <= kLargestCoordinate,
             emitter, "every radius must be >= 0 and at most 1e75 m");
-    require(emitter.frames == nullptr || emitter.frame < emitter.frames->size(), emitter, "there is no such frame");
+    const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;  // none: the world alone
+    require(emitter.frame < frames, emitter, "there is no such frame");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
     for (const AttributeSpread& attribute : emitter.attributes) {
         const Vec3& spread = attribute.spread;
         require(is_finite(attribute.mean) && is_finite(spread), emitter, "every attribute must be finite");
         require(std::min({spread.x, spread.y, spread.z}) >= 0.0, emitter, "every attribute's spread must be >= 0");
+        const auto is_same = [&](const AttributeSpread& other) { return other.name == attribute.name; };
+        require(std::count_if(emitter.attributes.begin(), emitter.attributes.end(), is_same) == 1, emitter,
+                "one of its attributes is given twice");
     }
     if (emitter.parent) check(emitter, *emitter.parent);
 }
@@ -150,9 +156,9 @@ void Emitter::set_rate(const EmitterSurroundings& surroundings) {
     require(is_given(description_.rate) + is_given(per_frame) + is_given(per_area) <= 1, description_,
             "there is more than one rate");
     period_rate_ = description_.rate;
-    if (!is_given(per_frame) && !is_given(per_area)) return;
     require(std::isfinite(surroundings.frame_rate) && surroundings.frame_rate > 0.0, description_,
             "the frame rate must be > 0");
+    if (!is_given(per_frame) && !is_given(per_area)) return;
     periods_per_second_ = surroundings.frame_rate;
     period_rate_ = per_frame;
     if (!is_given(per_area)) return;
@@ -176,9 +182,10 @@ bool Emitter::sets(std::size_t column) const {
     return std::find(attribute_columns_.begin(), attribute_columns_.end(), column) != attribute_columns_.end();
 }
 
-std::vector<Particle> Emitter::births(double from, double to) {
-    std::vector<Particle> births;
-    if (!(from < to) || description_.parent) return births;
+std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most) {
+    require(std::isfinite(from) && std::isfinite(to), description_, "births are asked for finite times only");
+    Births births{most, {}};
+    if (!(from < to) || description_.parent) return {};
     if (!burst_done_ && description_.start < to) {
         append_births(description_.burst, description_.start, births);
         burst_done_ = true;
@@ -189,16 +196,18 @@ std::vector<Particle> Emitter::births(double from, double to) {
     } else {
         append_redrawn_births(end, births);
     }
-    return births;
+    return std::move(births.made);
 }
 
-void Emitter::append_births(std::uint64_t count, double time, std::vector<Particle>& births) {
+void Emitter::append_births(std::uint64_t count, double time, Births& births) {
     const std::uint64_t allowed = std::min(count, description_.limit - born_);
-    for (std::uint64_t i = 0; i < allowed; ++i) births.push_back(make_particle(born_++, time));
+    const std::uint64_t made = std::min<std::uint64_t>(allowed, births.most - births.made.size());
+    for (std::uint64_t i = 0; i < made; ++i) births.made.push_back(make_particle(born_ + i, time));
+    born_ += allowed;
 }
 
 // A steady rate in closed form.
-void Emitter::append_steady_births(double to, std::vector<Particle>& births) {
+void Emitter::append_steady_births(double to, Births& births) {
     const double rate = period_rate_.mean * periods_per_second_;
     if (!(rate > 0.0)) return;
     while (born_ < description_.limit) {
@@ -210,7 +219,7 @@ void Emitter::append_steady_births(double to, std::vector<Particle>& births) {
 }
 
 // Period by period (seconds or frames); the state is left in the one in which the next birth, or the next call, falls.
-void Emitter::append_redrawn_births(double to, std::vector<Particle>& births) {
+void Emitter::append_redrawn_births(double to, Births& births) {
     if (!(period_rate_.mean + period_rate_.spread > 0.0)) return;
     while (born_ < description_.limit) {
         const double rate = rate_in_period(period_);

@@ -144,7 +144,8 @@ private:
 };
 
 /// Points whose convex hull is that of the shape; round shapes by `segments` points a circle that touches from
-/// inside. seen_from: of a ball only the outline seen from there counts.
+/// inside. seen_from: of a ball only the outline seen from there counts. segments: at least 3. Throws InputError like
+/// ShapeSampler for values out of range, as the two below do.
 [[nodiscard]] std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments);
 /// A box around the shape.
 [[nodiscard]] Box3 bounds(const EmitterShape& shape);
@@ -165,7 +166,7 @@ struct ReferenceCamera {
 /// Area of the convex hull of the shape's picture, in pixels; what lies beside the picture counts too. With s the
 /// distance of the picture's plane, in pixels, s = image_height / (2 tan(field_of_view / 2)), a point at depth d
 /// and distance r from the view's axis is seen at s r / d. Round shapes are taken as polygons of 256 corners.
-/// Throws InputError when a part of the shape is not in front of the camera.
+/// Throws InputError when a part of the shape is not in front of the camera, and for a camera out of those ranges.
 [[nodiscard]] double screen_area(const EmitterShape& shape, const ReferenceCamera& camera);
 
 // Particles that are let go from a moving frame.
@@ -173,7 +174,8 @@ struct ReferenceCamera {
 /// The particle as it stands in the world when it is let go from a frame at its birth time: position, velocity and
 /// spin are given in the frame's coordinates, relative to the frame. With the frame's rotation R, origin o and
 /// motion (v, w) at that time: position o + R p, velocity R u + v + w x (R p); a sphere was carried round by the
-/// frame until then, so its spin is R s + w; a point has none. All else stays. frame < frames.size().
+/// frame until then, so its spin is R s + w; a point has none. All else stays. Throws InputError unless
+/// frame < frames.size().
 [[nodiscard]] Particle launched_from(const FrameTree& frames, std::size_t frame, Particle particle);
 
 // Emitters: where, when and how particles are born. The schedule of births depends on the emitter alone, never on
@@ -237,11 +239,15 @@ public:
             const EmitterSurroundings& surroundings = {});
 
     /// Particles born in [from, to), in birth order, with everything set but the id, which is left 0. None for an
-    /// emitter with a parent (child_emitter.h). Calls must go on where the last one ended, the first one begins at
-    /// 0. How the time is cut into calls changes no bit. The burst is born at `start`; after that birth k happens
-    /// when the integral of the rate since `start` passes k + 1/2. The rate is drawn anew for every whole second
-    /// (or frame) since `start` (negative draws count as 0).
-    [[nodiscard]] std::vector<Particle> births(double from, double to);
+    /// emitter with a parent. Calls must go on where the last one ended, the first one begins at
+    /// 0; throws InputError for times that are not finite. How the time is cut into calls changes no bit. The burst is
+    /// born at `start`; after that birth k happens when the integral of the rate since `start` passes k + 1/2. The rate
+    /// is drawn anew for every whole second (or frame) since `start` (negative draws count as 0). most: only the first
+    /// so many are made and returned; the others are born all the same, see born().
+    [[nodiscard]] std::vector<Particle> births(double from, double to,
+                                               std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+    /// Births so far.
+    [[nodiscard]] std::uint64_t born() const { return born_; }
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
     /// Number of the emitter in its scene.
@@ -259,14 +265,18 @@ public:
     [[nodiscard]] bool sets(std::size_t column) const;
 
 private:
+    struct Births {
+        std::uint64_t most;  ///< that are made
+        std::vector<Particle> made;
+    };
     [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
     void set_rate(const EmitterSurroundings& surroundings);
     [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
     [[nodiscard]] double rate_in_period(std::uint64_t period) const;
-    void append_births(std::uint64_t count, double time, std::vector<Particle>& births);
-    void append_steady_births(double to, std::vector<Particle>& births);
-    void append_redrawn_births(double to, std::vector<Particle>& births);
+    void append_births(std::uint64_t count, double time, Births& births);
+    void append_steady_births(double to, Births& births);
+    void append_redrawn_births(double to, Births& births);
 
     EmitterDescription description_;
     std::uint64_t seed_;

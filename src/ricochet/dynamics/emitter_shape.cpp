@@ -19,6 +19,8 @@ void require(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
+bool is_position(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestCoordinate; }
+
 bool is_length(double x) { return x > 0.0 && x <= kLargestCoordinate; }
 
 /// Can be made a unit vector.
@@ -26,29 +28,32 @@ bool is_direction(const Vec3& v) { return length(v) > 0.0 && std::isfinite(lengt
 
 void require_mesh(const TriangleMesh* mesh) {
     require(mesh != nullptr, "the mesh is missing");
-    for (const Triangle& triangle : mesh->triangles) {
-        for (const std::uint32_t corner : triangle) {
-            require(corner < mesh->vertices.size(), "a triangle of the mesh has a corner past the end of its vertices");
-        }
-    }
+    require_corners(*mesh);
 }
 
 struct CheckShape {
-    void operator()(const PointShape& /*point*/) const {}
+    static void check_center(const Vec3& center) {
+        require(is_position(center), "its centre must be finite and at most 1e75 m from the origin");
+    }
+    void operator()(const PointShape& point) const { check_center(point.center); }
     void operator()(const DiskShape& disk) const {
+        check_center(disk.center);
         require(is_direction(disk.normal), "the disk's normal must be of finite length above 0");
         require(is_length(disk.radius), "the disk's radius must be > 0 and at most 1e75 m");
     }
     void operator()(const BoxShape& box) const {
+        check_center(box.center);
         const bool good =
             max_abs(box.size) <= kLargestCoordinate && std::min({box.size.x, box.size.y, box.size.z}) >= 0.0;
         require(good, "the box's size must be >= 0 and at most 1e75 m");
     }
     void operator()(const SphereShape& sphere) const {
+        check_center(sphere.center);
         require(is_length(sphere.radius), "the sphere's radius must be > 0 and at most 1e75 m");
     }
     void operator()(const MeshSurfaceShape& surface) const { require_mesh(surface.mesh.get()); }
     void operator()(const ConeShape& cone) const {
+        require(is_position(cone.apex), "its apex must be finite and at most 1e75 m from the origin");
         require(is_direction(cone.axis), "the cone's axis must be of finite length above 0");
         require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0,
                 "the cone's angle must be 0 to below 90 degrees");
@@ -232,10 +237,14 @@ LaunchPlace ShapeSampler::in_mesh(RandomSequence& random) const {
 }
 
 std::vector<Vec3> outline_points(const EmitterShape& shape, const Vec3& seen_from, int segments) {
+    std::visit(CheckShape{}, shape);
+    require(segments >= 3, "its outline needs at least 3 points a circle");
+    require(is_finite(seen_from), "it must be seen from a finite position");
     return std::visit(OutlinePoints{seen_from, segments}, shape);
 }
 
 Box3 bounds(const EmitterShape& shape) {
+    std::visit(CheckShape{}, shape);
     Box3 box;
     const auto around = [&](const Vec3& center, double radius) {
         box.include(center - Vec3{radius, radius, radius});
@@ -249,7 +258,7 @@ Box3 bounds(const EmitterShape& shape) {
         box.include(cone->apex);
         around(end_of(*cone), end_radius(*cone));
     } else {
-        for (const Vec3& point : outline_points(shape, {}, 0)) box.include(point);
+        for (const Vec3& point : outline_points(shape, {}, 3)) box.include(point);
     }
     return box;
 }
@@ -289,6 +298,12 @@ double hull_area(std::vector<Point2> points) {
 }  // namespace
 
 double screen_area(const EmitterShape& shape, const ReferenceCamera& camera) {
+    require(is_position(camera.position) && is_position(camera.target) && is_direction(camera.target - camera.position),
+            "the reference camera must look from one finite position to another");
+    require(camera.field_of_view_degrees >= 1.0 && camera.field_of_view_degrees <= 170.0,
+            "the reference camera's field of view must be 1 to 170 degrees");
+    require(camera.image_height > 0.0 && std::isfinite(camera.image_height),
+            "the reference camera's image height must be > 0 pixels");
     const Vec3 forward = normalized(camera.target - camera.position);
     const auto [right, up] = tangent_frame(forward);                // turning the picture does not change areas
     const double half_view = camera.field_of_view_degrees / 720.0;  // in turns

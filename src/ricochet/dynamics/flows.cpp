@@ -220,8 +220,13 @@ FlowPointer make_vortex(const VortexSettings& settings) {
     require_finite(settings.point, "vortex: the point on the axis", "m");
     require_finite(settings.circulation, "vortex: the circulation", "m^2/s");
     require_positive(settings.core_radius, "vortex: the core radius", "m");
-    if (settings.profile == VortexProfile::lamb_oseen) return std::make_shared<LambOseenVortex>(settings);
-    return std::make_shared<RankineVortex>(settings);
+    switch (settings.profile) {
+        case VortexProfile::rankine:
+            return std::make_shared<RankineVortex>(settings);
+        case VortexProfile::lamb_oseen:
+            return std::make_shared<LambOseenVortex>(settings);
+    }
+    throw InputError("vortex: there is no such profile");
 }
 
 FlowPointer make_source(const Vec3& center, double strength, double core_radius) {
@@ -338,6 +343,9 @@ void check(const VectorGrid& grid) {
 
 FlowPointer make_grid_flow(VectorGrid grid, OutsideGrid outside) {
     check(grid);
+    if (outside != OutsideGrid::clamp && outside != OutsideGrid::zero) {
+        throw InputError("grid: expected clamp or zero outside of it");
+    }
     return std::make_shared<GridFlow>(std::move(grid), outside);
 }
 

@@ -234,6 +234,9 @@ private:
 
 std::unique_ptr<Force> make_field_force(FlowPointer field, FieldMeaning meaning) {
     if (!field) throw InputError("field force: found a null pointer, expected a field");
+    if (meaning != FieldMeaning::acceleration && meaning != FieldMeaning::force) {
+        throw InputError("field force: expected accelerations or forces as the field's meaning");
+    }
     return std::make_unique<FieldForce>(std::move(field), meaning);
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -90,8 +92,19 @@ std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> 
     return std::make_unique<CallableForce>(std::move(acceleration), Returns::acceleration, std::move(traits));
 }
 
+namespace {
+
+std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<Force>> forces) {
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+        if (!forces[k]) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
+    }
+    return forces;
+}
+
+}  // namespace
+
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
-    : forces_(std::move(forces)),
+    : forces_(without_null(std::move(forces))),
       uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
       steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {
     for (const auto& force : forces_) {

@@ -66,6 +66,7 @@ struct CallableTraits {
 class ForceField {
 public:
     ForceField() = default;
+    /// Throws InputError for a null pointer.
     explicit ForceField(std::vector<std::unique_ptr<Force>> forces);
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const;
     /// Sum of the potentials, J; nothing when one force has none.

@@ -106,7 +106,13 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
 
 std::optional<std::size_t> FrameTree::find(std::string_view name) const { return place_of(frames_, name); }
 
+const FrameDescription& FrameTree::description(std::size_t frame) const {
+    require_index(frame, size(), "frame");
+    return frames_[frame];
+}
+
 MovingPose FrameTree::at(std::size_t frame, double time) const {
+    require_index(frame, size(), "frame");
     MovingPose pose;
     for (const std::size_t k : chains_[frame]) step_into(pose, frames_[k], time);
     return pose;

@@ -65,10 +65,11 @@ public:
     explicit FrameTree(std::vector<FrameDescription> frames);
 
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
-    [[nodiscard]] const FrameDescription& description(std::size_t frame) const { return frames_[frame]; }
+    /// Throws InputError unless frame < size(), as at() does.
+    [[nodiscard]] const FrameDescription& description(std::size_t frame) const;
     /// The number of the frame of that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-    /// The frame's pose and motion at a time (s). frame < size().
+    /// The frame's pose and motion at a time (s).
     [[nodiscard]] MovingPose at(std::size_t frame, double time) const;
 
 private:

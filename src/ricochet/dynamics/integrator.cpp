@@ -127,7 +127,9 @@ Flight parabolic_flight(const ForceField& forces, const ForceInput& state, doubl
 }  // namespace
 
 std::string_view name_of(IntegratorKind kind) {
-    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; })->second;
+    const auto found =
+        std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; });
+    return found == kNames.end() ? std::string_view() : found->second;
 }
 
 std::vector<std::string_view> integrator_names() {

@@ -63,8 +63,15 @@ std::string_view name_of(Interpolation interpolation) {
 }
 
 template <class Value>
+KeyedCurve<Value>::KeyedCurve(const Value& constant) : keys_{{0.0, constant}}, slopes_{Value{}} {
+    check(keys_, CurveEnds::hold);
+}
+
+template <class Value>
 KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation, CurveEnds ends)
     : keys_(std::move(keys)), interpolation_(interpolation), ends_(ends) {
+    if (name_of(interpolation).empty()) throw InputError("a curve has an interpolation that does not exist");
+    if (ends != CurveEnds::hold && ends != CurveEnds::repeat) throw InputError("a curve has ends that do not exist");
     check(keys_, ends_);
     set_slopes();
 }

@@ -42,8 +42,8 @@ struct CurveKey {
 template <class Value>
 class KeyedCurve {
 public:
-    /// The same value at all times.
-    explicit KeyedCurve(const Value& constant = Value{}) : keys_{{0.0, constant}}, slopes_{Value{}} {}
+    /// The same value at all times; throws InputError unless it is finite.
+    explicit KeyedCurve(const Value& constant = Value{});
     /// Throws InputError unless there is a key, all are finite, times strictly increase, and no two keys are so near to
     /// each other in time that the derivative between them overflows.
     explicit KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation = Interpolation::linear,

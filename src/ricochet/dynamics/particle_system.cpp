@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "ricochet/core/error.h"
@@ -34,6 +35,10 @@ void write(std::span<double> state, std::size_t at, const Vec3& value) {
 }  // namespace
 
 void ParticleSystem::assign(const Particles& particles, std::span<const std::uint32_t> members, double time) {
+    if (std::adjacent_find(members.begin(), members.end(), std::greater_equal<>()) != members.end()) {
+        throw InputError("members of a system: expected ascending numbers of particles");
+    }
+    if (!members.empty()) require_index(members.back(), particles.size(), "member of a system");
     members_.assign(members.begin(), members.end());
     time_ = time;
     constants_.resize(size());
@@ -55,6 +60,7 @@ void ParticleSystem::link(std::size_t particle_count) {
     bonds_.clear();
     first_link_.assign(size() + 1, 0);
     for (const SpringNetwork::Bond& bond : springs_.bonds()) {
+        require_index(std::max(bond.a, bond.b), particle_count, "end of a spring");
         const Bond own{bond.spring, member_of[bond.a], member_of[bond.b]};
         if (own.first == kNoMember || own.second == kNoMember) continue;
         bonds_.push_back(own);
@@ -68,6 +74,11 @@ void ParticleSystem::link(std::size_t particle_count) {
         links_[next[bond.first]++] = {bond.spring, bond.second, true};
         links_[next[bond.second]++] = {bond.spring, bond.first, false};
     }
+}
+
+void ParticleSystem::require_state(std::span<const Vec3> positions, std::span<const Vec3> velocities) const {
+    require_same_length(positions.size(), size(), "positions of a system");
+    require_same_length(velocities.size(), size(), "velocities of a system");
 }
 
 void ParticleSystem::get_state(std::span<double> state) const {
@@ -115,6 +126,7 @@ void ParticleSystem::derivative(double time, std::span<const double> state, std:
 }
 
 void ParticleSystem::set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities) {
+    require_state(positions, velocities);
     for (std::size_t i = 0; i < size(); ++i) {
         if (is_pinned(i)) continue;
         position_[i] = positions[i];
@@ -124,6 +136,8 @@ void ParticleSystem::set_phase(std::span<const Vec3> positions, std::span<const 
 
 void ParticleSystem::accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                                    std::span<Vec3> result) const {
+    require_state(positions, velocities);
+    require_same_length(result.size(), size(), "accelerations of a system");
     parallel_for_blocks(size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             result[i] = is_pinned(i) ? Vec3{}
@@ -136,6 +150,8 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
 // Every member gathers for itself, in the order of the springs: no two threads write to one entry.
 Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                      std::span<const Vec3> velocities) const {
+    require_index(i, size(), "member of a system");
+    require_state(positions, velocities);
     Vec3 sum;
     for (std::uint32_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
         const Link& link = links_[k];
@@ -153,10 +169,12 @@ Vec3 ParticleSystem::own_acceleration(std::size_t i, double time, const Vec3& po
 }
 
 std::array<Vec3, 3> ParticleSystem::own_slope(std::size_t i, const Vec3& end_velocity, double duration) const {
+    require_index(i, size(), "member of a system");
     return acceleration_slope(forces_, input(i, time_, position_[i], velocity_[i]), end_velocity, duration);
 }
 
 double ParticleSystem::spring_energy(std::span<const Vec3> positions) const {
+    require_same_length(positions.size(), size(), "positions of a system");
     return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
@@ -170,7 +188,8 @@ double ParticleSystem::spring_energy(std::span<const Vec3> positions) const {
 }
 
 ForceInput ParticleSystem::input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const {
-    return {position, velocity, mass(i), constants_[i].radius, time, id(i)};
+    const Constants& own = constants(i);
+    return {position, velocity, own.mass, own.radius, time, own.id};
 }
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/springs.h"
@@ -34,7 +35,9 @@ public:
     /// Both must outlive the system. The springs must be bound to the particles of assign().
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs) : forces_(forces), springs_(springs) {}
 
-    /// Takes these particles, by index and ascending, as its members, in the state that they have.
+    /// Takes these particles, by index and ascending, as its members, in the state that they have. Throws InputError
+    /// for members that are not there or do not ascend, as all functions do for members past the end and lists that do
+    /// not have size() entries.
     void assign(const Particles& particles, std::span<const std::uint32_t> members, double time);
 
     // The classical interface.
@@ -60,7 +63,7 @@ public:
     [[nodiscard]] const std::vector<Vec3>& positions() const { return position_; }   ///< m
     [[nodiscard]] const std::vector<Vec3>& velocities() const { return velocity_; }  ///< m/s
     void set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities);
-    /// Accelerations of all members in a state, m/s^2; zero for pinned ones. The spans hold size() entries.
+    /// Accelerations of all members in a state, m/s^2; zero for pinned ones.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
     /// What the springs do to member i, N.
@@ -74,10 +77,13 @@ public:
     /// Energy stored in the springs, J.
     [[nodiscard]] double spring_energy(std::span<const Vec3> positions) const;
     [[nodiscard]] const std::vector<Bond>& bonds() const { return bonds_; }
-    [[nodiscard]] const Spring& spring_of(const Bond& bond) const { return springs_.springs()[bond.spring]; }
-    [[nodiscard]] bool is_pinned(std::size_t i) const { return constants_[i].pinned; }
-    [[nodiscard]] double mass(std::size_t i) const { return constants_[i].mass; }  ///< kg
-    [[nodiscard]] std::uint64_t id(std::size_t i) const { return constants_[i].id; }
+    [[nodiscard]] const Spring& spring_of(const Bond& bond) const {
+        require_index(bond.spring, springs_.springs().size(), "spring");
+        return springs_.springs()[bond.spring];
+    }
+    [[nodiscard]] bool is_pinned(std::size_t i) const { return constants(i).pinned; }
+    [[nodiscard]] double mass(std::size_t i) const { return constants(i).mass; }  ///< kg
+    [[nodiscard]] std::uint64_t id(std::size_t i) const { return constants(i).id; }
     /// What a force sees of member i in this state.
     [[nodiscard]] ForceInput input(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
     /// True when the forces on single particles depend on neither position, velocity nor time.
@@ -96,6 +102,11 @@ private:
         std::uint32_t other = 0;
         bool is_first = true;  // the member is the spring's first end
     };
+    [[nodiscard]] const Constants& constants(std::size_t i) const {
+        require_index(i, constants_.size(), "member of a system");
+        return constants_[i];
+    }
+    void require_state(std::span<const Vec3> positions, std::span<const Vec3> velocities) const;
     void link(std::size_t particle_count);
 
     const ForceField& forces_;

@@ -54,6 +54,10 @@ AttributeTable::AttributeTable(std::vector<AttributeDescription> columns)
     }
 }
 
+std::size_t AttributeTable::size() const {
+    return empty() ? 0 : values_[0].size() / static_cast<std::size_t>(columns_[0].components);
+}
+
 std::optional<std::size_t> AttributeTable::find(std::string_view name) const {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
         if (columns_[k].name == name) return k;
@@ -78,6 +82,7 @@ void AttributeTable::reserve(std::size_t more) {
 void AttributeTable::compact(const std::vector<std::uint8_t>& keep) {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
         const auto width = static_cast<std::size_t>(columns_[k].components);
+        require_same_length(keep.size() * width, values_[k].size(), "entries of attributes to be kept");
         std::size_t kept = 0;
         for (std::size_t i = 0; i < keep.size(); ++i) {
             if (keep[i] == 0) continue;
@@ -92,13 +97,17 @@ void AttributeTable::clear() {
 }
 
 AttributeValue AttributeTable::value(std::size_t column, std::size_t i) const {
+    require_index(column, values_.size(), "attribute");
     const std::vector<double>& values = values_[column];
+    require_index(i, size(), "entry of an attribute");
     if (columns_[column].components == 1) return {values[i], 0.0, 0.0};
     return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
 void AttributeTable::set(std::size_t column, std::size_t i, const AttributeValue& value) {
+    require_index(column, values_.size(), "attribute");
     const auto width = static_cast<std::size_t>(columns_[column].components);
+    require_index(i, size(), "entry of an attribute");
     for (std::size_t c = 0; c < width; ++c) values_[column][i * width + c] = value[static_cast<int>(c)];
 }
 
@@ -187,6 +196,7 @@ void Particles::reserve(std::size_t more) {
 }
 
 Particle Particles::at(std::size_t i) const {
+    require_index(i, size(), "particle");
     Particle particle{id[i],         position[i], velocity[i], mass[i],       radius[i],
                       birth_time[i], lifetime[i], spin[i],     pinned[i] != 0};
     if (keeps_origin) particle.origin = origin[i];
@@ -195,6 +205,7 @@ Particle Particles::at(std::size_t i) const {
 }
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
+    require_same_length(keep.size(), size(), "particles to be kept");
     compact_array(id, keep);
     compact_array(position, keep);
     compact_array(velocity, keep);

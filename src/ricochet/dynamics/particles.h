@@ -41,7 +41,7 @@ inline constexpr std::string_view kSizeAttribute = "size";        ///< radius th
 /// True for the names of the arrays and columns that every run writes of itself.
 [[nodiscard]] bool is_own_array(std::string_view name);
 
-/// Columns of values, one entry a particle in each.
+/// Columns of values, one entry a particle in each. Numbers past the end and lists of another length are InputErrors.
 class AttributeTable {
 public:
     AttributeTable() = default;
@@ -50,7 +50,10 @@ public:
     explicit AttributeTable(std::vector<AttributeDescription> columns);
 
     [[nodiscard]] std::span<const AttributeDescription> columns() const { return columns_; }
+    /// True without columns.
     [[nodiscard]] bool empty() const { return columns_.empty(); }
+    /// Entries in each column; 0 without columns.
+    [[nodiscard]] std::size_t size() const;
     /// Number of the column of that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
 
@@ -68,7 +71,7 @@ public:
     /// All values of entry i; empty without columns.
     [[nodiscard]] std::vector<AttributeValue> at(std::size_t i) const;
 
-    /// Saves or restores the values; a: an archive of core/binary_archive.h.
+    /// Saves or restores the values; a: what a simulation saves to or restores from.
     template <class Archive>
     void archive(Archive& a) {
         for (std::vector<double>& column : values_) a(column);
@@ -114,7 +117,8 @@ inline constexpr std::uint32_t kNoSupport = 0xFFFFFFFFU;
 /// In Particles::absorbed: replaced by fragments.
 inline constexpr std::uint8_t kShattered = 2;
 
-/// Structure of arrays. All vectors have the same length; entry i of each is particle i.
+/// Structure of arrays. All vectors have the same length; entry i of each is particle i. at() and compact() throw
+/// InputError for numbers past the end and lists of another length.
 class Particles {
 public:
     std::vector<std::uint64_t> id;

@@ -205,6 +205,7 @@ SpringBody make_rope(const RopeSettings& settings) {
 }
 
 SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
+    require_corners(mesh);
     check(mesh, settings);
     const std::vector<MeshEdge> edges = MeshTopology(mesh).edges();
     SpringBody cloth;
@@ -229,7 +230,13 @@ SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
 
 TriangleMesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v, std::size_t cells_u, std::size_t cells_v) {
     if (cells_u == 0 || cells_v == 0) throw InputError("sheet: it needs at least one cell along either side");
+    constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
+    if (cells_u >= kMostVertices || cells_v >= kMostVertices || (cells_u + 1) * (cells_v + 1) > kMostVertices) {
+        throw InputError(fmt::format("sheet: {} x {} cells have more vertices than 2^32 - 1", cells_u, cells_v));
+    }
+    detail::require_finite(corner, "sheet: the corner", "m");
     if (!(length(cross(u, v)) > 0.0)) throw InputError("sheet: the sides are parallel or without length");
+    if (!std::isfinite(length(cross(u, v)))) throw InputError("sheet: the sides are not finite or too long");
     TriangleMesh sheet;
     const auto number = [&](std::size_t i, std::size_t j) { return static_cast<std::uint32_t>(j * (cells_u + 1) + i); };
     for (std::size_t j = 0; j <= cells_v; ++j) {

@@ -41,10 +41,16 @@ void check(const Spring& spring, std::size_t number) {
 class Indices {
 public:
     explicit Indices(std::span<const std::uint64_t> ids) : ids_(ids) {
-        if (std::is_sorted(ids.begin(), ids.end())) return;
+        if (std::is_sorted(ids.begin(), ids.end())) {
+            require_once(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
+            return;
+        }
         order_.resize(ids.size());
         std::iota(order_.begin(), order_.end(), std::uint32_t{0});
         std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; });
+        const auto twice = std::adjacent_find(order_.begin(), order_.end(),
+                                              [&](std::uint32_t a, std::uint32_t b) { return ids[a] == ids[b]; });
+        require_once(twice == order_.end());
     }
     [[nodiscard]] std::optional<std::uint32_t> of(std::uint64_t id) const {
         if (order_.empty()) {
@@ -59,6 +65,10 @@ public:
     }
 
 private:
+    static void require_once(bool condition) {
+        if (!condition) throw InputError("particles of springs: found an id twice, expected each once");
+    }
+
     std::span<const std::uint64_t> ids_;
     std::vector<std::uint32_t> order_;  // of ids; empty when they are in order
 };
@@ -123,7 +133,14 @@ void SpringNetwork::compile_links() {
     }
 }
 
+// Without springs there is nothing to bind.
+void SpringNetwork::require_entries(std::span<const Vec3> values) const {
+    if (!empty()) require_same_length(values.size(), particle_count_, "positions and velocities of springs' particles");
+}
+
 Vec3 SpringNetwork::force_on(std::uint32_t i, std::span<const Vec3> position, std::span<const Vec3> velocity) const {
+    require_entries(position);
+    require_entries(velocity);
     Vec3 sum;
     for (const Link& link : links(i)) {
         sum +=
@@ -133,6 +150,7 @@ Vec3 SpringNetwork::force_on(std::uint32_t i, std::span<const Vec3> position, st
 }
 
 double SpringNetwork::potential_energy(std::span<const Vec3> position) const {
+    require_entries(position);
     return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
@@ -146,6 +164,7 @@ double SpringNetwork::potential_energy(std::span<const Vec3> position) const {
 }
 
 std::size_t SpringNetwork::break_overstretched(std::span<const Vec3> position) {
+    require_entries(position);
     const auto holds = [&](const Bond& bond) {
         const Spring& spring = springs_[bond.spring];
         const double limit = (1.0 + spring.breaking_stretch) * spring.rest_length;
@@ -179,7 +198,8 @@ Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>
     std::vector<Rates> sums(particles.size());
     for (const Spring& spring : springs) {
         for (const std::uint64_t end : {spring.first, spring.second}) {
-            if (end >= particles.size() || particles[end].pinned) continue;
+            require_index(end, particles.size(), "end of a spring");
+            if (particles[end].pinned) continue;
             sums[end].stiffness += spring.stiffness / particles[end].mass;
             sums[end].damping += spring.damping / particles[end].mass;
         }
@@ -205,6 +225,7 @@ double damper_bound(std::span<const Spring> springs) {
 
 double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                            const std::vector<Particle>& particles) {
+    if (name_of(kind).empty()) throw InputError("longest stable step: there is no such integrator");
     const Rates rates = largest_rates(springs, particles);
     const double omega_squared = 2.0 * rates.stiffness;
     const double gamma = 2.0 * rates.damping;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles.h"
@@ -38,7 +39,8 @@ struct Spring {
                                 const Vec3& v_second);
 
 /// Springs over particles that are known by their ids. `bind` says in which order the particles stand; what is asked
-/// about positions afterwards means that order. Asking is free of side effects and may happen from any thread.
+/// about positions afterwards means that order: one entry a particle. Asking is free of side effects and may happen
+/// from any thread. Numbers past the end and lists of another length are InputErrors.
 class SpringNetwork {
 public:
     SpringNetwork() = default;
@@ -51,9 +53,13 @@ public:
     /// All springs ever, in their order.
     [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
     /// True while spring number `spring` has neither broken nor lost an end.
-    [[nodiscard]] bool is_intact(std::size_t spring) const { return states_[spring] == State::intact; }
+    [[nodiscard]] bool is_intact(std::size_t spring) const {
+        require_index(spring, states_.size(), "spring");
+        return states_[spring] == State::intact;
+    }
 
-    /// Compiles the intact springs for particles that stand in this order: entry i has the id ids[i], each id once.
+    /// Compiles the intact springs for particles that stand in this order: entry i has the id ids[i]. Throws InputError
+    /// for an id that is there twice.
     /// Springs one end of which is missing are removed for good and counted as lost. To be called whenever particles
     /// were added, removed or reordered.
     void bind(std::span<const std::uint64_t> ids);
@@ -74,6 +80,7 @@ public:
     };
     /// The intact springs of particle i, in the order of their numbers.
     [[nodiscard]] std::span<const Link> links(std::uint32_t i) const {
+        require_index(i, particle_count_, "particle of a spring");
         return {links_.data() + link_begin_[i], link_begin_[i + 1] - link_begin_[i]};
     }
     /// Particles with at least one intact spring, indices of bind's order, ascending.
@@ -89,7 +96,8 @@ public:
     /// many.
     std::size_t break_overstretched(std::span<const Vec3> position);
 
-    /// Saves or restores which springs are broken or lost; a: an archive of core/binary_archive.h. Call bind after it.
+    /// Saves or restores which springs are broken or lost; a: what a simulation saves to or restores from. Call bind
+    /// after it.
     template <class Archive>
     void archive(Archive& a) {
         a(states_);
@@ -106,6 +114,7 @@ private:
     enum class State : std::uint8_t { intact, broken, lost };
 
     void compile_links();
+    void require_entries(std::span<const Vec3> values) const;
 
     std::vector<Spring> springs_;
     std::vector<State> states_;  // per spring
@@ -172,7 +181,7 @@ struct ClothSettings {
     double breaking_stretch = std::numeric_limits<double>::infinity();  ///< of the springs along edges, see Spring
     std::vector<std::uint32_t> pinned = {};                             ///< vertices that never move
 };
-/// Particles in the order of the vertices; springs along edges in the order of MeshTopology::edges, then those across
+/// Particles in the order of the vertices; springs along edges in the order of their ends' numbers, then those across
 /// edges. At rest as the mesh is. Across an edge at which the surface is not manifold there is no bending spring.
 /// Throws InputError for values out of range, a mesh without triangles, and vertices that no triangle with an area
 /// uses. Springs along edges and across them as resistance to stretching and bending: X. Provot, "Deformation
@@ -189,7 +198,8 @@ struct ClothSettings {
 
 /// A step, s, that is short enough for every oscillation that these springs can make; longer ones may explode.
 /// Infinite for the methods that need none (implicit_euler; dormand_prince chooses its own) and without springs.
-/// particles: those that the springs name by their index as id.
+/// particles: those that the springs name by their index as id; throws InputError for one that is not there, and for a
+/// kind that does not exist.
 ///
 /// By Gershgorin's theorem no oscillation is faster than omega^2 = 2 max sum(k) / m, nor damped faster than
 /// gamma = 2 max sum(c) / m, sums over the springs of a particle. symplectic_euler, velocity_verlet and ballistic

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
@@ -109,6 +110,23 @@ void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_
     });
 }
 
+void require_arrays(const Particles& particles, const AttributeTable& attributes) {
+    const auto require = [&](const auto& array) {
+        require_same_length(array.size(), particles.size(), "array of the particles");
+    };
+    require(particles.position);
+    require(particles.velocity);
+    require(particles.mass);
+    require(particles.radius);
+    require(particles.birth_time);
+    require(particles.contacts);
+    require(particles.resting);
+    require(particles.frozen);
+    require(particles.unsimulated_time);
+    require(particles.spin);
+    if (!attributes.empty()) require_same_length(attributes.size(), particles.size(), "attributes of the particles");
+}
+
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
 
 std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const std::vector<SpringFace>& faces) {
@@ -123,11 +141,16 @@ std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const 
 
 // Its particles are there, since its springs are.
 Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
-    const auto& ids = std::get<std::vector<std::int64_t>>(find_array(frame.point_arrays, "id")->values);
+    const VtkArray* array = find_array(frame.point_arrays, "id");
+    if (array == nullptr || !std::holds_alternative<std::vector<std::int64_t>>(array->values)) {
+        throw InputError("springs of a frame: found no array id, expected a frame of particles");
+    }
+    const auto& ids = std::get<std::vector<std::int64_t>>(array->values);
     Triangle triangle{};
     for (std::size_t k = 0; k < 3; ++k) {
         const auto found = std::lower_bound(ids.begin(), ids.end(), static_cast<std::int64_t>(face.corners[k]));
         triangle[k] = static_cast<std::uint32_t>(found - ids.begin());
+        require_index(triangle[k], frame.points.size(), "corner of cloth");
     }
     return triangle;
 }
@@ -158,6 +181,7 @@ VtkPolyData particle_frame(const Particles& particles, const AttributeTable& att
 
 void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
                          bool has_spheres) {
+    require_arrays(particles, attributes);
     const std::vector<std::uint32_t> order = particles.order_by_id();
     frame.time = time;
     frame.fields.clear();
@@ -178,11 +202,14 @@ void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const A
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
                  const std::vector<SpringFace>& faces) {
     const std::vector<std::uint32_t> order = particles.order_by_id();
+    require_same_length(particles.position.size(), order.size(), "positions of the particles");
+    require_same_length(frame.points.size(), order.size(), "points of the particles' frame");
     std::vector<std::uint32_t> row(order.size());  // in the frame
     for (std::uint32_t k = 0; k < order.size(); ++k) row[order[k]] = k;
     std::vector<double> stretch(springs.springs().size(), 0.0);
     for (const SpringNetwork::Bond& bond : springs.bonds()) {
         const double rest_length = springs.springs()[bond.spring].rest_length;
+        require_index(std::max(bond.a, bond.b), order.size(), "end of a spring");
         const double distance = length(particles.position[bond.b] - particles.position[bond.a]);
         if (rest_length > 0.0) stretch[bond.spring] = distance / rest_length - 1.0;
     }
@@ -214,17 +241,25 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
 }
 
 VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time) {
+    require_corners(mesh);
+    require_same_length(totals.impulse.size(), totals.hits.size(), "impulses of a collider");
     VtkPolyData frame;
     frame.time = time;
     frame.points = mesh.vertices;
     frame.triangles = mesh.triangles;
     const bool one_surface = totals.hits.size() == 1 && mesh.triangles.size() > 1;
+    if (!one_surface && !totals.hits.empty()) {
+        require_same_length(totals.hits.size(), mesh.triangles.size(), "hits of a collider");
+    }
     frame.cell_arrays = total_arrays(one_surface ? repeated(totals, mesh.triangles.size()) : totals);
     return frame;
 }
 
 VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, const TriangleTotals& totals,
                                  double time) {
+    if (!is_finite(plane.point) || !is_finite(normalized(plane.normal))) {
+        throw InputError("plane: found one that is not finite or has no normal, expected a point and a direction");
+    }
     const Vec3 normal = normalized(plane.normal);
     const Vec3 center = region.empty() ? plane.point : region.center();
     const Vec3 foot = center - dot(center - plane.point, normal) * normal;

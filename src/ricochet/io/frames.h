@@ -10,6 +10,8 @@
 
 namespace ricochet {
 
+// Where lists that belong together have other lengths, or name what is not there: InputError.
+
 /// The particles at a time, in the order of their ids, with the arrays id, velocity, mass, radius, age, contacts,
 /// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
 /// on it, see Simulation::has_spheres().

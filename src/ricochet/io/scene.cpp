@@ -23,6 +23,7 @@ std::string summary_of(const std::vector<std::string>& messages) {
 Vec3 uniform_acceleration(const SimulationSetup& setup) {
     Vec3 sum;
     for (const auto& force : setup.forces) {
+        if (force == nullptr) throw InputError("force: found a null pointer, expected a force");
         if (force->is_uniform()) sum += force->acceleration({Vec3{}, Vec3{}, 1.0, 0.0, 0.0});
     }
     return sum;

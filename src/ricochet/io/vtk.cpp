@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <type_traits>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
 
 namespace ricochet {
 namespace {
@@ -195,6 +197,28 @@ Layout lay_out(const VtkPolyData& data, const Cells& cells) {
     return layout;
 }
 
+void require_time(double time) {
+    if (!std::isfinite(time)) throw InputError(fmt::format("time: found {}, expected a finite number (s)", time));
+}
+
+template <std::size_t kCorners>
+void require_points(const std::vector<std::array<std::uint32_t, kCorners>>& cells, std::size_t points) {
+    for (const auto& cell : cells) {
+        for (const std::uint32_t corner : cell) require_index(corner, points, "corner of a cell");
+    }
+}
+
+void check(const VtkPolyData& data) {
+    require_time(data.time);
+    require_points(data.lines, data.points.size());
+    require_points(data.triangles, data.points.size());
+    const auto require_lengths = [](const std::vector<VtkArray>& arrays, std::size_t length) {
+        for (const VtkArray& array : arrays) require_same_length(array.size(), length, array.name.c_str());
+    };
+    require_lengths(data.point_arrays, data.points.size());
+    require_lengths(data.cell_arrays, data.cell_count());
+}
+
 }  // namespace
 
 std::size_t VtkArray::size() const {
@@ -202,6 +226,7 @@ std::size_t VtkArray::size() const {
 }
 
 std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data, VtkIndexWidth width) {
+    check(data);
     const Cells cells = make_cells(data, width);
     AtomicFile file(path);
     const std::uint64_t size = lay_out(data, cells).write(file);
@@ -214,6 +239,7 @@ std::string pvd_text(const std::vector<PvdEntry>& entries) {
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
     for (const PvdEntry& entry : entries) {
+        require_time(entry.time);
         text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" file=\"{}\"/>\n", entry.time, entry.part,
                             escaped(entry.file));
     }

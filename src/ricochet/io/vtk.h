@@ -62,7 +62,8 @@ struct VtkPolyData {
 enum class VtkIndexWidth { automatic, bits64 };
 
 /// Writes a .vtp file. Throws RunError when the disk does not take it, InputError when the name is not one of a regular
-/// file. Returns the file's size in bytes.
+/// file, an array has another length than it should, a cell names no point or the time is not finite. Returns the
+/// file's size in bytes.
 std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data,
                         VtkIndexWidth width = VtkIndexWidth::automatic);
 
@@ -73,7 +74,7 @@ struct PvdEntry {
     std::string file;        ///< relative to the series file
 };
 
-/// Text of a .pvd series file.
+/// Text of a .pvd series file. Throws InputError for a time that is not finite.
 [[nodiscard]] std::string pvd_text(const std::vector<PvdEntry>& entries);
 
 /// The array of that name; nullptr when there is none.

@@ -94,7 +94,9 @@ std::optional<ResponseKind> response_from_name(std::string_view name) {
 }
 
 std::string_view name_of(ResponseKind kind) {
-    return std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; })->second;
+    const auto found =
+        std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.first == kind; });
+    return found == kNames.end() ? std::string_view() : found->second;
 }
 
 std::span<const ResponseKind> response_kinds() { return kKinds; }

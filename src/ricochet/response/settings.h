@@ -12,12 +12,12 @@
 
 namespace ricochet {
 
-/// What happens when a particle reaches a surface, by the names in scenes.
+/// What happens when a particle reaches a surface, by the names in scenes; docs/responses.md compares them.
 enum class ResponseKind {
-    exact,     ///< finds the time of impact and reflects inside the step, see exact.h
-    rollback,  ///< takes the step, finds that it collided, goes back to the contact, see rollback.h
-    project,   ///< tests at the end of the step and puts the particle back on the surface, see project.h
-    penalty,   ///< a spring and damper on the penetration, see penalty.h
+    exact,     ///< finds the time of impact and reflects inside the step
+    rollback,  ///< takes the step, finds that it collided, goes back to the contact
+    project,   ///< tests at the end of the step and puts the particle back on the surface
+    penalty,   ///< a spring and damper on the penetration
 };
 
 [[nodiscard]] std::optional<ResponseKind> response_from_name(std::string_view name);

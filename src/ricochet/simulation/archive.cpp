@@ -103,7 +103,7 @@ void Simulation::Impl::replay_emitters() {
         double from = 0.0;
         for (std::uint64_t k = 1; k <= slices; ++k) {
             const double to = k == slices ? now : now * static_cast<double>(k) / static_cast<double>(slices);
-            (void)emitter.births(from, to);
+            (void)emitter.births(from, to, 0);
             from = to;
         }
     }
@@ -119,12 +119,14 @@ void Simulation::Impl::forget_queries() {
 
 void Simulation::save(const ByteSink& sink) const {
     if (!sink) throw InputError("save: found an empty function, expected one that takes the bytes");
+    if (impl().inside_step)
+        throw RunError("save: the last step or restore() of this simulation has ended with an error");
     StateHash checksum;
     BinaryWriter writer([&](std::span<const std::byte> bytes) {
         checksum.add(bytes);
         sink(bytes);
     });
-    impl_->archive(writer);
+    impl().archive(writer);
     writer(checksum.value());
 }
 
@@ -145,21 +147,21 @@ void Simulation::Impl::read_state(const ByteSource& source) {
 
 void Simulation::restore(const ByteSource& source) {
     if (!source) throw InputError("restore: found an empty function, expected one that gives the bytes");
-    if (!impl_->emitters.empty() && step_index() > 0) {
+    if (!impl().emitters.empty() && step_index() > 0) {
         throw InputError(
             fmt::format("restore: found a simulation with emitters that has made {} steps, expected one "
                         "before its first step",
                         step_index()));
     }
-    impl_->free_flights.drop_deferred();
-    impl_->inside_step = true;  // until all is there
-    impl_->read_state(source);
-    impl_->forget_queries();
-    for (const double radius : impl_->particles().radius) impl_->world.prepare_radius(radius);
-    impl_->replay_emitters();
-    if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles());
-    if (impl_->check) impl_->check->restart(impl_->particles());
-    impl_->inside_step = false;
+    impl().free_flights.drop_deferred();
+    impl().inside_step = true;  // until all is there
+    impl().read_state(source);
+    impl().forget_queries();
+    for (const double radius : impl().particles().radius) impl().world.prepare_radius(radius);
+    impl().replay_emitters();
+    if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
+    if (impl().check) impl().check->restart(impl().particles());
+    impl().inside_step = false;
 }
 
 }  // namespace ricochet

@@ -18,16 +18,19 @@ namespace ricochet {
 
 // Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
 void Simulation::Impl::emit_particles(const TimeSpan& step) {
+    const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, store.size());
     std::vector<Particle> born;
+    std::uint64_t count = 0;
     for (Emitter& emitter : emitters) {
-        std::vector<Particle> births = emitter.births(step.begin, step.end);
+        const std::uint64_t before = emitter.born();
+        std::vector<Particle> births = emitter.births(step.begin, step.end, room);
+        count += emitter.born() - before;
         born.insert(born.end(), std::make_move_iterator(births.begin()), std::make_move_iterator(births.end()));
     }
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, store.size());
     const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
-    recorder.statistics().births_refused_by_population += born.size() - allowed;
+    recorder.statistics().births_refused_by_population += count - allowed;
     reserve(allowed);
     for (std::size_t k = 0; k < allowed; ++k) add(std::move(born[k]));
     if (allowed > 0 && coupled.is_active()) coupled.bind(particles());
@@ -86,76 +89,76 @@ bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
 std::uint64_t Simulation::add_particle(Particle particle) { return add_particles(std::span(&particle, 1)).front(); }
 
 std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> particles) {
-    impl_->require_between_steps();
+    impl().require_between_steps();
     for (std::size_t k = 0; k < particles.size(); ++k) {
-        validate(particles[k], k, impl_->particles().attributes.columns().size());
+        validate(particles[k], k, impl().particles().attributes.columns().size());
     }
     const std::uint64_t most = options().most_particles;
-    const std::uint64_t room = most - std::min<std::uint64_t>(most, impl_->store.size());
+    const std::uint64_t room = most - std::min<std::uint64_t>(most, impl().store.size());
     if (particles.size() > room) {
         throw InputError(fmt::format("add_particles: found {} particles, expected at most {}: most_particles is {}",
                                      particles.size(), room, most));
     }
-    impl_->reserve(particles.size());
+    impl().reserve(particles.size());
     std::vector<std::uint64_t> ids;
     for (Particle particle : particles) {
         particle.birth_time = time();
         particle.origin = Origin{};
-        impl_->add(std::move(particle));
-        ids.push_back(impl_->particles().id.back());
+        impl().add(std::move(particle));
+        ids.push_back(impl().particles().id.back());
     }
-    if (impl_->coupled.is_active()) impl_->coupled.bind(impl_->particles());
-    if (impl_->check) impl_->check->watch_spawned(impl_->particles());
+    if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
+    if (impl().check) impl().check->watch_spawned(impl().particles());
     return ids;
 }
 
 bool Simulation::remove_particle(std::uint64_t id) { return remove_particles(std::span(&id, 1)) == 1; }
 
 std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
-    impl_->require_between_steps();
+    impl().require_between_steps();
     std::vector<std::uint64_t> sorted(ids.begin(), ids.end());
     std::sort(sorted.begin(), sorted.end());
-    std::vector<std::uint8_t> keep(impl_->store.size(), 1);
+    std::vector<std::uint8_t> keep(impl().store.size(), 1);
     std::size_t removed = 0;
-    SimulationStatistics& statistics = impl_->recorder.statistics();
+    SimulationStatistics& statistics = impl().recorder.statistics();
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (!std::binary_search(sorted.begin(), sorted.end(), impl_->particles().id[i])) continue;
+        if (!std::binary_search(sorted.begin(), sorted.end(), impl().particles().id[i])) continue;
         keep[i] = 0;
         ++removed;
-        statistics.lost_impulses += impl_->mover.add_weight(i, time(), 1.0);
-        statistics.resting -= impl_->particles().resting[i];
-        statistics.asleep -= impl_->store.is_asleep(i) ? 1 : 0;
+        statistics.lost_impulses += impl().mover.add_weight(i, time(), 1.0);
+        statistics.resting -= impl().particles().resting[i];
+        statistics.asleep -= impl().store.is_asleep(i) ? 1 : 0;
     }
     statistics.removed += removed;
-    if (removed > 0) impl_->compact(keep);
+    if (removed > 0) impl().compact(keep);
     return removed;
 }
 
 // What was known of free flights, and what has let particles sleep, was known for the forces until now.
 void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
-    impl_->require_between_steps();
-    validate(std::span(forces));
+    impl().require_between_steps();
     if (options().flow != nullptr && !forces.empty()) {
         throw InputError(
             fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));
     }
-    impl_->free_flights.end_deferring();
-    SimulationStatistics& statistics = impl_->recorder.statistics();
-    for (std::size_t i = 0; i < impl_->store.size(); ++i) {
-        statistics.lost_impulses += impl_->mover.add_weight(i, time(), 1.0);
-        impl_->store.wake(i);
+    ForceField field(std::move(forces));  // refuses null pointers before anything has changed
+    impl().free_flights.end_deferring();
+    SimulationStatistics& statistics = impl().recorder.statistics();
+    for (std::size_t i = 0; i < impl().store.size(); ++i) {
+        statistics.lost_impulses += impl().mover.add_weight(i, time(), 1.0);
+        impl().store.wake(i);
     }
     statistics.asleep = 0;
-    impl_->forces = ForceField(std::move(forces));
-    impl_->store.set_may_sleep(impl_->acceleration.sleeping && impl_->forces.is_steady());
-    impl_->forget_queries();
+    impl().forces = std::move(field);
+    impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady());
+    impl().forget_queries();
 }
 
 void Simulation::on_contact(ContactCallback callback) {
-    impl_->require_between_steps();
-    impl_->has_new_callback = impl_->is_reporting;
-    impl_->callback = std::move(callback);
-    impl_->recorder.show_contacts(options().record_contacts || impl_->callback);
+    impl().require_between_steps();
+    impl().has_new_callback = impl().is_reporting;
+    impl().callback = std::move(callback);
+    impl().recorder.show_contacts(options().record_contacts || impl().callback);
 }
 
 void Simulation::Impl::require_between_steps() const {

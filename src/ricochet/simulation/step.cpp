@@ -8,22 +8,22 @@
 namespace ricochet {
 
 void Simulation::step() {
-    if (!finished()) impl_->step();
+    if (!finished()) impl().step();
 }
 
 void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on) {
-    if (count > 1 && impl_->may_defer()) impl_->free_flights.begin_deferring();
+    if (count > 1 && impl().may_defer()) impl().free_flights.begin_deferring();
     try {
         bool goes_on = true;
         for (std::uint64_t k = 0; k < count && goes_on && !finished(); ++k) {
-            impl_->step();
+            impl().step();
             goes_on = !go_on || go_on();
         }
     } catch (...) {
-        impl_->free_flights.end_deferring();
+        impl().free_flights.end_deferring();
         throw;
     }
-    impl_->free_flights.end_deferring();
+    impl().free_flights.end_deferring();
 }
 
 bool Simulation::Impl::may_defer() const {
@@ -49,7 +49,9 @@ void Simulation::Impl::step() {
 TimeSpan Simulation::Impl::begin_step() {
     if (is_reporting) throw RunError("a contact callback must not step its simulation");
     if (inside_step) {
-        throw RunError("a step of this simulation has ended with an error; make it anew or restore a saved state");
+        throw RunError(
+            "the last step or restore() of this simulation has ended with an error; make it anew or restore a saved "
+            "state");
     }
     inside_step = true;
     recorder.begin_step();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -198,6 +199,9 @@ void validate_emitters(const SimulationSetup& setup) {
 }
 
 void validate_springs(const SimulationSetup& setup) {
+    if (setup.options.flow != nullptr && !setup.springs.empty()) {
+        Subject("springs").refuse("number", setup.springs.size(), "none: a flow carries the particles");
+    }
     for (std::size_t k = 0; k < setup.springs.size(); ++k) {
         for (const std::uint64_t end : {setup.springs[k].first, setup.springs[k].second}) {
             Subject("spring", k).require_index(end, setup.particles.size(), "end", "particles");
@@ -240,17 +244,11 @@ void validate(const Particle& particle, std::size_t number, std::size_t columns)
     subject.require_coordinates(particle.velocity, "velocity", "m/s");
     subject.require_coordinates(particle.spin, "spin", "rad/s");
     subject.require_positive(particle.mass, "mass", "kg");
-    subject.require_in(particle.radius, 0.0, kLargestCoordinate, "radius", "a finite number of at least 0 (m)");
+    subject.require_in(particle.radius, 0.0, kLargestCoordinate, "radius", "0 to 1e75 (m)");
     if (!std::isfinite(particle.birth_time)) subject.refuse("birth_time", particle.birth_time, "a time (s)");
     if (!(particle.lifetime >= 0.0)) subject.refuse("lifetime", particle.lifetime, "at least 0 (s)");
     if (particle.attributes.size() > columns) {
         subject.refuse("attributes", particle.attributes.size(), fmt::format("at most {}, one a column", columns));
-    }
-}
-
-void validate(std::span<const std::unique_ptr<Force>> forces) {
-    for (std::size_t k = 0; k < forces.size(); ++k) {
-        if (forces[k] == nullptr) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
     }
 }
 
@@ -260,9 +258,22 @@ void validate(const ColliderDescription& collider, std::size_t number, std::size
     validate(collider.shape, subject, materials);
 }
 
+namespace {
+
+/// What has a name has one of its own.
+template <class Named>
+void validate_names(const std::vector<Named>& all, std::string_view kind) {
+    std::set<std::string_view> taken;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (all[k].name.empty() || taken.insert(all[k].name).second) continue;
+        Subject(kind, k, all[k].name).refuse("name", all[k].name, "a name that no other has");
+    }
+}
+
+}  // namespace
+
 const SimulationSetup& validated(const SimulationSetup& setup) {
     validate(setup.options);
-    validate(std::span(setup.forces));
     for (std::size_t k = 0; k < setup.materials.size(); ++k) validate(setup.materials[k], k);
     for (std::size_t k = 0; k < setup.colliders.size(); ++k) validate(setup.colliders[k], k, setup.materials.size());
     for (std::size_t k = 0; k < setup.particles.size(); ++k) validate(setup.particles[k], k, setup.attributes.size());
@@ -270,6 +281,8 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
         Subject("options").refuse("most_particles", setup.options.most_particles,
                                   fmt::format("at least the {} particles that are there", setup.particles.size()));
     }
+    validate_names(setup.colliders, "collider");
+    validate_names(setup.emitters, "emitter");
     validate_emitters(setup);
     validate_springs(setup);
     if (setup.bounds) validate(*setup.bounds);

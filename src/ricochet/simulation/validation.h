@@ -4,21 +4,18 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "ricochet/simulation.h"
 
 namespace ricochet {
 
-/// Everything in a setup that its own class does not check (emitters, springs and frames check their values).
+/// Everything in a setup that its own class does not check (forces, emitters, springs and frames check their values).
 /// Returns it.
 const SimulationSetup& validated(const SimulationSetup& setup);
 
 /// A particle, by its number among those that are given; columns: how many attributes particles have.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);
-void validate(std::span<const std::unique_ptr<Force>> forces);
 /// materials: how many there are.
 void validate(const ColliderDescription& collider, std::size_t number, std::size_t materials);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/checked_shape.h"
 #include "ricochet/verify/triangle_tests.h"
@@ -41,6 +42,16 @@ void add_triangles(const TriangleMesh& mesh, std::uint32_t collider, std::vector
     }
 }
 
+void require(bool condition, const char* what) {
+    if (!condition) throw InputError(what);
+}
+
+void require_good(const TriangleMesh& mesh) {
+    require_corners(mesh);
+    require(std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite),
+            "verified mesh: found a vertex that is not finite");
+}
+
 Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }
 
 }  // namespace
@@ -63,6 +74,7 @@ struct Verifier::Impl {
     void check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const;
     void check_sides(const Judged& judged, VerifiedParticle& particle) const;
     void check_distance(const Judged& judged, VerifiedParticle& particle) const;
+    [[nodiscard]] std::size_t side_count() const { return planes.size() + shapes.size() + bodies.size(); }
     [[nodiscard]] std::vector<Side> sides_of(const Vec3& p) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p) const;
     /// Calls found(collider, triangle or nothing) for every surface that is nearer to p than `least`, in no fixed
@@ -81,12 +93,19 @@ Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const auto collider = static_cast<std::uint32_t>(i);
         if (const auto* mesh = std::get_if<TriangleMesh>(&surfaces[i])) {
+            require_good(*mesh);
             add_triangles(*mesh, collider, all);
             if (count_open_edges(*mesh) == 0) bodies.push_back({collider, ParityOracle(*mesh)});
         } else if (const auto* plane = std::get_if<VerifiedPlane>(&surfaces[i])) {
+            require(is_finite(plane->point) && is_finite(plane->normal) && max_abs(plane->normal) > 0.0,
+                    "verified plane: expected finite numbers and a normal above 0");
             planes.push_back({collider, *plane});
         } else {
             const auto& shape = std::get<VerifiedShape>(surfaces[i]);
+            const AffineMap& map = shape.world_from_unit;
+            require(is_finite(map.row_x) && is_finite(map.row_y) && is_finite(map.row_z) &&
+                        is_finite(map.translation) && map.determinant() != 0.0,
+                    "verified shape: expected finite numbers and a volume");
             shapes.push_back({collider, CheckedShape(shape.world_from_unit, shape.is_cylinder)});
         }
     }
@@ -95,7 +114,7 @@ Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces) {
 
 std::vector<Side> Verifier::Impl::sides_of(const Vec3& p) const {
     std::vector<Side> sides;
-    sides.reserve(planes.size() + shapes.size() + bodies.size());
+    sides.reserve(side_count());
     for (const auto& [collider, plane] : planes) {
         sides.push_back(side_of(verify::height_sign(plane.normal, plane.point, p)));
     }
@@ -208,10 +227,10 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     particle.has_been_free = !first;
 }
 
-Verifier::Verifier(const std::vector<VerifiedSurface>& surfaces) : impl_(std::make_unique<Impl>(surfaces)) {}
+Verifier::Verifier(const std::vector<VerifiedSurface>& surfaces) : impl_(std::make_shared<const Impl>(surfaces)) {}
 Verifier::~Verifier() = default;
-Verifier::Verifier(Verifier&&) noexcept = default;
-Verifier& Verifier::operator=(Verifier&&) noexcept = default;
+Verifier::Verifier(const Verifier&) = default;
+Verifier& Verifier::operator=(const Verifier&) = default;
 
 VerifiedParticle Verifier::watch(const Vec3& position, double radius) const {
     VerifiedParticle particle;
@@ -232,6 +251,7 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius) const {
 void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const {
     if (step.segments.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position))
         return;
+    if (!particle.sides.empty()) require_same_length(particle.sides.size(), impl_->side_count(), "sides of a particle");
     const Impl::Judged judged{step, violations};
     impl_->check_chain(judged, particle.position);
     bool starts_on_surface = particle.is_on_surface;

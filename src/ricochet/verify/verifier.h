@@ -2,7 +2,7 @@
 /// Checks what particles did, independently of the code that moved them: every segment that was travelled against the
 /// surfaces near it, and after every step the side of every closed surface and the distance of spheres.
 ///
-/// Independent: this folder includes none of the sweep's predicates, trees or distance code (tests/layers checks that).
+/// Independent: this folder includes none of the sweep's predicates, trees or distance code (a test checks that).
 /// Its signs come from whole numbers of any length, its parity from counted crossings, its distances from a hundred
 /// digits wherever doubles leave doubt. It is given the surfaces in world coordinates as they collide, so placements
 /// are not checked again.
@@ -32,7 +32,7 @@ enum class ViolationKind : std::uint8_t {
     crossing,    ///< a segment that was travelled intersects a surface
     gap,         ///< the segments do not join the position at which the particle was last seen to its position now
     wrong_side,  ///< the particle is on another side of a closed surface than at birth
-    overlap,     ///< a sphere is nearer to a surface than its radius, by more than sphere_tolerance()
+    overlap,     ///< a sphere is nearer to a surface than its radius, by more than 1e-12 of its radius and coordinates
 };
 
 /// One violation. Each is reported once: what follows from it later is measured from the new state.
@@ -81,25 +81,27 @@ struct VerifiedStep {
     std::span<const Segment> segments;  ///< in the order of time
 };
 
-/// Immutable; safe from any number of threads.
+/// Immutable; safe from any number of threads. Copies share what they hold.
 class Verifier {
 public:
-    /// Collider i is surfaces[i]. A mesh is closed when every edge belongs to an even number of triangle sides.
+    /// Collider i is surfaces[i]. A mesh is closed when every edge belongs to an even number of triangle sides. Throws
+    /// InputError for numbers that are not finite, corners that are not there, and normals and shapes without extent.
     explicit Verifier(const std::vector<VerifiedSurface>& surfaces);
     ~Verifier();
-    Verifier(Verifier&&) noexcept;
-    Verifier& operator=(Verifier&&) noexcept;
+    Verifier(const Verifier&);
+    Verifier& operator=(const Verifier&);
 
     /// Begins to watch a particle at its birth. A position that is not finite has no side and is not judged.
     [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
 
     /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then
-    /// sides, then overlaps, each in the order of colliders and triangles. Updates what is remembered.
+    /// sides, then overlaps, each in the order of colliders and triangles. Updates what is remembered. Throws
+    /// InputError for a particle that another verifier has watched, with another number of sides.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
 
 private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace ricochet

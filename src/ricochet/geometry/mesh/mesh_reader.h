@@ -39,14 +39,13 @@ struct WeldReport {
 
 /// A mesh file's contents.
 struct ImportedMesh {
-    PolygonMesh polygons;                      ///< faces as the file lists them
-    TriangleMesh mesh;                         ///< the collision mesh: every face, triangulated, none dropped
-    std::vector<std::uint32_t> triangle_face;  ///< for every triangle the face it is a part of
-    std::string format;                        ///< for example "OBJ" or "PLY, binary little endian"
-    std::optional<WeldReport> weld;            ///< STL only
-    std::size_t faces_with_repeated_corners =
-        0;                           ///< faces that name a vertex twice; they are kept (see triangulation.h)
-    std::size_t crossing_faces = 0;  ///< polygons whose outline crosses itself; kept (see triangulation.h)
+    PolygonMesh polygons;                         ///< faces as the file lists them
+    TriangleMesh mesh;                            ///< the collision mesh: every face, triangulated, none dropped
+    std::vector<std::uint32_t> triangle_face;     ///< for every triangle the face it is a part of
+    std::string format;                           ///< for example "OBJ" or "PLY, binary little endian"
+    std::optional<WeldReport> weld;               ///< STL only
+    std::size_t faces_with_repeated_corners = 0;  ///< faces that name a vertex twice; they are kept
+    std::size_t crossing_faces = 0;               ///< polygons whose outline crosses itself; kept
 };
 
 /// How much of a file is kept once it is read.
@@ -58,10 +57,10 @@ enum class MeshContent : std::uint8_t {
 };
 
 /// Reads a mesh file. The format is that of the content where it has a signature (PLY, OFF, STL), of the extension
-/// otherwise. Coordinates smaller than kSmallestExactCoordinate (predicates.h) become zero.
+/// otherwise. Coordinates smaller than 2^-287 m become zero, so that products stay in range.
 /// Throws InputError "path:line: what is wrong" for text, "path: byte N: what is wrong" for binary data, "path: what is
 /// wrong" for the file as a whole: not a regular file, unknown format, any statement that cannot be understood, counts
-/// that do not agree with the data, numbers that are not finite or larger than kLargestCoordinate (tolerances.h),
+/// that do not agree with the data, numbers that are not finite or larger than 1e75,
 /// indices out of range, no faces.
 [[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content = MeshContent::everything);
 

@@ -1,9 +1,12 @@
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "ricochet/core/error.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -38,9 +41,22 @@ void add_fan(TriangleMesh& mesh, std::uint32_t apex, std::uint32_t ring, bool up
     }
 }
 
+void require_length(double value, const char* what) {
+    if (!(value > 0.0 && std::isfinite(value))) {
+        throw InputError(fmt::format("{}: found {}, expected a finite number above 0 (m)", what, value));
+    }
+}
+
 }  // namespace
 
+void require_corners(const TriangleMesh& mesh) {
+    for (const Triangle& t : mesh.triangles) {
+        for (const std::uint32_t v : t) require_index(v, mesh.vertices.size(), "corner of a triangle");
+    }
+}
+
 Box3 bounds(const TriangleMesh& mesh) {
+    require_corners(mesh);
     Box3 box;
     for (const Triangle& t : mesh.triangles) {
         for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
@@ -49,6 +65,7 @@ Box3 bounds(const TriangleMesh& mesh) {
 }
 
 double surface_area(const TriangleMesh& mesh) {
+    require_corners(mesh);
     double area = 0.0;
     for (const Triangle& t : mesh.triangles) {
         const Vec3& a = mesh.vertices[t[0]];
@@ -58,6 +75,7 @@ double surface_area(const TriangleMesh& mesh) {
 }
 
 double signed_volume(const TriangleMesh& mesh) {
+    require_corners(mesh);
     if (mesh.triangles.empty()) return 0.0;
     // Relative to a point of the mesh, so that a far-away mesh does not cancel.
     const Vec3 origin = mesh.vertices[mesh.triangles.front()[0]];
@@ -84,6 +102,7 @@ TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement) {
 }
 
 TriangleMesh ball_mesh(double radius, const Placement& placement) {
+    require_length(radius, "radius of a ball");
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, -radius}, {0, 0, radius}};
     for (std::uint32_t belt = 1; belt < kBelts; ++belt) {
@@ -99,6 +118,8 @@ TriangleMesh ball_mesh(double radius, const Placement& placement) {
 }
 
 TriangleMesh cylinder_mesh(double radius, double height, const Placement& placement) {
+    require_length(radius, "radius of a cylinder");
+    require_length(height, "height of a cylinder");
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, -0.5 * height}, {0, 0, 0.5 * height}};
     add_ring(mesh, radius, -0.5 * height);
@@ -110,6 +131,7 @@ TriangleMesh cylinder_mesh(double radius, double height, const Placement& placem
 }
 
 TriangleMesh cuboid_mesh(const Vec3& size) {
+    for (int axis = 0; axis < 3; ++axis) require_length(size[axis], "size of a box");
     TriangleMesh mesh;
     for (int corner = 0; corner < 8; ++corner) {
         mesh.vertices.push_back({(corner & 1) != 0 ? 0.5 * size.x : -0.5 * size.x,

@@ -45,6 +45,8 @@ struct PolygonMesh {
     [[nodiscard]] std::size_t face_count() const { return face_offsets.empty() ? 0 : face_offsets.size() - 1; }
 };
 
+/// Throws InputError where a triangle's corner is not one of the vertices; the functions below throw it too.
+void require_corners(const TriangleMesh& mesh);
 /// Box of the vertices that triangles use (unused vertices do not widen it). Empty for a mesh without triangles.
 [[nodiscard]] Box3 bounds(const TriangleMesh& mesh);
 /// Sum of triangle areas, m^2.
@@ -52,10 +54,12 @@ struct PolygonMesh {
 /// Signed volume by the divergence theorem, m^3; meaningful when the mesh is closed. Positive when wound outward.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 
-/// The mesh in world coordinates, tiny ones made zero (flush_tiny), the winding reversed where the placement mirrors,
+/// The mesh in world coordinates, those below 2^-287 made zero, the winding reversed where the placement mirrors,
 /// so that outward stays outward. The order of triangles and vertices stays. Callers refuse results that are not
 /// finite.
 [[nodiscard]] TriangleMesh transformed(const TriangleMesh& mesh, const Placement& placement);
+
+// Throw InputError for lengths that are not finite and above 0.
 
 /// A ball of that radius (m) about the local origin, placed; vertices on the surface, wound outward.
 [[nodiscard]] TriangleMesh ball_mesh(double radius, const Placement& placement);

@@ -256,6 +256,10 @@ void build_motion(const SceneContext& context, const ForceBuilder& forces, Simul
     if (!context.objects("forces").empty()) {
         context.error(context.root(), "forces", "a flow carries the particles, forces would do nothing: expected none");
     }
+    if (!context.objects("springs").empty()) {
+        context.error(context.root(), "springs",
+                      "a flow carries the particles, springs would do nothing: expected none");
+    }
 }
 
 void build_bounds(const SceneContext& context, SimulationSetup& setup) {

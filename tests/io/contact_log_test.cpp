@@ -272,7 +272,7 @@ TEST(ContactLog, AnImpactInACornerHasARowForEachReflection) {
     EXPECT_TRUE(times[0] == times[1] && times[1] == times[2]);
 }
 
-// A wedge sharper than a right angle needs several passes over its walls; none of their impulses may be missing.
+// Both walls push at once; none of their impulses may be missing.
 TEST(ContactLog, ASharpWedgeLosesNoImpulse) {
     SimulationSetup setup = logged_setup(1.0, 1.0);
     setup.colliders.push_back({"low", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0});
@@ -284,7 +284,7 @@ TEST(ContactLog, ASharpWedgeLosesNoImpulse) {
     for (const ContactRecord& record : simulation.contact_records()) {
         given += record.mass * (record.velocity_before - record.velocity_after);
     }
-    EXPECT_GT(simulation.contact_records().size(), 2U);
+    EXPECT_EQ(simulation.contact_records().size(), 2U);
     EXPECT_LE(length(given - (Vec3(-4, 0.5, -1) - simulation.particles().velocity[0])), 1e-14);
     const Vec3 totals = simulation.triangle_totals(0).impulse[0] + simulation.triangle_totals(1).impulse[0];
     EXPECT_LE(length(given - totals), 1e-14);

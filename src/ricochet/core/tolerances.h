@@ -255,4 +255,36 @@ inline constexpr double kSmallestTolerance = 1e-30;
 /// tolerances that could be kept are not.
 inline constexpr double kStateRounding = 0x1p-54;
 
+/// Largest defect of the equations of contact with friction, as a part of the largest rate (forces per mass and rates
+/// have the same unit), up to which they count as solved. Reason: some ten times what rounding leaves. Smaller: problems
+/// that are solved count as unsolved. Larger: energy may grow by as much.
+inline constexpr double kCoulombResidual = 0x1p-40;
+
+/// The defect at which they are not improved any more. Reason: rounding of six products. Smaller: steps that change
+/// nothing. Larger: worse answers.
+inline constexpr double kCoulombRounding = 0x1p-50;
+
+/// Compliance, relative to the inertia of the particle, of contacts that count as stiff. Reason: normals that differ by
+/// its square root, 1e-5, still tell apart which of two contacts holds; where normals are closer than that, proximal
+/// steps do. Smaller: the equations cannot be solved in doubles. Larger: more proximal steps.
+inline constexpr double kStiffCompliance = 1e-10;
+
+/// By how much compliance falls at a time on the way from soft contacts to stiff ones, at first, and where no answer is
+/// found, at last. Reason: two digits at a time lose the answer in one case of a thousand. Smaller: it is lost more
+/// often. Larger: longer ways.
+inline constexpr double kStiffening = 1e-2;
+inline constexpr double kShortestStiffening = 0.9;
+
+/// Length of the difference of unit normals up to which surfaces count as one in an impact or a contact. Reason: what two
+/// such surfaces do apart differs by as much, far below what a path's parabolas are exact to; the facets of a flat
+/// surface, and seams, differ by rounding. Smaller: nearly redundant contacts, whose forces are ill-conditioned. Larger:
+/// a wedge of that angle holds less than it should.
+inline constexpr double kSameDirection = 1e-9;
+
+/// By how much rounding may raise twice the energy over the mass in an impact, as a part of the squares of the velocity
+/// and of the velocity changes by all surfaces, before that counts as a gain. It is scaled away. Reason: some ten times
+/// the rounding of the solved equations. Smaller: restitution is lowered where only rounding is seen. Larger: a gain by
+/// friction is scaled away instead of lowering the restitution.
+inline constexpr double kEnergyRounding = 0x1p-44;
+
 }  // namespace ricochet

@@ -1,10 +1,12 @@
 #include "ricochet/response/impact_answer.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/impact_problem.h"
 
 namespace ricochet {
 namespace {
@@ -55,27 +57,106 @@ void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_be
                                 particle_.state.radius});
 }
 
-/// Bounces off every surface of the contact that is approached, until none is.
+/// What one bounce does not answer is answered by all surfaces together.
 void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebound) {
-    bool any_push = false;
+    const auto is_approached = [&](const ContactSurface& surface) {
+        return dot(particle_.state.velocity, surface.normal) < 0.0;
+    };
+    const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_approached);
+    if (first == surfaces.end()) {  // a touch without approach still is an impact
+        push(surfaces.front().surface, Vec3{}, true);
+        record(surfaces.front(), particle_.state.velocity);
+        return;
+    }
+    const bool is_random = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+        return material_of(surface.surface).is_random();
+    });
+    if (is_random) {
+        answer_in_turn(surfaces, rebound);
+    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_approached) > 1 ||
+               !answer_alone(surfaces, *first, rebound)) {
+        answer_together(surfaces, rebound);
+    }
+}
+
+/// Bounces off one surface; false, and nothing done, when another is approached then.
+bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
+                                Rebound rebound) {
+    const Motion before{particle_.state.velocity, particle_.spin};
+    reflect_off(surface, material_of(surface.surface), rebound);
+    const bool goes_on = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& other) {
+        return dot(particle_.state.velocity, other.normal) < 0.0;
+    });
+    if (goes_on) {
+        particle_.state.velocity = before.velocity;
+        particle_.spin = before.spin;
+        return false;
+    }
+    push(surface.surface, particle_.state.velocity - before.velocity, true);
+    record(surface, before.velocity);
+    return true;
+}
+
+/// One impact on all surfaces, and on those that it leads to.
+void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Rebound rebound) {
+    const double rounding = kProjectionRounding * length(particle_.state.velocity);
+    std::array<ImpactSurface, ImpactResult::kMostSurfaces> all;
+    for (int pass = 0; pass < kCornerPasses && approach(surfaces) > rounding; ++pass) {
+        for (std::size_t k = 0; k < surfaces.size(); ++k) {
+            const Material& material = material_of(surfaces[k].surface);
+            const double speed = std::max(0.0, -dot(particle_.state.velocity, surfaces[k].normal));
+            const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
+            all[k] = {surfaces[k].normal, restitution, material.friction};
+        }
+        const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
+                                                 std::span(all).first(surfaces.size()));
+        for (std::size_t k = 0; k < surfaces.size(); ++k) {
+            if (result.push[k] == Vec3{}) continue;
+            const Vec3 before = particle_.state.velocity;
+            particle_.state.velocity += result.push[k];
+            push(surfaces[k].surface, result.push[k], pass == 0);
+            record(surfaces[k], before);
+        }
+        particle_.state.velocity = result.after.velocity;
+        particle_.spin = result.after.spin;
+    }
+    stop_approach(surfaces);
+}
+
+/// The largest speed towards one of the surfaces, m/s.
+double ImpactAnswer::approach(std::span<const ContactSurface> surfaces) const {
+    double largest = 0.0;
+    for (const ContactSurface& surface : surfaces) {
+        largest = std::max(largest, -dot(particle_.state.velocity, surface.normal));
+    }
+    return largest;
+}
+
+/// Takes away the rounding by which surfaces are still approached.
+void ImpactAnswer::stop_approach(std::span<const ContactSurface> surfaces) {
+    for (int pass = 0; pass < kCornerPasses && approach(surfaces) > 0.0; ++pass) {
+        for (const ContactSurface& surface : surfaces) {
+            const double speed = -dot(particle_.state.velocity, surface.normal);
+            if (speed > 0.0) particle_.state.velocity += speed * surface.normal;
+        }
+    }
+    if (approach(surfaces) > 0.0) push_out_of_corner(surfaces);
+}
+
+/// Bounces off every surface of the contact that is approached, until none is: where chance decides what each does.
+void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound) {
     for (int pass = 0; pass < kCornerPasses; ++pass) {
         bool approached = false;
         for (const ContactSurface& surface : surfaces) {
             if (!(dot(particle_.state.velocity, surface.normal) < 0.0)) continue;
             approached = true;
-            any_push = true;
             const Vec3 before = particle_.state.velocity;
             reflect_off(surface, material_of(surface.surface), rebound);
             push(surface.surface, particle_.state.velocity - before, pass == 0);
             record(surface, before);
             if (outcome_.is_absorbed()) return;
         }
-        if (approached) continue;
-        if (!any_push) {  // a touch without approach still is an impact
-            push(surfaces.front().surface, Vec3{}, true);
-            record(surfaces.front(), particle_.state.velocity);
-        }
-        return;
+        if (!approached) return;
     }
     push_out_of_corner(surfaces);
 }

@@ -19,7 +19,7 @@ public:
     ImpactAnswer(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome)
         : rules_(rules), particle_(particle), scratch_(scratch), outcome_(outcome) {}
 
-    /// Bounces off every surface that is approached, until none is; a touch without approach still is an impact.
+    /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
     void reflect(std::span<const ContactSurface> surfaces);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
@@ -39,6 +39,12 @@ private:
     enum class Rebound { by_material, none };
 
     void answer(std::span<const ContactSurface> surfaces, Rebound rebound);
+    [[nodiscard]] bool answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
+                                    Rebound rebound);
+    void answer_together(std::span<const ContactSurface> surfaces, Rebound rebound);
+    void answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound);
+    [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
+    void stop_approach(std::span<const ContactSurface> surfaces);
     void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
     [[nodiscard]] Motion random_reflection(const ContactSurface& surface, const Material& material, double restitution);
     void push_out_of_corner(std::span<const ContactSurface> surfaces);

@@ -1,0 +1,155 @@
+#include "ricochet/response/impact_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Parts of the friction that are tried where the whole has no answer that is found.
+constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
+
+/// sqrt(5/2): omega r is so many times the turning part of a MotionVector.
+constexpr double kTurning = 1.5811388300841898;
+
+/// Twice the kinetic energy over the mass.
+double energy(const Motion& motion, double radius) {
+    return length_squared(motion.velocity) + 0.4 * radius * radius * length_squared(motion.spin);
+}
+
+MotionVector along(const Vec3& velocity, const Vec3& turning) {
+    return {velocity.x, velocity.y, velocity.z, turning.x, turning.y, turning.z};
+}
+
+class Impact {
+public:
+    Impact(const Motion& before, double radius, std::span<const ImpactSurface> surfaces)
+        : before_(before), radius_(radius), surfaces_(surfaces) {
+        for (std::size_t k = 0; k < surfaces_.size(); ++k) add(k);
+    }
+
+    ImpactResult solve() {
+        const bool has_friction = std::any_of(surfaces_.begin(), surfaces_.end(),
+                                              [](const ImpactSurface& surface) { return surface.friction > 0.0; });
+        if (!has_friction || restitution_ == 0.0) return kept(whole(restitution_));
+        if (const std::optional<ImpactResult> result = find(restitution_, CoulombProblem::Effort::some, 1.0)) {
+            if (!gains(*result)) return kept(*result);
+        }
+        return kept(repeated(whole(0.0)));
+    }
+
+private:
+    /// Of surfaces with the same normal the first counts.
+    void add(std::size_t surface) {
+        const Vec3& n = surfaces_[surface].normal;
+        for (std::size_t c = 0; c < count_; ++c) {
+            if (length(surfaces_[surface_of_[c]].normal - n) <= kSameDirection) return;
+        }
+        surface_of_[count_++] = surface;
+        if (dot(before_.velocity, n) < 0.0) restitution_ = std::min(restitution_, surfaces_[surface].restitution);
+    }
+
+    void set_up(double restitution) {
+        problem_.clear();
+        for (std::size_t c = 0; c < count_; ++c) {
+            const Vec3& n = surfaces_[surface_of_[c]].normal;
+            problem_.add({along(n, {}), (1.0 + restitution) * dot(before_.velocity, n)});
+        }
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            if (surface.friction == 0.0) continue;
+            const Vec3 slip = slip_velocity(before_, radius_, surface.normal);
+            const auto [first, second] = tangent_frame(surface.normal);
+            CoulombResistance sliding{static_cast<std::uint32_t>(c), 2, surface.friction, {}, {}, false, {}};
+            for (std::size_t d = 0; d < 2; ++d) {
+                const Vec3& t = d == 0 ? first : second;
+                sliding.direction[d] = along(t, radius_ > 0.0 ? kTurning * cross(t, surface.normal) : Vec3{});
+                sliding.rate[d] = dot(slip, t);
+            }
+            problem_.add(sliding);
+        }
+    }
+
+    /// The answer, with as much friction as there is one for.
+    ImpactResult whole(double restitution) {
+        std::optional<ImpactResult> result;
+        for (std::size_t k = 0; k < kFrictionParts.size() && !result; ++k) {
+            result = find(restitution, CoulombProblem::Effort::all, kFrictionParts[k]);
+        }
+        return result.value_or(ImpactResult{before_, {}});
+    }
+
+    /// Compression without rebound, and the part e of its impulses once more.
+    [[nodiscard]] ImpactResult repeated(ImpactResult result) const {
+        result.after.velocity += restitution_ * (result.after.velocity - before_.velocity);
+        result.after.spin += restitution_ * (result.after.spin - before_.spin);
+        for (Vec3& push : result.push) push *= 1.0 + restitution_;
+        return result;
+    }
+
+    [[nodiscard]] std::optional<ImpactResult> find(double restitution, CoulombProblem::Effort effort, double friction) {
+        set_up(restitution);
+        if (!problem_.solve(effort, friction)) return std::nullopt;
+        ImpactResult result;
+        std::size_t resistance = 0;
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            Vec3& push = result.push[surface_of_[c]];
+            push = problem_.push(c) * surface.normal;
+            if (surface.friction == 0.0) continue;
+            const auto [first, second] = tangent_frame(surface.normal);
+            const auto force = problem_.force_of(resistance++);
+            push += force[0] * first + force[1] * second;
+        }
+        const MotionVector change = problem_.change();
+        result.after = before_;
+        result.after.velocity += Vec3{change[0], change[1], change[2]};
+        if (radius_ > 0.0) result.after.spin += (kTurning / radius_) * Vec3{change[3], change[4], change[5]};
+        return result;
+    }
+
+    /// What rounding may do to twice the energy over the mass: more where surfaces press against each other.
+    [[nodiscard]] double rounding(const ImpactResult& result) const {
+        double squared_pushes = energy(before_, radius_);
+        for (const Vec3& push : result.push) squared_pushes += length_squared(push);
+        return kEnergyRounding * squared_pushes;
+    }
+
+    [[nodiscard]] bool gains(const ImpactResult& result) const {
+        return energy(result.after, radius_) > energy(before_, radius_) + rounding(result);
+    }
+
+    /// Without the energy that rounding has let in; without losses with all of it.
+    [[nodiscard]] ImpactResult kept(ImpactResult result) const {
+        const double is = energy(result.after, radius_);
+        const double was = energy(before_, radius_);
+        const bool loses_none = restitution_ == 1.0 && was - is <= rounding(result) &&
+                                std::all_of(surfaces_.begin(), surfaces_.end(),
+                                            [](const ImpactSurface& surface) { return surface.friction == 0.0; });
+        if (is > was || (loses_none && is > 0.0)) {
+            const double part = std::sqrt(was / is);
+            result.after.velocity *= part;
+            result.after.spin *= part;
+        }
+        return result;
+    }
+
+    const Motion& before_;
+    double radius_;
+    std::span<const ImpactSurface> surfaces_;
+    double restitution_ = 1.0;
+    std::size_t count_ = 0;  // different normals
+    std::array<std::size_t, ImpactResult::kMostSurfaces> surface_of_{};
+    CoulombProblem problem_;
+};
+
+}  // namespace
+
+ImpactResult solve_impact(const Motion& before, double radius, std::span<const ImpactSurface> surfaces) {
+    return Impact(before, radius, surfaces).solve();
+}
+
+}  // namespace ricochet

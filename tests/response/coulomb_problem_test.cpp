@@ -1,0 +1,233 @@
+#include "ricochet/response/coulomb_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "ricochet/core/random.h"
+#include "ricochet/core/vec3.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace {
+
+struct TestContact {
+    Vec3 normal;
+    double friction;
+};
+
+const double kTurning = std::sqrt(2.5);
+
+MotionVector motion_vector(const Vec3& v, const Vec3& w) { return {v.x, v.y, v.z, w.x, w.y, w.z}; }
+
+double product(const MotionVector& a, const MotionVector& b) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
+    return sum;
+}
+
+/// A sphere (or point) under a motion that forces would give it alone, as numbers of a problem.
+void add_contacts(CoulombProblem& problem, const std::vector<TestContact>& contacts, const MotionVector& free,
+                  bool is_sphere) {
+    for (const TestContact& contact : contacts) {
+        const MotionVector along = motion_vector(contact.normal, {});
+        problem.add({along, product(along, free)});
+    }
+    for (std::uint32_t k = 0; k < contacts.size(); ++k) {
+        const Vec3& n = contacts[k].normal;
+        CoulombResistance sliding;
+        sliding.contact = k;
+        sliding.bound = contacts[k].friction;
+        const auto [first, second] = tangent_frame(n);
+        sliding.direction[0] = motion_vector(first, is_sphere ? kTurning * cross(first, n) : Vec3{});
+        sliding.direction[1] = motion_vector(second, is_sphere ? kTurning * cross(second, n) : Vec3{});
+        for (std::size_t d = 0; d < 2; ++d) sliding.rate[d] = product(sliding.direction[d], free);
+        problem.add(sliding);
+    }
+}
+
+/// Signorini's and Coulomb's conditions, checked one by one, within `rounding` of the largest force and rate.
+void expect_solved(const CoulombProblem& problem, const std::vector<TestContact>& contacts, const MotionVector& free,
+                   bool is_sphere, double rounding) {
+    MotionVector motion = free;
+    const MotionVector change = problem.change();
+    for (std::size_t c = 0; c < motion.size(); ++c) motion[c] += change[c];
+    double most = 1.0;
+    for (std::size_t k = 0; k < contacts.size(); ++k) most = std::max(most, problem.push(k));
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+        const Vec3& n = contacts[k].normal;
+        const double gap_rate = product(motion_vector(n, {}), motion);
+        const double push = problem.push(k);
+        ASSERT_GE(push, 0.0);
+        ASSERT_GE(gap_rate, -rounding);
+        ASSERT_LE(std::min(push, std::fabs(gap_rate)), rounding);
+        const auto [first, second] = tangent_frame(n);
+        const auto force = problem.force_of(k);
+        std::array<double, 2> slip{};
+        for (std::size_t d = 0; d < 2; ++d) {
+            const Vec3& t = d == 0 ? first : second;
+            slip[d] = product(motion_vector(t, is_sphere ? kTurning * cross(t, n) : Vec3{}), motion);
+        }
+        const double size = std::hypot(force[0], force[1]);
+        const double speed = std::hypot(slip[0], slip[1]);
+        ASSERT_LE(size, contacts[k].friction * push + rounding * most);
+        if (speed <= 100.0 * rounding) continue;
+        // It slips: the force is the largest there can be, against the slip.
+        const double against = force[0] * slip[0] + force[1] * slip[1] + contacts[k].friction * push * speed;
+        ASSERT_LE(std::fabs(against), rounding * most);
+    }
+}
+
+TEST(CoulombProblem, WithoutContactsChangesNothing) {
+    CoulombProblem problem;
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    EXPECT_EQ(problem.change(), MotionVector{});
+}
+
+// a = g sin A and N = g cos A; a sphere rolls with 5/7 of it while tan A <= 7/2 mu.
+TEST(CoulombProblem, OnASlopeRollsOrSlips) {
+    for (const double angle : {0.1, 0.5, 1.0}) {
+        for (const double friction : {0.0, 0.1, 1.0}) {
+            const Vec3 n{-std::sin(angle), 0, std::cos(angle)};
+            const Vec3 down{-std::cos(angle), 0, -std::sin(angle)};
+            const std::vector<TestContact> slope{{n, friction}};
+            const MotionVector free = motion_vector({0, 0, -9.81}, {});
+            CoulombProblem problem;
+            add_contacts(problem, slope, free, true);
+            ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+            const double pull = 9.81 * std::sin(angle);
+            const double hold = friction * 9.81 * std::cos(angle);
+            const double expected = std::max(pull - hold, 5.0 / 7.0 * pull);
+            const Vec3 a{problem.change()[0], problem.change()[1], problem.change()[2] - 9.81};
+            EXPECT_LT(length(a - expected * down), 1e-13);
+            EXPECT_NEAR(problem.push(0), 9.81 * std::cos(angle), 1e-13);
+        }
+    }
+}
+
+// A sphere in a V-groove of walls at A to the horizontal, that runs down at `slope`: rolling g sin / (1 + 0.4 / cos^2
+// A), slipping g sin - mu g cos / cos A.
+TEST(CoulombProblem, InAGrooveRollsOrSlipsAlongIt) {
+    constexpr double kGravity = 9.81;
+    for (const double walls : {5.0, 30.0, 45.0, 80.0, 85.0}) {
+        for (const double slope : {2.0, 20.0, 60.0}) {
+            for (const double friction : {0.0, 0.05, 0.3, 1.0}) {
+                const double a = walls * std::numbers::pi / 180.0;
+                const double s = slope * std::numbers::pi / 180.0;
+                const std::vector<TestContact> groove{{{0, std::sin(a), std::cos(a)}, friction},
+                                                      {{0, -std::sin(a), std::cos(a)}, friction}};
+                // The groove's own axes: x along it, downhill.
+                const MotionVector free = motion_vector({kGravity * std::sin(s), 0, -kGravity * std::cos(s)}, {});
+                CoulombProblem problem;
+                add_contacts(problem, groove, free, true);
+                ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+                const double rolling = kGravity * std::sin(s) / (1.0 + 0.4 / (std::cos(a) * std::cos(a)));
+                const double slipping = kGravity * (std::sin(s) - friction * std::cos(s) / std::cos(a));
+                const double found = free[0] + problem.change()[0];
+                EXPECT_NEAR(found / std::max(rolling, slipping), 1.0, 1e-12)
+                    << walls << ' ' << slope << ' ' << friction;
+                // What holds by friction may share the load with it.
+                for (std::size_t k = 0; slipping > rolling && k < 2; ++k) {
+                    EXPECT_NEAR(problem.push(k), kGravity * std::cos(s) / (2.0 * std::cos(a)), 1e-11);
+                }
+            }
+        }
+    }
+}
+
+// Two contacts can hold a sphere by pressing it between them, as hard as one likes. Nothing asks for that here: it is
+// pulled out, and leaves.
+TEST(CoulombProblem, TakesNoWedgingThatNothingAsksFor) {
+    const double a = 1.45;  // walls so steep that friction 2 could hold it against any pull
+    const std::vector<TestContact> wedge{{{0, std::sin(a), std::cos(a)}, 2.0}, {{0, -std::sin(a), std::cos(a)}, 2.0}};
+    const MotionVector out = motion_vector({0, 0, 1}, {});
+    CoulombProblem problem;
+    add_contacts(problem, wedge, out, true);
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    EXPECT_EQ(problem.change(), MotionVector{});
+    // Pressed in it is held, by no more than it takes.
+    const MotionVector in = motion_vector({0, 0, -1}, {});
+    problem.clear();
+    add_contacts(problem, wedge, in, true);
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    EXPECT_NEAR(problem.change()[2], 1.0, 1e-12);
+    EXPECT_LT(problem.push(0), 1.0);
+}
+
+TEST(CoulombProblem, ResistsRollingAndSpinning) {
+    CoulombProblem problem;
+    problem.add({motion_vector({0, 0, 1}, {}), -10.0});
+    // It spins on the spot, and a couple takes that away.
+    CoulombResistance spinning;
+    spinning.size = 1;
+    spinning.bound = 0.02;
+    spinning.direction[0] = motion_vector({}, {0, 0, 1});
+    spinning.is_moving = true;
+    spinning.heading = {1.0, 0.0};
+    problem.add(spinning);
+    // Something would turn it about x; the resistance to rolling holds that.
+    CoulombResistance rolling;
+    rolling.bound = 0.05;
+    rolling.direction = {motion_vector({}, {1, 0, 0}), motion_vector({}, {0, 1, 0})};
+    rolling.rate = {0.3, 0.0};
+    problem.add(rolling);
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    EXPECT_NEAR(problem.push(0), 10.0, 1e-13);
+    EXPECT_NEAR(problem.force_of(0)[0], -0.2, 1e-14);
+    EXPECT_NEAR(problem.force_of(1)[0], -0.3, 1e-13);
+    EXPECT_NEAR(problem.change()[5], -0.2, 1e-14);
+    EXPECT_NEAR(problem.change()[3], -0.3, 1e-13);
+}
+
+TEST(CoulombProblem, OfRandomContactsIsSolved) {
+    RandomSequence random(3, 0, 0);
+    const int cases = 20'000 * test::case_factor(20);
+    int unsolved = 0;
+    const auto problem = std::make_unique<CoulombProblem>();
+    for (int k = 0; k < cases; ++k) {
+        SCOPED_TRACE(k);
+        const bool is_sphere = random.uniform() < 0.7;
+        const double spread = random.uniform() < 0.5 ? 1.0 : std::pow(10.0, -4.0 * random.uniform());
+        std::vector<TestContact> contacts(static_cast<std::size_t>(1 + 5 * random.uniform()));
+        const Vec3 middle = random.unit_vector();
+        for (TestContact& contact : contacts) {
+            contact.friction = random.uniform() < 0.2 ? 0.0 : 2.0 * random.uniform();
+            contact.normal = normalized(middle + 0.999 * spread * random.unit_vector());
+        }
+        const Vec3 velocity = random.unit_vector();
+        const MotionVector free = motion_vector(velocity, is_sphere ? 2.0 * random.in_unit_ball() : Vec3{});
+        problem->clear();
+        add_contacts(*problem, contacts, free, is_sphere);
+        if (problem->solve(CoulombProblem::Effort::all)) {
+            expect_solved(*problem, contacts, free, is_sphere, 1e-10);
+        } else {
+            ++unsolved;
+        }
+    }
+    EXPECT_LE(unsolved, 1 + cases / 5'000);
+}
+
+TEST(CoulombProblem, HasTheSameAnswerEveryTimeAndForAnyUnit) {
+    const std::vector<TestContact> contacts{{{0, 0.6, 0.8}, 0.5}, {{0, -0.8, 0.6}, 0.7}, {{1, 0, 0}, 0.1}};
+    const MotionVector free = motion_vector({-1, 0.25, -9}, {1, 2, 3});
+    CoulombProblem problem;
+    add_contacts(problem, contacts, free, true);
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    const MotionVector once = problem.change();
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    EXPECT_EQ(problem.change(), once);
+    MotionVector larger = free;
+    for (double& x : larger) x *= 0x1p40;
+    problem.clear();
+    add_contacts(problem, contacts, larger, true);
+    ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
+    for (std::size_t c = 0; c < once.size(); ++c) EXPECT_EQ(problem.change()[c], 0x1p40 * once[c]);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -111,6 +111,7 @@ TEST_P(Determinism, TheStateDoesNotDependOnWhetherRestingParticlesSleep) {
         setup.acceleration.sleeping = sleeping;
         setup.options.duration = 4.0;
         setup.materials[1] = {"felt", 0.3, 0.5};
+        setup.materials[1].rolling_friction = 0.2;  // without it spheres roll on
         setup.emitters[0].rate = {};
         setup.emitters[0].lifetime = {100.0, 0.0};
         return Simulation(std::move(setup));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <vector>
 
 namespace ricochet {
 namespace {
@@ -16,7 +17,9 @@ std::array<Vec3, 1> slope(double angle) { return {Vec3{std::sin(angle), 0, std::
 
 ContactInterval plan_slide(const Vec3& velocity, const Vec3& a, std::span<const Vec3> normals, double friction,
                            double duration) {
-    return plan_interval({velocity, {}}, 0.0, a, normals, {friction, 0.0, 1.0}, duration);
+    std::vector<HoldingSurface> surfaces;
+    for (const Vec3& normal : normals) surfaces.push_back({normal, friction, 0.0});
+    return plan_interval({velocity, {}}, 0.0, a, surfaces, {}, duration);
 }
 
 TEST(ContactMode, RestsOnAFloorWithoutPull) {

@@ -119,7 +119,7 @@ ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const Con
     const CollisionWorld& world = geometry.world();
     const QueryMargins margins(world, query.path, query.radius);
     scratch.clear();
-    NarrowPhase narrow_phase(geometry, query.path, margins, scratch);
+    NarrowPhase narrow_phase(geometry, query.path, margins, query.held, scratch);
     narrow_phase.test_planes();
     narrow_phase.test_shapes();
     const auto [ahead, tested] = test_triangles(world, margins, query, narrow_phase, scratch);

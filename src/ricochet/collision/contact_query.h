@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ricochet/collision/broad_phase.h"
@@ -67,6 +68,9 @@ struct ContactQuery {
     const LookAhead* look_ahead = nullptr;
     /// All triangles near this path, where an earlier query has found them (LookAheadResult::candidates).
     ContactCandidates candidates = {};
+    /// Surfaces that the particle touches and is held by, so that it follows them: they are no contacts, and block only
+    /// what intersects them.
+    std::span<const SurfaceId> held = {};
 };
 
 /// The first contact, and what else the query has found on the way to it.

@@ -56,9 +56,11 @@ QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double
 }
 
 NarrowPhase::NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
-                         ContactScratch& scratch)
-    : geometry_(geometry), world_(geometry.world()), path_(path), margins_(margins), scratch_(scratch) {
-    if (margins.radius > 0.0) sphere_.emplace(path, margins.radius);
+                         std::span<const SurfaceId> held, ContactScratch& scratch)
+    : geometry_(geometry), world_(geometry.world()), path_(path), margins_(margins), held_(held), scratch_(scratch) {
+    if (margins.radius == 0.0) return;
+    sphere_.emplace(path, margins.radius);
+    scratch_.overlapped.assign(held.begin(), held.end());
 }
 
 void NarrowPhase::test_planes() {
@@ -127,6 +129,7 @@ double NarrowPhase::test_sphere(std::uint32_t triangle) {
 }
 
 void NarrowPhase::add_hit(const Hit& hit) {
+    if (std::find(held_.begin(), held_.end(), hit.surface) != held_.end()) return;
     scratch_.hits.push_back(hit);
     if (!(hit.time < first_time_)) return;
     first_time_ = hit.time;

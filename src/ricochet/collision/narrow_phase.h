@@ -32,9 +32,9 @@ struct QueryMargins {
 /// the scratch memory: the hits, the surfaces that the path does not clear, those overlapped from its start.
 class NarrowPhase {
 public:
-    /// All must outlive it. The path must be finite.
+    /// All must outlive it. The path must be finite. held: see ContactQuery.
     NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
-                ContactScratch& scratch);
+                std::span<const SurfaceId> held, ContactScratch& scratch);
 
     void test_planes();
     void test_shapes();
@@ -58,6 +58,7 @@ private:
     const CollisionWorld& world_;
     const Path& path_;
     const QueryMargins& margins_;
+    std::span<const SurfaceId> held_;  ///< followed, see ContactQuery
     ContactScratch& scratch_;
     std::optional<SphereSweep> sphere_;  ///< nothing for points
     double first_time_ = std::numeric_limits<double>::infinity();

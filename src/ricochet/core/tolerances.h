@@ -256,8 +256,8 @@ inline constexpr double kSmallestTolerance = 1e-30;
 inline constexpr double kStateRounding = 0x1p-54;
 
 /// Largest defect of the equations of contact with friction, as a part of the largest rate (forces per mass and rates
-/// have the same unit), up to which they count as solved. Reason: some ten times what rounding leaves. Smaller: problems
-/// that are solved count as unsolved. Larger: energy may grow by as much.
+/// have the same unit), up to which they count as solved. Reason: some ten times what rounding leaves. Smaller:
+/// problems that are solved count as unsolved. Larger: energy may grow by as much.
 inline constexpr double kCoulombResidual = 0x1p-40;
 
 /// The defect at which they are not improved any more. Reason: rounding of six products. Smaller: steps that change
@@ -275,10 +275,10 @@ inline constexpr double kStiffCompliance = 1e-10;
 inline constexpr double kStiffening = 1e-2;
 inline constexpr double kShortestStiffening = 0.9;
 
-/// Length of the difference of unit normals up to which surfaces count as one in an impact or a contact. Reason: what two
-/// such surfaces do apart differs by as much, far below what a path's parabolas are exact to; the facets of a flat
-/// surface, and seams, differ by rounding. Smaller: nearly redundant contacts, whose forces are ill-conditioned. Larger:
-/// a wedge of that angle holds less than it should.
+/// Length of the difference of unit normals up to which surfaces count as one in an impact or a contact. Reason: what
+/// two such surfaces do apart differs by as much, far below what a path's parabolas are exact to; the facets of a flat
+/// surface, and seams, differ by rounding. Smaller: nearly redundant contacts, whose forces are ill-conditioned.
+/// Larger: a wedge of that angle holds less than it should.
 inline constexpr double kSameDirection = 1e-9;
 
 /// By how much rounding may raise twice the energy over the mass in an impact, as a part of the squares of the velocity
@@ -286,5 +286,39 @@ inline constexpr double kSameDirection = 1e-9;
 /// the rounding of the solved equations. Smaller: restitution is lowered where only rounding is seen. Larger: a gain by
 /// friction is scaled away instead of lowering the restitution.
 inline constexpr double kEnergyRounding = 0x1p-44;
+
+/// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred
+/// times the rounding of the solved equations. Smaller: particles at rest creep at 1e-16 of gravity. Larger: what
+/// begins to slide on a slope at the angle of friction is held.
+inline constexpr double kHoldRounding = 0x1p-40;
+
+/// Part of a direction of motion that must be at right angles to others for it to be one of its own. Reason: a
+/// direction made of rounding would take a motion away that nothing opposes. Smaller: that. Larger: narrow wedges let
+/// move what they hold.
+inline constexpr double kDependentDirection = 0x1p-36;
+
+/// Speed along a surface's normal, as a part of the speed, from which the particle leaves it. Reason: some hundred
+/// roundings. Smaller: rounding lets particles lose what holds them. Larger: slow departures are held back.
+inline constexpr double kLeavingRounding = 0x1p-46;
+
+/// Angle, rad, by which a particle turns around an edge or along a curved surface in one arc. Reason: the fifth power
+/// of it is the error of an arc. Smaller: more arcs (each costs a query). Larger: paths of swings and rolls are less
+/// exact.
+inline constexpr double kMaxArcAngle = 0.1;
+
+/// Largest part by which an arc's end is corrected to have its energy. Reason: the method's own error is far below it;
+/// more would hide another mistake. Smaller: slow turning points are left uncorrected. Larger: that.
+inline constexpr double kMostEnergyCorrection = 1e-2;
+
+/// Rebound, as a part of the resting speed, of which the bounce cascade takes no time worth counting. Reason: falling
+/// through the contact offset ends at some 1e-7 m/s. Smaller: particles rattle between surfaces by their offsets.
+/// Larger: cascades end too early.
+inline constexpr double kNegligibleRebound = 1e-3;
+
+/// Slip of a sphere that several surfaces hold, relative to its speed, up to which its direction does not count: the
+/// surface sticks, or slips in the direction that its forces give it. Reason: the direction of a slip that is about to
+/// end turns within nanoseconds, and contacts open and close with it. Smaller: that. Larger: slow slip ends too early,
+/// though slip that ends within an interval of its own never comes into this range.
+inline constexpr double kSlowSlip = 0x1p-24;
 
 }  // namespace ricochet

@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_motion.h"
+#include "ricochet/response/held_motion.h"
 #include "ricochet/response/impact_answer.h"
 
 namespace ricochet {
@@ -83,6 +84,21 @@ void ContactManifold::touch_again(const KeptContact& kept, const TouchRule& rule
     }
 }
 
+void ContactManifold::drop_left() {
+    for (std::size_t k = count_; k-- > 0;) {
+        if (leaves(particle_.velocity, normals_[k])) remove(k);
+    }
+}
+
+bool ContactManifold::has_point(const Vec3& normal) const {
+    return std::any_of(normals().begin(), normals().end(),
+                       [&](const Vec3& n) { return 1.0 - dot(n, normal) <= seam_turn(particle_); });
+}
+
+void ContactManifold::touch(SurfaceId surface, const TouchRule& rule) {
+    if (const auto point = touched(surface, rule)) add(*point);
+}
+
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const TouchRule& rule) const {
     const Vec3& p = particle_.position;
@@ -101,20 +117,30 @@ std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const 
     return ContactSurface{surface, distance < 0.0 ? -normal : normal, world.is_flat(surface)};
 }
 
-void ContactManifold::load(const Vec3& pull) { loads_ = normal_accelerations(pull, normals()); }
+void ContactManifold::load(const Vec3& pull) {
+    const auto accelerations = normal_accelerations(pull, normals());
+    unload();
+    for (std::size_t k = 0; k < count_; ++k) loads_[k] = accelerations[k] * normals_[k];
+}
 
-double ContactManifold::friction(const Vec3& pull, const ImpactAnswer& impact) const {
-    double friction = 0.0;
-    for (std::size_t k = 0; k < count_; ++k) friction += loads_[k] * impact.material_of(surfaces_[k]).friction;
-    const double all = length(pull - project_off(pull, normals()));
-    return all > 0.0 ? friction / all : 0.0;
+void ContactManifold::load(const ContactInterval& interval) {
+    if (count_ > 1) loads_ = interval.push;
+}
+
+ContactManifold::Holding ContactManifold::holding(const ImpactAnswer& impact) const {
+    Holding holding;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const Material& material = impact.material_of(surfaces_[k]);
+        holding.surfaces[holding.count++] = {normals_[k], material.friction, material.rolling_friction};
+    }
+    return holding;
 }
 
 void ContactManifold::record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const {
     Vec3 left = velocity_change;
     for (std::size_t k = 1; k < count_; ++k) {
-        if (loads_[k] == 0.0) continue;
-        const Vec3 part = (elapsed * loads_[k]) * normals_[k];
+        if (loads_[k] == Vec3{}) continue;
+        const Vec3 part = elapsed * loads_[k];
         impact.push(surfaces_[k], part, false);
         left -= part;
     }

@@ -3,12 +3,14 @@
 /// surface holds it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
 #include <span>
 
 #include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -49,6 +51,12 @@ public:
     void add(const ContactSurface& surface);
     void clear();
     void remove(std::size_t k);
+    /// Removes the contact points that the velocity leaves.
+    void drop_left();
+    /// True when a contact point has this normal, but for rounding.
+    [[nodiscard]] bool has_point(const Vec3& normal) const;
+    /// Adds a surface, if it is touched.
+    void touch(SurfaceId surface, const TouchRule& rule);
 
     /// Keeps surfaces that the particle collides with in mind: replace() tries them again.
     void remember(std::span<const ContactSurface> surfaces);
@@ -63,15 +71,24 @@ public:
     /// Distributes over the contact points what a pull, m/s^2, presses onto them.
     void load(const Vec3& pull);
     void unload() { loads_ = {}; }
-    [[nodiscard]] bool is_loaded() const { return loads_[0] > 0.0 || loads_[1] > 0.0 || loads_[2] > 0.0; }
-    /// Coulomb coefficient of all contact points together under the pull that was given to load().
-    [[nodiscard]] double friction(const Vec3& pull, const ImpactAnswer& impact) const;
-    /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its normal part by its load,
-    /// what is left (friction) on the first.
+    [[nodiscard]] bool is_loaded() const {
+        return std::any_of(loads_.begin(), loads_.end(), [](const Vec3& load) { return load != Vec3{}; });
+    }
+    /// The same as an interval says it.
+    void load(const ContactInterval& interval);
+    /// The contact points with their materials.
+    struct Holding {
+        std::array<HoldingSurface, kMostHolding> surfaces;
+        std::size_t count = 0;
+        [[nodiscard]] std::span<const HoldingSurface> all() const { return {surfaces.data(), count}; }
+    };
+    [[nodiscard]] Holding holding(const ImpactAnswer& impact) const;
+    /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its part by its load, what
+    /// is left on the first.
     void record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const;
 
 private:
-    static constexpr std::size_t kMostPoints = 3;
+    static constexpr std::size_t kMostPoints = kMostHolding;
     static constexpr std::size_t kMostRecent = 6;
 
     void set(std::size_t k, const ContactSurface& surface);
@@ -85,7 +102,7 @@ private:
     std::array<SurfaceId, kMostPoints> surfaces_{};  // 0 beyond count_
     std::array<Vec3, kMostPoints> normals_;
     std::array<bool, kMostPoints> flat_{};
-    std::array<double, kMostPoints> loads_{};      // m/s^2 with which each holds the particle
+    std::array<Vec3, kMostPoints> loads_{};        // m/s^2 with which each holds the particle
     std::array<SurfaceId, kMostRecent> recent_{};  // a ring of the latest surfaces touched
     std::size_t recent_count_ = 0;                 // ever touched
 };

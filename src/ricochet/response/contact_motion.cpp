@@ -5,6 +5,7 @@
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/held_motion.h"
 
 namespace ricochet {
 namespace {
@@ -247,21 +248,23 @@ std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> 
     return best;
 }
 
-ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a, std::span<const Vec3> normals,
-                              const Grip& grip, double duration) {
-    const Motion start{project_off(motion.velocity, normals), motion.spin};
-    const Vec3 along = project_off(a, normals);
+ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
+                              std::span<const HoldingSurface> surfaces, const Grip& grip, double duration) {
+    if (surfaces.size() != 1) return plan_held_interval(motion, radius, a, surfaces, grip, duration);
+    const HoldingSurface& surface = surfaces.front();
+    const Vec3& n = surface.normal;
+    const Motion start{project_off(motion.velocity, {&n, 1}), motion.spin};
+    const Vec3 along = project_off(a, {&n, 1});
     const double pressing = grip.pressure * length(a - along);
-    const double most_friction = grip.friction * pressing;
-    if (radius == 0.0 || normals.size() != 1) return slide_of_point(start, along, most_friction, grip, duration);
-    const Vec3& n = normals.front();
+    const double most_friction = surface.friction * pressing;
+    if (radius == 0.0) return slide_of_point(start, along, most_friction, grip, duration);
     const Vec3 slip = slip_velocity(start, radius, n);
     const double slip_speed = length(slip);
     if (slip_speed > kSlipRounding * (length(start.velocity) + radius * length(start.spin))) {
         return slide_of_sphere(start, radius, n, along, slip / slip_speed, slip_speed, most_friction, grip, duration);
     }
     // Resistance to rolling brakes the centre by friction too: by no more than friction can give.
-    const double most_rolling = std::min(grip.rolling_friction * pressing, most_friction / kRollingShare);
+    const double most_rolling = std::min(surface.rolling_friction * pressing, most_friction / kRollingShare);
     const double pull = length(along);
     if (grips(length(start.velocity), pull, most_rolling, most_friction)) {
         return roll(start, radius, n, along, most_rolling, grip, duration);
@@ -269,17 +272,21 @@ ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a
     return slide_of_sphere(start, radius, n, along, along / pull, 0.0, most_friction, grip, duration);
 }
 
-Motion end_of_interval(const ContactInterval& interval, double elapsed, Motion motion, double radius, const Vec3& n) {
+Motion end_of_interval(const ContactInterval& interval, double elapsed, Motion motion, double radius,
+                       std::span<const HoldingSurface> surfaces) {
     motion.spin = interval.motion.spin + elapsed * interval.spin_acceleration;
     const bool whole = elapsed >= interval.duration;
+    if (surfaces.size() > 1) {
+        return whole ? along_surfaces(motion, radius, surfaces, interval.stuck) : motion;
+    }
     if (whole && interval.stops) {
         // After braking to a stop only rounding is left along the heading.
         const Vec3 heading = normalized(interval.motion.velocity);
         motion.velocity -= dot(motion.velocity, heading) * heading;
         if (length(motion.velocity) <= kStopRounding * length(interval.motion.velocity)) motion.velocity = Vec3{};
     }
-    if (interval.rolls && radius > 0.0 && (whole || interval.motion.spin == Vec3{})) {
-        motion.spin = rolling_spin(motion, radius, n);
+    if (interval.rolls && radius > 0.0 && !surfaces.empty() && (whole || interval.motion.spin == Vec3{})) {
+        motion.spin = rolling_spin(motion, radius, surfaces.front().normal);
     }
     return motion;
 }

@@ -2,100 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
-
-namespace {
-
-/// Step along a surface that its curvature is taken over, as a fraction of its size.
-constexpr double kCurvatureStep = 1e-4;
-
-}  // namespace
-
-Vec3 ContactPath::pull(const ContactSurface& support, const Vec3& forces, const Vec3& velocity) const {
-    if (support.flat) return forces;
-    const Vec3 along = velocity - dot(velocity, support.normal) * support.normal;
-    return forces + (curvature(support, velocity) * length_squared(along)) * support.normal;
-}
-
-ContactFlight ContactPath::flight(const ContactInterval& interval, const ContactSurface& support) const {
-    const Vec3& v = interval.motion.velocity;
-    const Vec3& a = interval.acceleration;
-    Path path = parabola_path(particle_.position, v, a, interval.duration);
-    if (!is_finite(path.end)) return {{path, a, 0.0, particle_, v + path.duration * a}, false};
-    const double bend = curvature(support, path.end - particle_.position);
-    const double on = time_on(support, path, bend);
-    const bool leaves = on < interval.duration && bend >= 0.0;
-    if (on < interval.duration) path = parabola_path(particle_.position, v, a, on);
-    if (path.duration <= 0.0) return {{path, a, 0.0, particle_, v}, leaves};
-    if (support.flat) {
-        keep_offset(support, path);
-    } else if (bend < 0.0) {
-        path = chord(interval, support, path);
-    }
-    return {{path, a, 0.0, particle_, v + path.duration * a}, leaves};
-}
-
-/// Puts the end of a path along a flat support at the contact offset above its plane, also where the end lies a little
-/// beyond the rim.
-void ContactPath::keep_offset(const ContactSurface& support, Path& path) const {
-    const double side = dot(geometry_.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
-    const double height = side * geometry_.signed_distance_from(support.surface, path.end) - particle_.radius;
-    const double lift = contact_offset(path.end) - height;
-    // Next to the origin a height above a large triangle can be all rounding.
-    const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end);
-    if (is_rounding) path.end = flush_tiny(path.end + lift * support.normal);
-}
-
-/// The path to the end of a tangent lifted to the contact offset.
-Path ContactPath::chord(const ContactInterval& interval, const ContactSurface& support, const Path& path) const {
-    const CollisionWorld::Nearest there = geometry_.nearest(support.surface, path.end);
-    const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
-    const Vec3 lift = (side * (particle_.radius + contact_offset(path.end)) - there.distance) * there.normal;
-    const Vec3 velocity = interval.motion.velocity + lift / path.duration;
-    Path chord = parabola_path(particle_.position, velocity, interval.acceleration, path.duration);
-    chord.end = flush_tiny(path.end + lift);
-    return chord;
-}
-
-/// Curvature, 1/m, of the centre's path along a surface in the direction of the velocity: positive where the surface
-/// bends away from the particle, 0 on flat ones.
-double ContactPath::curvature(const ContactSurface& surface, const Vec3& velocity) const {
-    if (surface.flat) return 0.0;
-    const Vec3 along = velocity - dot(velocity, surface.normal) * surface.normal;
-    const double speed = length(along);
-    if (speed == 0.0) return 0.0;
-    const double size_of_surface = geometry_.world().size_of(surface.surface);
-    const double size = particle_.radius > 0.0 ? std::min(size_of_surface, particle_.radius) : size_of_surface;
-    const double step = kCurvatureStep * size;
-    const Vec3 heading = along / speed;
-    // A tangent soon comes out on the other side of a surface that bends towards it.
-    const auto normal_at = [&](double distance) {
-        const Vec3 normal = geometry_.nearest(surface.surface, particle_.position + distance * heading).normal;
-        return dot(normal, surface.normal) < 0.0 ? -normal : normal;
-    };
-    return dot(normal_at(step) - normal_at(-step), heading) / (2.0 * step);
-}
-
-/// How long, s, a path along a support stays on it, or has turned by kMaxChordAngle.
-double ContactPath::time_on(const ContactSurface& support, const Path& path, double curvature) const {
-    if (support.flat) {
-        Path of_contact_point = path;
-        of_contact_point.c[0] -= particle_.radius * support.normal;
-        return geometry_.world().time_over(support.surface, of_contact_point,
-                                           kTouchingOffsets * contact_offset(particle_.position));
-    }
-    const double distance = curvature != 0.0 ? kMaxChordAngle / std::fabs(curvature) : INFINITY;
-    const double speed = length(path.c[1]);
-    const double acceleration = 2.0 * length(path.c[2]);
-    const double by_speed = speed > 0.0 ? distance / speed : path.duration;
-    const double by_acceleration = acceleration > 0.0 ? std::sqrt(2.0 * distance / acceleration) : path.duration;
-    return std::min({path.duration, by_speed, by_acceleration});
-}
 
 namespace {
 
@@ -113,7 +26,6 @@ ContactPhase::ContactPhase(ParticleStep& step)
       state_(step.state()),
       impact_(step.impact()),
       manifold_(step.geometry(), step.state()),
-      path_(step.geometry(), step.state()),
       began_(particle_.contact),
       began_still_(state_.velocity == Vec3{} && particle_.spin == Vec3{}),
       shortest_interval_(step.remaining() / kShortestIntervals) {}
@@ -128,7 +40,7 @@ std::optional<Contact> ContactPhase::resume() {
     if (kicks_first(rules_.settings.integrator.kind)) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
-        if (still && is_finite(forces) && plan(*support, forces, 1.0, step_.remaining()).at_rest) rest(forces, true);
+        if (still && is_finite(forces) && plan(forces, 1.0, step_.remaining()).at_rest) rest(forces, true);
         return std::nullopt;
     }
     const Stop stop = spend_cascade(*support, before.cascade_left);
@@ -136,12 +48,18 @@ std::optional<Contact> ContactPhase::resume() {
 }
 
 std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& contact, const Motion& arriving) {
-    const ContactSurface* const support = support_of(flight, contact, arriving);
     const bool is_stuck = std::exchange(remaining_at_contact_, step_.remaining()) == step_.remaining();
-    const bool is_slow = support != nullptr && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
+    std::optional<ContactSurface> support;
+    if (rebounds_slowly(flight, contact, arriving)) {
+        manifold_.replace(contact.all(), TouchRule::at(state_.position));
+        // What the step's own kick put into the velocity is not the speed of a departure.
+        const double fastest =
+            is_kicked(flight) ? std::numeric_limits<double>::infinity() : rules_.settings.resting_speed;
+        support = support_of(forces_now(flight), fastest);
+    }
+    const bool is_slow = support && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
-    if (support == nullptr) return std::nullopt;
-    manifold_.replace(contact.all(), TouchRule::at(state_.position));
+    if (!support) return std::nullopt;
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
         rest(is_kicked(flight) ? Vec3{} : forces_now(flight), false);
@@ -167,29 +85,65 @@ void ContactPhase::record_weight() {
     }
 }
 
-/// The surface that the particle is pressed onto most, when all its rebounds are so slow that the cascade of bounces
-/// becomes contact; null when it flies on.
-const ContactSurface* ContactPhase::support_of(const Flight& flight, const Contact& contact,
-                                               const Motion& arriving) const {
-    if (step_.remaining() <= 0.0) return nullptr;
+/// True when all rebounds of an impact are so slow that the cascade of bounces becomes contact, if something presses
+/// on.
+bool ContactPhase::rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const {
+    if (step_.remaining() <= 0.0) return false;
     const double resting_speed = rules_.settings.resting_speed;
     const Vec3 forces = forces_now(flight);
-    const ContactSurface* support = nullptr;
-    double hardest = 0.0;
-    for (const ContactSurface& surface : contact.all()) {
+    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact_.material_of(surface.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * flight.kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
         const bool can_rest = material.can_hold(resting_speed);
-        if (approach > 0.0 && rebound >= (can_rest ? resting_speed : 0.0)) return nullptr;
-        const double pressing = -dot(path_.pull(surface, forces, arriving.velocity), surface.normal);
-        if (!can_rest || pressing <= hardest) continue;
-        hardest = pressing;
-        support = &surface;
+        return !(approach > 0.0 && rebound >= (can_rest ? resting_speed : 0.0));
+    });
+}
+
+/// The surface of the manifold that holds it hardest when the rebounds are over; nothing when it flies on.
+std::optional<ContactSurface> ContactPhase::support_of(const Vec3& forces, double fastest) const {
+    const auto pushes = pushes_together(forces, fastest);
+    std::optional<ContactSurface> support;
+    double hardest = 0.0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (!(length(pushes[k]) > hardest)) continue;
+        hardest = length(pushes[k]);
+        support = manifold_[k];
     }
     return support;
+}
+
+/// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
+/// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
+std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces, double fastest) const {
+    std::array<Vec3, kMostHolding> pushes{};
+    std::array<HoldingSurface, kMostHolding> surfaces;
+    std::array<Vec3, kMostHolding> normals;
+    std::array<std::size_t, kMostHolding> number{};
+    std::size_t count = 0;
+    const ContactManifold::Holding holding = manifold_.holding(impact_);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        const bool can_rest = impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed);
+        if (!can_rest || dot(state_.velocity, surface.normal) > fastest) continue;
+        normals[count] = surface.normal;
+        surfaces[count] = holding.surfaces[k];
+        if (!surface.flat)
+            surfaces[count].bend = ContactArc::bend_of(step_.geometry(), state_, surface, state_.velocity);
+        number[count++] = k;
+    }
+    if (count == 1) {
+        const double pressing = pressing_on(manifold_[number[0]], forces, state_.velocity);
+        pushes[number[0]] = std::max(0.0, pressing) * normals[0];
+        return pushes;
+    }
+    const Motion motion{along_all(state_.velocity, {normals.data(), count}), particle_.spin};
+    const ContactInterval interval =
+        plan_held_interval(motion, state_.radius, forces, {surfaces.data(), count}, Grip{}, 0.0);
+    for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
+    return pushes;
 }
 
 /// The surface of the manifold that the particle is pressed onto most.
@@ -198,7 +152,7 @@ std::optional<ContactSurface> ContactPhase::hardest_pressed(const Vec3& forces) 
     double hardest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
-        const double pressing = -dot(path_.pull(surface, forces, state_.velocity), surface.normal);
+        const double pressing = pressing_on(surface, forces, state_.velocity);
         if (!(pressing > hardest)) continue;
         hardest = pressing;
         support = surface;
@@ -225,28 +179,40 @@ void ContactPhase::land(const Motion& arriving, double friction) {
 ContactPhase::Stop ContactPhase::finish_cascade(ContactSurface support) {
     const double rebound = std::max(0.0, dot(state_.velocity, support.normal));
     const Vec3 forces = rules_.forces.acceleration(state_);
-    const double pressing = -dot(path_.pull(support, forces, state_.velocity), support.normal);
+    const double pressing = pressing_on(support, forces, state_.velocity);
     const Vec3 before = state_.velocity;
     state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
+    settle(forces);
     impact_.push(support.surface, state_.velocity - before, false);
-    if (!(pressing > 0.0)) return {};
+    const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * rules_.settings.resting_speed;
+    if (!(pressing > 0.0) || rattles) return {};
     return spend_cascade(support, cascade_duration(rebound, pressing, slow_restitution(support.surface)));
+}
+
+/// Other surfaces of the manifold that will hold it are landed on as well: rattling between them would not end.
+void ContactPhase::settle(const Vec3& forces) {
+    const auto pushes = pushes_together(forces, rules_.settings.resting_speed);
+    std::array<Vec3, kMostHolding> normals;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (pushes[k] != Vec3{}) normals[count++] = manifold_[k].normal;
+    }
+    if (count < 2) return;
+    state_.velocity = project_off(along_all(state_.velocity, {normals.data(), count}), manifold_.normals());
 }
 
 /// Lets the time of a cascade pass, s; on average it presses with (1 + e) / 2 of the full force. What the step's end
 /// cuts off goes on in the next step.
 ContactPhase::Stop ContactPhase::spend_cascade(ContactSurface& support, double left) {
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
-    for (int part = 0; part < kMostIntervals && left > 0.0 && step_.remaining() > 0.0; ++part) {
+    // What is shorter than the clock can tell never passes.
+    const auto passes = [&](double time) { return state_.time + time > state_.time; };
+    for (int part = 0; part < kMostIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
         const Vec3 forces = rules_.forces.acceleration(state_);
-        const Vec3 pull = path_.pull(support, forces, state_.velocity);
-        const ContactInterval interval = plan(support, pull, pressure, std::min(left, step_.remaining()));
         const double before = step_.remaining();
-        if (interval.at_rest) {
-            wait(interval.duration, forces);
-        } else if (Stop stop = follow(interval, support, forces); stop.is_early()) {
-            return stop;
-        }
+        const Stop stop = advance(support, forces, true, pressure, std::min(left, before));
+        if (stop.is_early()) return stop;
+        if (stop.rests) wait(std::min(left, before), forces);
         left -= before - step_.remaining();
     }
     if (step_.remaining() <= 0.0) {
@@ -260,60 +226,214 @@ ContactPhase::Stop ContactPhase::spend_cascade(ContactSurface& support, double l
 std::optional<Contact> ContactPhase::follow_surface(ContactSurface support, bool kicked) {
     for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
-        const Vec3 pull = path_.pull(support, forces, state_.velocity);
-        if (dot(pull, support.normal) > 0.0) return std::nullopt;  // nothing presses any more
-        const ContactInterval interval = plan(support, pull, kicked ? 0.0 : 1.0, step_.remaining());
-        if (interval.at_rest) {
+        if (pressing_on(support, forces, state_.velocity) < 0.0) return std::nullopt;  // nothing presses any more
+        const Stop stop = advance(support, forces, !kicked, kicked ? 0.0 : 1.0, step_.remaining());
+        if (stop.is_early()) return stop.contact;
+        if (stop.rests) {
             rest(forces, !kicked);
             return std::nullopt;
         }
-        const Stop stop = follow(interval, support, forces);
-        if (stop.is_early()) return stop.contact;
     }
     if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.kept();
     return std::nullopt;
 }
 
-/// Plans an interval against all that is surface. pull: ContactPath::pull().
-ContactInterval ContactPhase::plan(const ContactSurface& support, const Vec3& pull, double pressure, double duration) {
-    manifold_.load(pull);
-    Grip grip;
-    grip.friction = manifold_.friction(pull, impact_);
-    grip.rolling_friction = impact_.material_of(support.surface).rolling_friction;
-    grip.pressure = pressure;
-    grip.shortest = shortest_interval_;
-    grip.negligible_path = kTouchingOffsets * contact_offset(state_.position);
-    return plan_interval({state_.velocity, particle_.spin}, state_.radius, pull, manifold_.normals(), grip, duration);
-}
-
-/// Follows one interval.
-ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, ContactSurface& support, const Vec3& forces) {
-    const auto [flight, leaves_surface] = path_.flight(interval, support);
-    if (flight.path.duration <= 0.0) return {std::nullopt, true};
-    const double before = step_.remaining();
-    const Vec3 turned = interval.motion.velocity - state_.velocity;
-    Stop stop{step_.follow(flight), leaves_surface};
-    const double elapsed = before - step_.remaining();
-    manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
-    const Vec3 normal = manifold_.empty() ? Vec3{} : manifold_.normals().front();
-    const Motion motion = end_of_interval(interval, elapsed, {state_.velocity, particle_.spin}, state_.radius, normal);
-    state_.velocity = motion.velocity;
-    particle_.spin = motion.spin;
-    if (!support.flat && !stop.is_early()) turn_along(support);
+/// One interval of at most `duration` seconds on all that is touched. support: one of it; replaced by the hardest
+/// pressed where the surfaces bend.
+ContactPhase::Stop ContactPhase::advance(ContactSurface& support, const Vec3& forces, bool has_forces, double pressure,
+                                         double duration) {
+    manifold_.drop_left();
+    if (manifold_.empty()) return {std::nullopt, true, false};
+    if (!bends()) {
+        const ContactInterval interval = plan(forces, pressure, duration);
+        return interval.at_rest ? Stop{std::nullopt, false, true} : follow(interval, support, forces);
+    }
+    Stop stop = follow_arc(forces, has_forces, pressure, duration);
+    if (stop.is_early() || stop.rests) return stop;
+    const auto next = hardest_pressed(has_forces ? rules_.forces.acceleration(state_) : Vec3{});
+    if (!next) return {std::nullopt, true, false};
+    support = *next;
     return stop;
 }
 
-/// After a chord: the contact normals at its end, and the velocity turned along them. Its speed is kept;
-/// the curvature that turned it is part of the pull.
-void ContactPhase::turn_along(ContactSurface& support) {
-    manifold_.touch_again(TouchRule::at(state_.position));
-    for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (manifold_[k].surface == support.surface) support = manifold_[k];
+/// Plans an interval against all that is surface.
+ContactInterval ContactPhase::plan(const Vec3& pull, double pressure, double duration) {
+    const Grip grip{pressure, shortest_interval_, kTouchingOffsets * contact_offset(state_.position)};
+    const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull,
+                                                   manifold_.holding(impact_).all(), grip, duration);
+    manifold_.load(pull);
+    manifold_.load(interval);
+    return interval;
+}
+
+/// Follows one interval on flat surfaces.
+ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const ContactSurface& support,
+                                        const Vec3& forces) {
+    const auto [flight, leaves_surface] = flight_along(interval, support);
+    if (flight.path.duration <= 0.0) return {std::nullopt, true, false};
+    const double before = step_.remaining();
+    const Vec3 turned = interval.motion.velocity - state_.velocity;
+    Stop stop{step_.follow(flight), leaves_surface, false};
+    const double elapsed = before - step_.remaining();
+    manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
+    const Motion motion = end_of_interval(interval, elapsed, {state_.velocity, particle_.spin}, state_.radius,
+                                          manifold_.holding(impact_).all());
+    state_.velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    return stop;
+}
+
+/// The path of an interval, up to where the support ends; its end keeps the contact offset.
+ContactPhase::ContactFlight ContactPhase::flight_along(const ContactInterval& interval,
+                                                       const ContactSurface& support) const {
+    const Vec3& v = interval.motion.velocity;
+    const Vec3& a = interval.acceleration;
+    Path path = parabola_path(state_.position, v, a, interval.duration);
+    if (!is_finite(path.end)) return {{path, a, 0.0, state_, v + path.duration * a}, false};
+    Path of_contact_point = path;
+    of_contact_point.c[0] -= state_.radius * support.normal;
+    const double on =
+        rules_.world.time_over(support.surface, of_contact_point, kTouchingOffsets * contact_offset(state_.position));
+    const bool leaves = on < interval.duration;
+    if (leaves) path = parabola_path(state_.position, v, a, on);
+    if (path.duration > 0.0) keep_offset(support, path);
+    return {{path, a, 0.0, state_, v + path.duration * a}, leaves};
+}
+
+/// Puts the end of a path along a flat support at the contact offset above its plane, also where the end lies a little
+/// beyond the rim.
+void ContactPhase::keep_offset(const ContactSurface& support, Path& path) const {
+    const SurfaceGeometry& geometry = step_.geometry();
+    const double side = dot(geometry.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
+    const double height = side * geometry.signed_distance_from(support.surface, path.end) - state_.radius;
+    const double lift = contact_offset(path.end) - height;
+    // Next to the origin a height above a large triangle can be all rounding.
+    const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end);
+    if (is_rounding) path.end = flush_tiny(path.end + lift * support.normal);
+}
+
+/// Follows one arc.
+ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration) {
+    find_held();
+    const ContactManifold::Holding materials = manifold_.holding(impact_);
+    const ContactArc arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
+                         {particle_.spin, pressure, has_forces, shortest_interval_,
+                          kTouchingOffsets * contact_offset(state_.position), duration});
+    if (arc.plan().at_rest) return {std::nullopt, false, true};
+    if (!arc.is_held(arc.start(), 0.0)) return {std::nullopt, true, false};
+    Stop stop;
+    const double whole = arc_duration(arc, stop.left_surface);
+    if (!(whole > 0.0)) return {std::nullopt, true, false};
+    ContactArc::State end = arc.at(whole);
+    Path path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, whole);
+    if (const double on = time_on_pieces(arc, path); on < whole) {
+        end = arc.at(on);
+        path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, on);
+        stop.left_surface = false;
     }
-    const auto turned = turned_along(state_.velocity, manifold_.normals());
-    if (!turned) return;
-    impact_.push(support.surface, *turned - state_.velocity, false);
-    state_.velocity = *turned;
+    const double before = step_.remaining();
+    const Vec3 velocity_before = state_.velocity;
+    stop.contact = step_.follow(path, held_);
+    const double elapsed = before - step_.remaining();
+    const Motion motion = stop.contact ? arc.at(stop.contact->time).motion : end.motion;
+    state_.velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    const Vec3 forces_after = has_forces ? rules_.forces.acceleration(state_) : Vec3{};
+    manifold_.load(arc.plan());
+    manifold_.record_push(state_.velocity - velocity_before - (0.5 * elapsed) * (forces + forces_after), elapsed,
+                          impact_);
+    add_held(stop.contact);
+    if (!stop.is_early()) touch_held();
+    return stop;
+}
+
+/// How long the arc lasts, s: until something changes, or where nothing holds it any more (`leaves`).
+double ContactPhase::arc_duration(const ContactArc& arc, bool& leaves) const {
+    constexpr int kHalvings = 40;
+    const double whole = arc.longest();
+    leaves = !arc.is_held(arc.at(whole), whole);
+    if (!leaves) return whole;
+    double low = 0.0;
+    double high = whole;
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (arc.is_held(arc.at(middle), middle) ? low : high) = middle;
+    }
+    return high;
+}
+
+/// The time on the path, s, from which another part of a surface is touched, or another surface where this one is.
+double ContactPhase::time_on_pieces(const ContactArc& arc, const Path& path) const {
+    constexpr int kHalvings = 32;
+    const SurfaceGeometry& geometry = step_.geometry();
+    const double reach = kTouchingOffsets * contact_offset(state_.position);
+    const auto has_passed = [&](double t) {
+        const Vec3 position = path.position(t);
+        double gap = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < manifold_.size(); ++k) {
+            const SurfaceId surface = manifold_[k].surface;
+            if (arc.feature(surface, position) != arc.feature(surface, state_.position)) return true;
+            gap = std::min(gap, geometry.nearest(surface, position).distance);
+        }
+        return std::any_of(held_.begin(), held_.end(), [&](SurfaceId surface) {
+            return geometry.nearest(surface, position).distance < gap - reach;
+        });
+    };
+    if (!has_passed(path.duration)) return path.duration;
+    double low = 0.0;
+    double high = path.duration;
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (has_passed(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+/// All surfaces that are touched at the points of the manifold: the triangles around an edge or a vertex.
+void ContactPhase::find_held() {
+    held_.clear();
+    for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
+    if (state_.radius == 0.0) return;
+    const double reach = state_.radius + kTouchingOffsets * contact_offset(state_.position);
+    step_.visit_near([&](SurfaceId surface) {
+        const CollisionWorld::Nearest nearest = step_.geometry().nearest(surface, state_.position);
+        if (nearest.distance > reach || std::find(held_.begin(), held_.end(), surface) != held_.end()) return;
+        if (manifold_.has_point(nearest.normal)) held_.push_back(surface);
+    });
+}
+
+/// The manifold as it is touched now, of what was touched before.
+void ContactPhase::touch_held() {
+    manifold_.touch_again(TouchRule::at(state_.position));
+    for (const SurfaceId surface : held_) manifold_.touch(surface, TouchRule::at(state_.position));
+}
+
+/// What holds the particle takes part in an impact on something else.
+void ContactPhase::add_held(std::optional<Contact>& contact) const {
+    if (!contact) return;
+    for (std::size_t k = 0; k < manifold_.size() && contact->count < Contact::kMostSurfaces; ++k) {
+        const bool is_there =
+            std::any_of(contact->all().begin(), contact->all().end(),
+                        [&](const ContactSurface& other) { return other.surface == manifold_[k].surface; });
+        const CollisionWorld::Nearest nearest = step_.geometry().nearest(manifold_[k].surface, state_.position);
+        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * contact_offset(state_.position)) continue;
+        contact->surfaces[static_cast<std::size_t>(contact->count++)] = {manifold_[k].surface, nearest.normal,
+                                                                         nearest.flat};
+    }
+}
+
+/// True when a surface of the manifold does.
+bool ContactPhase::bends() const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (!manifold_[k].flat) return true;
+    }
+    return false;
+}
+
+/// The acceleration with which a surface is pressed on, m/s^2: by forces, and where it bends by the motion along it.
+double ContactPhase::pressing_on(const ContactSurface& surface, const Vec3& forces, const Vec3& velocity) const {
+    if (surface.flat) return -dot(forces, surface.normal);
+    return -dot(forces, surface.normal) - ContactArc::bend_of(step_.geometry(), state_, surface, velocity);
 }
 
 /// Time passes at rest; the surfaces carry the weight.

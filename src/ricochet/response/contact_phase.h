@@ -3,48 +3,16 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/contact_arc.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/particle_step.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
-
-// The path of a particle's centre along a surface that holds it.
-
-/// What a particle follows in one contact interval.
-struct ContactFlight {
-    Flight flight;
-    bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
-};
-
-/// Paths along flat surfaces, and along curved ones in straight segments that turn by at most kMaxChordAngle.
-class ContactPath {
-public:
-    /// Both must outlive it; positions are the particle's present ones.
-    ContactPath(const SurfaceGeometry& geometry, const ForceInput& particle)
-        : geometry_(geometry), particle_(particle) {}
-
-    /// The acceleration, m/s^2, that presses and pulls: that of the forces, and on a curved surface the one by which
-    /// the path at this velocity turns away from a straight line.
-    [[nodiscard]] Vec3 pull(const ContactSurface& support, const Vec3& forces, const Vec3& velocity) const;
-
-    /// The path of a contact interval, up to where the support ends; its end keeps the contact offset. Where a surface
-    /// bends away it is a tangent, at whose end the particle falls the little that the surface has bent; where it bends
-    /// towards the particle, a chord.
-    [[nodiscard]] ContactFlight flight(const ContactInterval& interval, const ContactSurface& support) const;
-
-private:
-    [[nodiscard]] double curvature(const ContactSurface& surface, const Vec3& velocity) const;
-    [[nodiscard]] double time_on(const ContactSurface& support, const Path& path, double curvature) const;
-    void keep_offset(const ContactSurface& support, Path& path) const;
-    [[nodiscard]] Path chord(const ContactInterval& interval, const ContactSurface& support, const Path& path) const;
-
-    const SurfaceGeometry& geometry_;
-    const ForceInput& particle_;
-};
 
 /// Contact that lasts, of one particle in one step. It is made of contact intervals of constant acceleration, and ends
 /// with the step, where nothing presses the particle on any more, where the surface ends, or at another contact.
@@ -64,24 +32,42 @@ public:
     void record_weight();
 
 private:
+    /// What a particle follows in one contact interval on flat surfaces.
+    struct ContactFlight {
+        Flight flight;
+        bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
+    };
     /// Why an interval, or several, have ended before their time.
     struct Stop {
         std::optional<Contact> contact;  ///< it has come to another contact
-        bool left_surface = false;       ///< the surface has ended
+        bool left_surface = false;       ///< the surface has ended, or holds it no more
+        bool rests = false;              ///< nothing moves; no time has passed
         [[nodiscard]] bool is_early() const { return contact || left_surface; }
     };
 
-    [[nodiscard]] const ContactSurface* support_of(const Flight& flight, const Contact& contact,
-                                                   const Motion& arriving) const;
+    [[nodiscard]] bool rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const;
+    [[nodiscard]] std::optional<ContactSurface> support_of(const Vec3& forces, double fastest) const;
+    [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     void land(const Motion& arriving, double friction);
     [[nodiscard]] Stop finish_cascade(ContactSurface support);
+    void settle(const Vec3& forces);
     [[nodiscard]] Stop spend_cascade(ContactSurface& support, double left);
     std::optional<Contact> follow_surface(ContactSurface support, bool kicked);
-    [[nodiscard]] ContactInterval plan(const ContactSurface& support, const Vec3& pull, double pressure,
-                                       double duration);
-    [[nodiscard]] Stop follow(const ContactInterval& interval, ContactSurface& support, const Vec3& forces);
-    void turn_along(ContactSurface& support);
+    [[nodiscard]] Stop advance(ContactSurface& support, const Vec3& forces, bool has_forces, double pressure,
+                               double duration);
+    [[nodiscard]] ContactInterval plan(const Vec3& pull, double pressure, double duration);
+    [[nodiscard]] Stop follow(const ContactInterval& interval, const ContactSurface& support, const Vec3& forces);
+    [[nodiscard]] ContactFlight flight_along(const ContactInterval& interval, const ContactSurface& support) const;
+    void keep_offset(const ContactSurface& support, Path& path) const;
+    [[nodiscard]] Stop follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration);
+    [[nodiscard]] double arc_duration(const ContactArc& arc, bool& leaves) const;
+    [[nodiscard]] double time_on_pieces(const ContactArc& arc, const Path& path) const;
+    void find_held();
+    void touch_held();
+    void add_held(std::optional<Contact>& contact) const;
+    [[nodiscard]] bool bends() const;
+    [[nodiscard]] double pressing_on(const ContactSurface& surface, const Vec3& forces, const Vec3& velocity) const;
     void wait(double duration, const Vec3& forces);
     void rest(const Vec3& forces, bool held);
     [[nodiscard]] Vec3 forces_now(const Flight& flight) const;
@@ -93,7 +79,7 @@ private:
     ForceInput& state_;
     ImpactAnswer& impact_;
     ContactManifold manifold_;
-    ContactPath path_;
+    std::vector<SurfaceId> held_;         // surfaces that are touched where the manifold's are
     KeptContact began_;                   // what the particle touched at the start of the step
     bool began_still_;                    // nothing moved then
     double shortest_interval_;            // s

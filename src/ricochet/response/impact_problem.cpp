@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/sphere_contact.h"
 
 namespace ricochet {
 namespace {
@@ -12,16 +13,9 @@ namespace {
 /// Parts of the friction that are tried where the whole has no answer that is found.
 constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
 
-/// sqrt(5/2): omega r is so many times the turning part of a MotionVector.
-constexpr double kTurning = 1.5811388300841898;
-
 /// Twice the kinetic energy over the mass.
 double energy(const Motion& motion, double radius) {
     return length_squared(motion.velocity) + 0.4 * radius * radius * length_squared(motion.spin);
-}
-
-MotionVector along(const Vec3& velocity, const Vec3& turning) {
-    return {velocity.x, velocity.y, velocity.z, turning.x, turning.y, turning.z};
 }
 
 class Impact {
@@ -56,20 +50,14 @@ private:
         problem_.clear();
         for (std::size_t c = 0; c < count_; ++c) {
             const Vec3& n = surfaces_[surface_of_[c]].normal;
-            problem_.add({along(n, {}), (1.0 + restitution) * dot(before_.velocity, n)});
+            problem_.add({normal_direction(n), (1.0 + restitution) * dot(before_.velocity, n)});
         }
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             if (surface.friction == 0.0) continue;
             const Vec3 slip = slip_velocity(before_, radius_, surface.normal);
-            const auto [first, second] = tangent_frame(surface.normal);
-            CoulombResistance sliding{static_cast<std::uint32_t>(c), 2, surface.friction, {}, {}, false, {}};
-            for (std::size_t d = 0; d < 2; ++d) {
-                const Vec3& t = d == 0 ? first : second;
-                sliding.direction[d] = along(t, radius_ > 0.0 ? kTurning * cross(t, surface.normal) : Vec3{});
-                sliding.rate[d] = dot(slip, t);
-            }
-            problem_.add(sliding);
+            problem_.add(
+                sliding_friction(static_cast<std::uint32_t>(c), surface.normal, surface.friction, radius_ > 0.0, slip));
         }
     }
 
@@ -100,14 +88,12 @@ private:
             Vec3& push = result.push[surface_of_[c]];
             push = problem_.push(c) * surface.normal;
             if (surface.friction == 0.0) continue;
-            const auto [first, second] = tangent_frame(surface.normal);
-            const auto force = problem_.force_of(resistance++);
-            push += force[0] * first + force[1] * second;
+            push += along_tangents(problem_.force_of(resistance++), surface.normal);
         }
         const MotionVector change = problem_.change();
         result.after = before_;
-        result.after.velocity += Vec3{change[0], change[1], change[2]};
-        if (radius_ > 0.0) result.after.spin += (kTurning / radius_) * Vec3{change[3], change[4], change[5]};
+        result.after.velocity += velocity_of(change);
+        if (radius_ > 0.0) result.after.spin += (kTurning / radius_) * turning_of(change);
         return result;
     }
 

@@ -23,9 +23,9 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const LookAhea
     return travelled.found.contact;
 }
 
-std::optional<Contact> ParticleStep::follow(const Path& path) {
+std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> held) {
     if (!can_follow(path)) return std::nullopt;
-    const Travel travelled = travel({path, state().radius});
+    const Travel travelled = travel({path, state().radius, nullptr, {}, held});
     state().velocity = path.velocity(travelled.elapsed);
     return travelled.found.contact;
 }
@@ -43,7 +43,8 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
     const Path& path = query.path;
     const NearSurfaces& near = travel.found.near;
     std::optional<Contact>& contact = travel.found.contact;
-    const bool starts_there = contact ? contact->time == 0.0 : query.radius > 0.0 && near.starts_in_overlap();
+    const bool starts_there =
+        contact ? contact->time == 0.0 : query.radius > 0.0 && query.held.empty() && near.starts_in_overlap();
     if (starts_there && !near.surfaces_at(path.c[0]).empty()) {
         leave_surface(near);
         contact.reset();
@@ -54,7 +55,7 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
         outcome_.stayed += safe.stayed ? 1 : 0;
         state().position = safe.position;
     } else {
-        const CertifiedPath followed = follow_path(near, path, path.duration, path.end, scratch_.contacts.chain);
+        const CertifiedPath followed = follow_freely(near, query);
         state().position = followed.reached;
         if (followed.blocker) contact = contact_with_blocker(near, path, followed);
     }
@@ -62,6 +63,23 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
     travel.elapsed = contact ? contact->time : path.duration;
     wait(travel.elapsed);
     return travel;
+}
+
+/// Along a surface that bends away every chord of the path is blocked, and its control polygon is free.
+CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const ContactQuery& query) {
+    const Path& path = query.path;
+    std::vector<Vec3>& chain = scratch_.contacts.chain;
+    if (!query.held.empty() && query.radius == 0.0 && path.degree == 3) {
+        ControlPoints outside = path.control_points();
+        outside.point[3] = path.end;
+        bool is_free = true;
+        for (std::size_t k = 1; k < 4; ++k) is_free = is_free && near.is_free(outside.point[k - 1], outside.point[k]);
+        if (is_free) {
+            chain.assign(outside.begin(), outside.end());
+            return {path.end, path.duration, std::nullopt};
+        }
+    }
+    return follow_path(near, path, path.duration, path.end, chain);
 }
 
 void ParticleStep::wait(double duration) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/safe_position.h"
 #include "ricochet/response/impact_answer.h"
 
 namespace ricochet {
@@ -29,8 +31,11 @@ public:
     /// frozen where it cannot be followed. With a look-ahead the outcome tells how long it remains free.
     std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead = nullptr,
                                   const ContactCandidates& candidates = {});
-    /// The same for a path whose velocity is the particle's.
-    std::optional<Contact> follow(const Path& path);
+    /// The same for a path whose velocity is the particle's, along surfaces that hold it where there are any.
+    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held = {});
+    /// Calls found(surface) for all surfaces near the particle.
+    template <class Found>
+    void visit_near(const Found& found);
     /// Lets time pass where the particle is, s.
     void wait(double duration);
     /// Gives up the time that is left.
@@ -57,6 +62,7 @@ private:
 
     [[nodiscard]] bool can_follow(const Path& path);
     [[nodiscard]] Travel travel(const ContactQuery& query);
+    [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
     void record_chain();
 
@@ -70,6 +76,16 @@ private:
     std::size_t first_segment_;  // of this step among those recorded
     double remaining_;
 };
+
+template <class Found>
+void ParticleStep::visit_near(const Found& found) {
+    const Path here = line_path(state().position, Vec3{}, 0.0);
+    (void)find_first_contact(geometry_, {here, state().radius}, scratch_.contacts);
+    const CollisionWorld& world = geometry_.world();
+    for (const std::uint32_t k : scratch_.contacts.planes) found(world.planes()[k].surface);
+    for (const std::uint32_t k : scratch_.contacts.shapes) found(world.shapes()[k].surface);
+    for (const std::uint32_t triangle : scratch_.contacts.triangles) found(world.surface_of_triangle(triangle));
+}
 
 /// Puts a particle whose centre lies exactly on a surface, and so has no side yet, on the side that the normal points
 /// to. near: of a path that starts there. False when no certified position was found; the particle stays then.

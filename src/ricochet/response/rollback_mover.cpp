@@ -172,7 +172,8 @@ void RollbackMover::follow_interval(double elapsed) {
     const bool rests = interval_->at_rest;
     if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
     const Motion arriving{rests ? Vec3{} : flight_.path.velocity(elapsed), particle_.spin};
-    const Motion motion = end_of_interval(*interval_, elapsed, arriving, state_.radius, manifold_.normals().front());
+    const Motion motion =
+        end_of_interval(*interval_, elapsed, arriving, state_.radius, manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = rests ? Vec3{} : motion.spin;
     manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
@@ -250,14 +251,11 @@ void RollbackMover::plan_contact(double duration) {
         manifold_.clear();
         return;
     }
-    Grip grip;
-    grip.friction = manifold_.friction(pull_, impact_);
-    grip.rolling_friction = impact_.material_of(manifold_[0].surface).rolling_friction;
-    grip.pressure = kicked ? 0.0 : 1.0;
-    grip.shortest = duration / kShortestIntervals;
-    grip.negligible_path = kTouchingOffsets * contact_offset(state_.position);
-    interval_ =
-        plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_, manifold_.normals(), grip, duration);
+    const Grip grip{kicked ? 0.0 : 1.0, duration / kShortestIntervals,
+                    kTouchingOffsets * contact_offset(state_.position)};
+    interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_, manifold_.holding(impact_).all(),
+                              grip, duration);
+    manifold_.load(*interval_);
     limit_interval();
 }
 

@@ -1,0 +1,247 @@
+#include "ricochet/response/contact_arc.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+/// Step along a shape that its curvature is taken over, as a fraction of its size.
+constexpr double kCurvatureStep = 1e-4;
+
+/// Corrections of the position and of the energy; each leaves the square of what was wrong.
+constexpr int kCorrections = 3;
+
+/// The same of a shape with a formula: by the difference of its normals along the motion.
+Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface, const Vec3& position,
+                       const Vec3& velocity) {
+    const double speed = length(velocity);
+    if (speed == 0.0) return {};
+    const double size = geometry.world().size_of(surface);
+    const double step = kCurvatureStep * (radius > 0.0 ? std::min(size, radius) : size);
+    const Vec3 normal = geometry.nearest(surface, position).normal;
+    const Vec3 heading = velocity / speed;
+    // A tangent soon comes out on the other side of a surface that bends towards it.
+    const auto normal_at = [&](double distance) {
+        const Vec3 there = geometry.nearest(surface, position + distance * heading).normal;
+        return dot(there, normal) < 0.0 ? -there : there;
+    };
+    const Vec3 ahead = normal_at(step) - normal;
+    const Vec3 behind = normal - normal_at(-step);
+    // Next to a rim one of the two reaches over it.
+    const double difference = length(ahead - behind);
+    if (difference > 0.5 * std::max(length(ahead), length(behind))) {
+        return (speed / step) * (length(ahead) < length(behind) ? ahead : behind);
+    }
+    return (speed / (2.0 * step)) * (ahead + behind);
+}
+
+/// Derivative of a surface's normal by time, 1/s, while the particle moves with this velocity.
+Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                 const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
+    const CollisionWorld& world = geometry.world();
+    if (!world.is_flat(surface)) return shape_normal_rate(geometry, radius, surface, position, velocity);
+    if (nearest.flat || radius == 0.0) return {};
+    Vec3 across = velocity - dot(velocity, nearest.normal) * nearest.normal;
+    const auto triangle = world.triangle_of(surface);
+    const int corners = touched_feature(geometry, surface, position);
+    if (triangle && (corners == 3 || corners == 5 || corners == 6)) {
+        const auto [a, b, c] = world.corners_of_triangle(*triangle);
+        const Vec3 edge = normalized(corners == 3 ? b - a : (corners == 5 ? c - a : c - b));
+        across -= dot(across, edge) * edge;
+    }
+    return nearest.distance > 0.0 ? across / nearest.distance : Vec3{};
+}
+
+}  // namespace
+
+int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position) {
+    const CollisionWorld& world = geometry.world();
+    if (!world.is_flat(surface) || geometry.nearest(surface, position).flat) return 0;
+    const Vec3 weights = world.closest_point_on(surface, position).barycentric;
+    int feature = 0;
+    for (int k = 0; k < 3; ++k) feature |= (weights[k] > 0.0 ? 1 : 0) << k;
+    return feature;
+}
+
+double ContactArc::bend_of(const SurfaceGeometry& geometry, const ForceInput& particle, const ContactSurface& surface,
+                           const Vec3& velocity) {
+    const CollisionWorld::Nearest nearest = geometry.nearest(surface.surface, particle.position);
+    const Vec3 along = velocity - dot(velocity, nearest.normal) * nearest.normal;
+    return dot(normal_rate(geometry, particle.radius, surface.surface, nearest, particle.position, along), along);
+}
+
+ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
+                       const ContactManifold& manifold, const ContactManifold::Holding& materials,
+                       const ArcStart& start)
+    : geometry_(geometry), forces_(forces), particle_(particle), materials_(materials), start_(start) {
+    for (std::size_t k = 0; k < manifold.size(); ++k) surfaces_[k] = manifold[k].surface;
+    plan_ = plan_at({particle.position, {particle.velocity, start.spin}}, 0.0, start.duration);
+    const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
+    stuck_ = now.stuck;
+    for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
+    keeps_energy_ = (!start.has_forces || forces.is_uniform()) && !dissipates();
+}
+
+ContactArc::State ContactArc::at(double t) const {
+    const State begin = start();
+    const auto moved = [&](const Rate& r, double s) {
+        return State{begin.position + s * r.velocity,
+                     {begin.motion.velocity + s * r.acceleration, begin.motion.spin + s * r.spin_acceleration}};
+    };
+    const Rate first = rate(begin, 0.0);
+    const Rate second = rate(moved(first, 0.5 * t), 0.5 * t);
+    const Rate third = rate(moved(second, 0.5 * t), 0.5 * t);
+    const Rate fourth = rate(moved(third, t), t);
+    const auto mean = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+        return (a + 2.0 * (b + c) + d) / 6.0;
+    };
+    State state = moved(
+        {mean(first.velocity, second.velocity, third.velocity, fourth.velocity),
+         mean(first.acceleration, second.acceleration, third.acceleration, fourth.acceleration),
+         mean(first.spin_acceleration, second.spin_acceleration, third.spin_acceleration, fourth.spin_acceleration)},
+        t);
+    put_on_surfaces(state);
+    if (keeps_energy_) restore_energy(state, t);
+    return state;
+}
+
+bool ContactArc::is_held(const State& state, double t) const {
+    const ContactInterval plan = plan_at(state, t, 0.0);
+    return std::any_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push != Vec3{}; });
+}
+
+double ContactArc::longest() const {
+    double duration = plan_.duration;
+    const State begin = start();
+    const Rate first = rate(begin, 0.0);
+    const double speed = length(begin.motion.velocity);
+    const double acceleration = length(first.acceleration);
+    const Vec3 heading =
+        speed > 0.0 ? begin.motion.velocity / speed : (acceleration > 0.0 ? first.acceleration / acceleration : Vec3{});
+    double turning = 0.0;  // by metre
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const CollisionWorld::Nearest touched = nearest(k, begin.position);
+        turning = std::max(
+            turning, length(normal_rate(geometry_, particle_.radius, surfaces_[k], touched, begin.position, heading)));
+    }
+    if (turning == 0.0) return duration;
+    const double distance = kMaxArcAngle / turning;
+    if (speed > 0.0) duration = std::min(duration, distance / speed);
+    if (acceleration > 0.0) duration = std::min(duration, std::sqrt(2.0 * distance / acceleration));
+    return duration;
+}
+
+/// A surface as it is seen from the side of the start: within an arc a point may come behind it by the arc's own error.
+CollisionWorld::Nearest ContactArc::nearest(std::size_t k, const Vec3& position) const {
+    CollisionWorld::Nearest nearest = geometry_.nearest(surfaces_[k], position);
+    if (dot(nearest.normal, materials_.surfaces[k].normal) < 0.0) {
+        nearest.normal = -nearest.normal;
+        nearest.distance = -nearest.distance;
+    }
+    return nearest;
+}
+
+/// The surfaces as they are touched there.
+ContactArc::Holding ContactArc::holding(const State& state) const {
+    Holding result = materials_;
+    for (std::size_t k = 0; k < result.count; ++k) {
+        HoldingSurface& surface = result.surfaces[k];
+        const CollisionWorld::Nearest touched = nearest(k, state.position);
+        const bool is_beside_rim = particle_.radius == 0.0 && !touched.flat && geometry_.world().is_flat(surfaces_[k]);
+        if (!is_beside_rim) surface.normal = touched.normal;
+        const Vec3 turn =
+            normal_rate(geometry_, particle_.radius, surfaces_[k], touched, state.position, state.motion.velocity);
+        surface.bend = dot(turn, state.motion.velocity);
+        surface.slip_bend = -particle_.radius * cross(state.motion.spin, turn);
+    }
+    return result;
+}
+
+Vec3 ContactArc::forces(const State& state, double t) const {
+    if (!start_.has_forces) return {};
+    ForceInput input = particle_;
+    input.position = state.position;
+    input.velocity = state.motion.velocity;
+    input.time += t;
+    return forces_.acceleration(input);
+}
+
+ContactInterval ContactArc::plan_at(const State& state, double t, double duration) const {
+    const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
+    return plan_held_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration);
+}
+
+ContactArc::Rate ContactArc::rate(const State& state, double t) const {
+    const ContactInterval plan = plan_at(state, t, 0.0);
+    return {state.motion.velocity, plan.acceleration, plan.spin_acceleration};
+}
+
+/// At the contact offset from what holds it, along the normals, and moving along them.
+void ContactArc::put_on_surfaces(State& state) const {
+    for (int k = 0; k < kCorrections; ++k) {
+        std::array<Vec3, kMostHolding> normals;
+        std::array<double, kMostHolding> gaps{};
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < materials_.count; ++i) {
+            if (!holds_[i]) continue;
+            const CollisionWorld::Nearest touched = nearest(i, state.position);
+            normals[count] = touched.normal;
+            gaps[count++] = particle_.radius + contact_offset(state.position) - touched.distance;
+        }
+        state.position += shift_by({normals.data(), count}, {gaps.data(), count});
+    }
+    const Holding there = holding(state);
+    Holding holding_ones;
+    std::array<Stuck, kMostHolding> stuck{};
+    for (std::size_t i = 0; i < there.count; ++i) {
+        if (!holds_[i]) continue;
+        stuck[holding_ones.count] = stuck_[i];
+        holding_ones.surfaces[holding_ones.count++] = there.surfaces[i];
+    }
+    state.motion = along_surfaces(state.motion, particle_.radius, holding_ones.all(), stuck);
+    state.position = flush_tiny(state.position);
+}
+
+/// It slips against friction, or rolls against resistance.
+bool ContactArc::dissipates() const {
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const HoldingSurface& surface = materials_.surfaces[k];
+        if (!holds_[k]) continue;
+        if (surface.friction > 0.0 && !stuck_[k].to_slip) return true;
+        if (surface.rolling_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_turning) return true;
+    }
+    return false;
+}
+
+/// To the nearest state of the energy at the start; along the path where it moves slowly, in speed where it does not.
+void ContactArc::restore_energy(State& state, double t) const {
+    const Vec3 a = forces(state, 0.0);
+    const double inertia = 0.4 * particle_.radius * particle_.radius;
+    const auto twice_kinetic = [&](const Motion& m) {
+        return length_squared(m.velocity) + inertia * length_squared(m.spin);
+    };
+    for (int k = 0; k < kCorrections; ++k) {
+        Vec3 along = a;
+        const Holding there = holding(state);
+        for (std::size_t i = 0; i < there.count; ++i) {
+            if (holds_[i]) along -= dot(along, there.surfaces[i].normal) * there.surfaces[i].normal;
+        }
+        const double moving = twice_kinetic(state.motion);
+        const double missing =
+            0.5 * (twice_kinetic(plan_.motion) - moving) + dot(a, state.position - particle_.position);
+        const double slope = t * t * length_squared(along) + moving;
+        if (!(slope > 0.0)) return;
+        const double part = missing / slope;
+        if (!(std::fabs(part) < kMostEnergyCorrection)) return;
+        state.motion.velocity *= 1.0 + part;
+        state.motion.spin *= 1.0 + part;
+        state.position -= (part * t * t) * along;
+        put_on_surfaces(state);
+    }
+}
+
+}  // namespace ricochet

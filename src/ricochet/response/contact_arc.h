@@ -1,0 +1,95 @@
+/// \file
+/// Private to the exact response: the motion of a particle along curved surfaces that hold it, as an ordinary
+/// differential equation: around edges and vertices, on and in balls and cylinders, and any mix with flat surfaces.
+/// Source: integration with projection onto the invariants, E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical
+/// Integration", 2nd ed., Springer 2006, section IV.4.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/held_motion.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// The part of a surface that is nearest to a position: 0 the inside of a triangle or a surface without parts; else bit
+/// k stands for corner k of its edge or vertex.
+[[nodiscard]] int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position);
+
+/// What an arc starts from, besides the particle.
+struct ArcStart {
+    Vec3 spin;                   ///< rad/s
+    double pressure = 1.0;       ///< as Grip::pressure
+    bool has_forces = true;      ///< false: the forces have been in the velocity from the step's start on
+    double shortest = 0.0;       ///< s, as Grip::shortest
+    double negligible_path = 0;  ///< m, as Grip::negligible_path
+    double duration = 0.0;       ///< s, that it may last at most
+};
+
+/// One arc, at most kMaxArcAngle long. Everything it is given must outlive it.
+class ContactArc {
+public:
+    struct State {
+        Vec3 position;
+        Motion motion;
+    };
+
+    ContactArc(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
+               const ContactManifold& manifold, const ContactManifold::Holding& materials, const ArcStart& start);
+
+    /// What it starts with, as if the surfaces were flat: whether it rests, and the forces.
+    [[nodiscard]] const ContactInterval& plan() const { return plan_; }
+    /// The state after t seconds, by the classical Runge-Kutta method: on the surfaces that hold, along them, and with
+    /// the energy that it has to have.
+    [[nodiscard]] State at(double t) const;
+    /// True when some surface holds it there.
+    [[nodiscard]] bool is_held(const State& state, double t) const;
+    /// The particle, moving along the surfaces.
+    [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
+    /// s, until it has turned by kMaxArcAngle, or something is about to stick.
+    [[nodiscard]] double longest() const;
+    /// The part of a surface that is touched: 0 the inside of a triangle or a surface without parts, then edges and
+    /// vertices.
+    [[nodiscard]] int feature(SurfaceId surface, const Vec3& position) const {
+        return touched_feature(geometry_, surface, position);
+    }
+
+    /// What a surface's curvature takes from the distance to it at this velocity, m/s^2.
+    [[nodiscard]] static double bend_of(const SurfaceGeometry& geometry, const ForceInput& particle,
+                                        const ContactSurface& surface, const Vec3& velocity);
+
+private:
+    using Holding = ContactManifold::Holding;
+    /// Derivatives of the state.
+    struct Rate {
+        Vec3 velocity;
+        Vec3 acceleration;
+        Vec3 spin_acceleration;
+    };
+
+    [[nodiscard]] Holding holding(const State& state) const;
+    [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
+    [[nodiscard]] Vec3 forces(const State& state, double t) const;
+    [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration) const;
+    [[nodiscard]] Rate rate(const State& state, double t) const;
+    void put_on_surfaces(State& state) const;
+    void restore_energy(State& state, double t) const;
+    [[nodiscard]] bool dissipates() const;
+
+    const SurfaceGeometry& geometry_;
+    const ForceField& forces_;
+    const ForceInput& particle_;
+    const Holding& materials_;
+    ArcStart start_;
+    std::array<SurfaceId, kMostHolding> surfaces_{};
+    ContactInterval plan_;
+    std::array<bool, kMostHolding> holds_{};   // at the start
+    std::array<Stuck, kMostHolding> stuck_{};  // from the start on
+    bool keeps_energy_ = false;
+};
+
+}  // namespace ricochet

@@ -170,13 +170,15 @@ Vec3 ContactArc::forces(const State& state, double t) const {
     return forces_.acceleration(input);
 }
 
-ContactInterval ContactArc::plan_at(const State& state, double t, double duration) const {
+ContactInterval ContactArc::plan_at(const State& state, double t, double duration,
+                                    const std::array<Stuck, kMostHolding>& stuck) const {
     const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
-    return plan_held_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration);
+    return plan_held_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration,
+                              stuck);
 }
 
 ContactArc::Rate ContactArc::rate(const State& state, double t) const {
-    const ContactInterval plan = plan_at(state, t, 0.0);
+    const ContactInterval plan = plan_at(state, t, 0.0, stuck_);
     return {state.motion.velocity, plan.acceleration, plan.spin_acceleration};
 }
 

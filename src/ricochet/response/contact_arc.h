@@ -74,7 +74,8 @@ private:
     [[nodiscard]] Holding holding(const State& state) const;
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
-    [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration) const;
+    [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
+                                          const std::array<Stuck, kMostHolding>& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
     void put_on_surfaces(State& state) const;
     void restore_energy(State& state, double t) const;

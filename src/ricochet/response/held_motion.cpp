@@ -61,9 +61,9 @@ struct Resistance {
 class Plan {
 public:
     Plan(const Motion& motion, double radius, const Vec3& a, std::span<const HoldingSurface> surfaces, const Grip& grip,
-         double duration)
+         double duration, const std::array<Stuck, kMostHolding>& stuck)
         : motion_(motion), radius_(radius), a_(a), surfaces_(surfaces), grip_(grip), duration_(duration) {
-        find_resistances();
+        find_resistances(stuck);
         solve();
     }
 
@@ -78,11 +78,12 @@ public:
 private:
     [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
 
-    void find_resistances() {
+    void find_resistances(const std::array<Stuck, kMostHolding>& stuck) {
         const double scale = length(motion_.velocity) + radius_ * length(motion_.spin);
         const auto add = [&](std::size_t surface, bool is_rolling, const Vec3& rate) {
             const double speed = length(rate);
-            resistances_[count_++] = {surface, is_rolling, rate, speed > kSlowSlip * scale ? speed : 0.0};
+            const bool is_stuck = is_rolling ? stuck[surface].to_turning : stuck[surface].to_slip;
+            resistances_[count_++] = {surface, is_rolling, rate, !is_stuck && speed > kSlowSlip * scale ? speed : 0.0};
         };
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
             const HoldingSurface& surface = surfaces_[k];
@@ -211,11 +212,12 @@ bool ends_at_once(const ContactInterval& interval, double radius, double negligi
 bool leaves(const Vec3& velocity, const Vec3& n) { return dot(velocity, n) > kLeavingRounding * length(velocity); }
 
 ContactInterval plan_held_interval(const Motion& motion, double radius, const Vec3& a,
-                                   std::span<const HoldingSurface> surfaces, const Grip& grip, double duration) {
+                                   std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
+                                   const std::array<Stuck, kMostHolding>& stuck) {
     surfaces = surfaces.first(std::min(surfaces.size(), kMostHolding));
     Motion start = along_surfaces(motion, radius, surfaces, {});
     for (int k = 1;; ++k) {
-        const ContactInterval interval = Plan(start, radius, a, surfaces, grip, duration).interval();
+        const ContactInterval interval = Plan(start, radius, a, surfaces, grip, duration, stuck).interval();
         if (k == kMostPlans || interval.at_rest || !ends_at_once(interval, radius, grip.negligible_path))
             return interval;
         start = along_surfaces(start, radius, surfaces, interval.stuck);

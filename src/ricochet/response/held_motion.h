@@ -13,10 +13,11 @@ namespace ricochet {
 [[nodiscard]] bool leaves(const Vec3& velocity, const Vec3& n);
 
 /// plan_interval() for two surfaces or more: one contact problem for the forces, and the time until slip or rolling at
-/// one of them comes to an end, or friction has turned. At most kMostHolding surfaces count.
+/// one of them comes to an end, or friction has turned. At most kMostHolding surfaces count. stuck: where slip and
+/// turning are an error of the motion that is given, and count as none.
 [[nodiscard]] ContactInterval plan_held_interval(const Motion& motion, double radius, const Vec3& a,
                                                  std::span<const HoldingSurface> surfaces, const Grip& grip,
-                                                 double duration);
+                                                 double duration, const std::array<Stuck, kMostHolding>& stuck = {});
 
 /// The vector nearest to v that is at right angles to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);

@@ -1,5 +1,7 @@
 // Sliding, rolling and rest that last: over seams, in bowls, in grooves, against turning friction.
 #include <gtest/gtest.h>
+#include <algorithm>
+#include <utility>
 
 #include <cmath>
 #include <cstdint>
@@ -68,6 +70,44 @@ TEST(ABallFromInside, KeepsTheSpeedOfWhatSlidesAroundItWithoutForces) {
         ASSERT_NEAR(length(point.state.position), 1.0, 1e-12);
     }
     EXPECT_NEAR(length(point.state.velocity), speed, 1e-3);
+}
+
+// Sliding without friction or loss: a hundred swings from an angle, steps of 0.02 s, energy relative to the swing's.
+TEST(ABallFromInside, KeepsTheEnergyOfAHundredSwings) {
+    for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
+        Course course({{"ball", BallShape{1.0, {}}, 0}}, {"", 0.0, 0.0}, {0, 0, -kG});
+        MovingParticle point = particle_at((1.0 - 1e-13) * Vec3{std::sin(angle), 0, -std::cos(angle)}, {});
+        double worst = 0.0;
+        for (int k = 0; k < 11'000; ++k) {
+            (void)course.move(point, 0.02);
+            const double energy = 0.5 * length_squared(point.state.velocity) + kG * point.state.position.z;
+            worst = std::max(worst, std::fabs(energy + kG * std::cos(angle)));
+        }
+        EXPECT_LT(worst, bound * kG * (1.0 - std::cos(angle))) << angle;
+    }
+}
+
+// Walls at A to the horizontal, the groove running down at 20 degrees: a sphere rolls with g sin / (1 + 0.4 / cos^2 A).
+TEST(AGroove, LetsASphereRollDownAsTheClosedFormSays) {
+    const double slope = 20.0 * kPi / 180.0;
+    const auto tilted = [&](const Vec3& n) {
+        return Vec3{n.x * std::cos(slope) + n.z * std::sin(slope), n.y, n.z * std::cos(slope) - n.x * std::sin(slope)};
+    };
+    for (const double degrees : {5.0, 45.0, 85.0}) {
+        for (const double step : {0.001, 0.02, 0.1}) {
+            const double a = degrees * kPi / 180.0;
+            const std::vector<ColliderDescription> groove{plane_collider({}, tilted({0, std::sin(a), std::cos(a)})),
+                                                          plane_collider({}, tilted({0, -std::sin(a), std::cos(a)}))};
+            Course course(groove, {"", 0.5, 0.3}, {0, 0, -kG});
+            const Vec3 start = 0.1 / std::cos(a) * tilted({0, 0, 1});
+            MovingParticle sphere = particle_at(start, {}, 0.1);
+            const int steps = static_cast<int>(std::lround(1.0 / step));
+            for (int k = 0; k < steps; ++k) ASSERT_EQ(course.move(sphere, step).unsimulated_time, 0.0);
+            const double rolled = dot(sphere.state.position - start, tilted({1, 0, 0}));
+            const double expected = 0.5 * kG * std::sin(slope) / (1.0 + 0.4 / (std::cos(a) * std::cos(a)));
+            EXPECT_NEAR(rolled / expected, 1.0, 1e-9) << degrees << " degrees, steps of " << step << " s";
+        }
+    }
 }
 
 TEST(AMarbleOnALargeBall, LosesNoTimeWhereverItRolls) {

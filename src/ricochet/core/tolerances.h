@@ -96,8 +96,8 @@ inline constexpr double kStopRounding = 0x1p-40;
 inline constexpr double kMaxHeadingTurn = 0.05;
 
 /// Angle, rad, by which a particle turns around an edge or a curved surface in one straight segment of sliding or
-/// rolling with the rollback response, and along flows. Smaller: more segments (each costs a query). Larger: it leaves the surface by more (angle^2 / 2 of the
-/// radius of curvature) before it falls back.
+/// rolling with the rollback response, and along flows. Smaller: more segments (each costs a query). Larger: it leaves
+/// the surface by more (angle^2 / 2 of the radius of curvature) before it falls back.
 inline constexpr double kMaxChordAngle = 0.01;
 
 // Broad phase and look-ahead

@@ -59,26 +59,28 @@ struct SimulationStatistics {
     std::uint64_t children = 0;                      ///< of the emitted ones those born of particles
     std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
     std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
+    std::uint64_t births_refused_by_overlap = 0;     ///< spheres for which an emitter found no free position
     std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
     std::uint64_t removed = 0;                       ///< by remove_particles()
     std::uint64_t contacts = 0;                      ///< impacts
     std::uint32_t bounces_per_step_max = 0;
-    std::uint64_t resting = 0;           ///< particles at rest after the last step
-    double unsimulated_time = 0.0;       ///< s, summed over particles, cut off by the bounce budget
-    std::uint64_t budget_exhausted = 0;  ///< particle-steps that spent their budget
-    std::uint64_t asleep = 0;            ///< of the resting ones those that cost nothing
-    std::uint64_t started_inside = 0;    ///< particles born on a surface or, as spheres, overlapping one
-    std::uint64_t stayed = 0;            ///< impacts after which no certified position nearer to the surface was found
-    std::uint64_t lost_impulses = 0;     ///< impulses too large for the per-triangle totals
-    std::uint64_t violations = 0;        ///< what options.verify found wrong
-    std::uint64_t trials = 0;            ///< states that a response tested for collision or penetration; 0 for exact
-    std::uint64_t penetrations = 0;      ///< particle-steps in which a particle was seen behind a surface
-    double penetration_sum = 0.0;        ///< m, sum of their depths, before anything put them right
-    double penetration_deepest = 0.0;    ///< m
-    std::uint64_t springs_broken = 0;    ///< stretched beyond their limit
-    std::uint64_t springs_lost = 0;      ///< removed because a particle at an end was gone
-    std::uint64_t unsolved_steps = 0;    ///< steps whose implicit equations were not solved to the tolerance
-    std::uint64_t frozen = 0;            ///< particles stopped because their state was not finite or beyond 1e75
+    std::uint64_t resting = 0;             ///< particles at rest after the last step
+    double unsimulated_time = 0.0;         ///< s, summed over particles, cut off by the bounce budget
+    std::uint64_t budget_exhausted = 0;    ///< particle-steps that spent their budget
+    std::uint64_t asleep = 0;              ///< of the resting ones those that cost nothing
+    std::uint64_t started_inside = 0;      ///< particles born on a surface or, as spheres, overlapping one
+    std::uint64_t started_in_overlap = 0;  ///< of them the spheres
+    std::uint64_t stayed = 0;          ///< impacts after which no certified position nearer to the surface was found
+    std::uint64_t lost_impulses = 0;   ///< impulses too large for the per-triangle totals
+    std::uint64_t violations = 0;      ///< what options.verify found wrong
+    std::uint64_t trials = 0;          ///< states that a response tested for collision or penetration; 0 for exact
+    std::uint64_t penetrations = 0;    ///< particle-steps in which a particle was seen behind a surface
+    double penetration_sum = 0.0;      ///< m, sum of their depths, before anything put them right
+    double penetration_deepest = 0.0;  ///< m
+    std::uint64_t springs_broken = 0;  ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;    ///< removed because a particle at an end was gone
+    std::uint64_t unsolved_steps = 0;  ///< steps whose implicit equations were not solved to the tolerance
+    std::uint64_t frozen = 0;          ///< particles stopped because their state was not finite or beyond 1e75
 };
 
 /// Per-triangle totals of one mesh collider, since the start.

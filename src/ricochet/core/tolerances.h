@@ -40,6 +40,11 @@ inline constexpr double kContactMismatch = 1e-9;
 /// points; a chord that still intersects a triangle there is taken as an impact at that position.
 inline constexpr int kCertificateDepth = 52;
 
+/// Smallest part of its radius as which a sphere in overlap collides; below it the sphere collides as a point. Reason:
+/// its spin counts at the surface of what collides, and would be that much faster there. Smaller: rounding of the
+/// contact offset is felt as curvature. Larger: spheres that are nearly half behind a surface lose friction's torque.
+inline constexpr double kSmallestCore = 0x1p-20;
+
 // Contact phases
 
 /// A surface counts as touched while the particle is within this many contact offsets of its plane, and sliding goes on

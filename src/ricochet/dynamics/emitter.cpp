@@ -182,9 +182,9 @@ bool Emitter::sets(std::size_t column) const {
     return std::find(attribute_columns_.begin(), attribute_columns_.end(), column) != attribute_columns_.end();
 }
 
-std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most) {
+std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most, const BirthTest& test) {
     require(std::isfinite(from) && std::isfinite(to), description_, "births are asked for finite times only");
-    Births births{most, {}};
+    Births births{most, test, {}};
     if (!(from < to) || description_.parent) return {};
     if (!burst_done_ && description_.start < to) {
         append_births(description_.burst, description_.start, births);
@@ -201,8 +201,14 @@ std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most
 
 void Emitter::append_births(std::uint64_t count, double time, Births& births) {
     const std::uint64_t allowed = std::min(count, description_.limit - born_);
-    const std::uint64_t made = std::min<std::uint64_t>(allowed, births.most - births.made.size());
-    for (std::uint64_t i = 0; i < made; ++i) births.made.push_back(make_particle(born_ + i, time));
+    for (std::uint64_t i = 0; i < allowed && births.made.size() < births.most; ++i) {
+        std::optional<Particle> particle = make_particle(born_ + i, time, births.test);
+        if (particle) {
+            births.made.push_back(std::move(*particle));
+        } else {
+            ++refused_;
+        }
+    }
     born_ += allowed;
 }
 
@@ -248,36 +254,59 @@ double Emitter::draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanS
     return RandomSequence(seed, purpose << 24 | stream_, 0).uniform_around(pair.mean, pair.spread);
 }
 
-Particle Emitter::make_particle(std::uint64_t number, double time) const {
-    Particle particle = draw(seed_, number);
-    particle.birth_time = time;
-    particle.origin.emitter = number_;
+// Nothing when the test refuses every position.
+std::optional<Particle> Emitter::make_particle(std::uint64_t number, double time, const BirthTest& test) const {
+    RandomSequence random(seed_, kBirthStream | stream_, number);
+    Draw drawn = draw(random, seed_, number);
+    drawn.particle.birth_time = time;
+    drawn.particle.origin.emitter = number_;
     const auto bits = philox4x32(
         {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},
         {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
-    particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
-    if (description_.frames) return launched_from(*description_.frames, description_.frame, particle);
-    return particle;
+    drawn.particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
+    const int redraws = std::holds_alternative<PointShape>(description_.shape) ? 0 : kMostRedraws;
+    for (int k = 0;; ++k) {
+        Particle born = drawn.particle;
+        if (description_.frames) born = launched_from(*description_.frames, description_.frame, born);
+        if (!test || test(born)) return born;
+        if (k == redraws) return std::nullopt;
+        place(random, drawn);
+    }
 }
 
 Particle Emitter::draw(std::uint64_t seed, std::uint64_t number) const {
     RandomSequence random(seed, kBirthStream | stream_, number);
+    return draw(random, seed, number).particle;
+}
+
+Emitter::Draw Emitter::draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const {
+    Draw drawn;
+    Particle& particle = drawn.particle;
     // Radii have a stream of their own: giving particles a size changes nothing else about their birth.
-    const double radius = RandomSequence(seed, kRadiusStream | stream_, number)
-                              .uniform_around(description_.radius.mean, description_.radius.spread);
-    const LaunchPlace launch = shape_.draw(radius, random);
-    const bool own_direction = description_.direction == Vec3{};
-    const Vec3 axis = own_direction ? launch.direction : normalized(description_.direction);
-    const Vec3 direction = in_cone(axis, random);
-    const double speed = random.uniform_around(description_.speed.mean, description_.speed.spread);
-    Particle particle;
-    particle.position = launch.position;
-    particle.velocity = direction * speed + description_.velocity;
+    particle.radius = RandomSequence(seed, kRadiusStream | stream_, number)
+                          .uniform_around(description_.radius.mean, description_.radius.spread);
+    const Vec3 direction = draw_place(random, particle);
+    drawn.speed = random.uniform_around(description_.speed.mean, description_.speed.spread);
+    particle.velocity = direction * drawn.speed + description_.velocity;
     particle.mass = random.uniform_around(description_.mass.mean, description_.mass.spread);
-    particle.radius = radius;
     particle.lifetime = random.uniform_around(description_.lifetime.mean, description_.lifetime.spread);
     particle.attributes = draw_attributes(seed, number);
-    return particle;
+    return drawn;
+}
+
+// Another position, with its direction; the speed along it stays.
+void Emitter::place(RandomSequence& random, Draw& drawn) const {
+    const Vec3 direction = draw_place(random, drawn.particle);
+    drawn.particle.velocity = direction * drawn.speed + description_.velocity;
+}
+
+// Sets the position. Returns the direction of the launch.
+Vec3 Emitter::draw_place(RandomSequence& random, Particle& particle) const {
+    const LaunchPlace launch = shape_.draw(particle.radius, random);
+    particle.position = launch.position;
+    const bool own_direction = description_.direction == Vec3{};
+    const Vec3 axis = own_direction ? launch.direction : normalized(description_.direction);
+    return in_cone(axis, random);
 }
 
 std::vector<AttributeValue> Emitter::draw_attributes(std::uint64_t seed, std::uint64_t number) const {

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -230,9 +231,16 @@ struct EmitterSurroundings {
     std::span<const AttributeDescription> attributes = {};  ///< columns of the particles
 };
 
+/// Whether a particle may be born as it is, with its position in the world. Pure.
+using BirthTest = std::function<bool(const Particle&)>;
+
 /// The births of one emitter in time order.
 class Emitter {
 public:
+    /// How often a birth that the test refuses is given another position, before it does not take place. Less: births
+    /// in narrow rooms are refused though there is a position. More: rooms in which nothing fits cost more.
+    static constexpr int kMostRedraws = 64;
+
     /// seed: the scene's seed; number: this emitter's number in the scene, below 2^24 - 1.
     /// Throws InputError when the description is outside the ranges stated there, naming the member.
     Emitter(EmitterDescription description, std::uint64_t seed, std::uint32_t number,
@@ -243,11 +251,17 @@ public:
     /// 0; throws InputError for times that are not finite. How the time is cut into calls changes no bit. The burst is
     /// born at `start`; after that birth k happens when the integral of the rate since `start` passes k + 1/2. The rate
     /// is drawn anew for every whole second (or frame) since `start` (negative draws count as 0). most: only the first
-    /// so many are made and returned; the others are born all the same, see born().
+    /// so many are made and returned; the others are born all the same, see born(). test: of each that is made. What it
+    /// refuses is given another position of the shape, with its direction, by further draws of the same sequence, up to
+    /// kMostRedraws times; everything else stays. A birth that is refused every time, or at a point, where there is no
+    /// other position, is left out and counted by refused(). An empty test refuses none.
     [[nodiscard]] std::vector<Particle> births(double from, double to,
-                                               std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
-    /// Births so far.
+                                               std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
+                                               const BirthTest& test = {});
+    /// Births so far, refused ones included.
     [[nodiscard]] std::uint64_t born() const { return born_; }
+    /// Those of them that the test has refused.
+    [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
     /// Number of the emitter in its scene.
@@ -267,9 +281,17 @@ public:
 private:
     struct Births {
         std::uint64_t most;  ///< that are made
+        const BirthTest& test;
         std::vector<Particle> made;
     };
-    [[nodiscard]] Particle make_particle(std::uint64_t number, double time) const;
+    struct Draw {
+        Particle particle;
+        double speed = 0.0;  ///< m/s, along the direction
+    };
+    [[nodiscard]] std::optional<Particle> make_particle(std::uint64_t number, double time, const BirthTest& test) const;
+    [[nodiscard]] Draw draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const;
+    [[nodiscard]] Vec3 draw_place(RandomSequence& random, Particle& particle) const;
+    void place(RandomSequence& random, Draw& drawn) const;
     void set_rate(const EmitterSurroundings& surroundings);
     [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
@@ -289,6 +311,7 @@ private:
     MeanSpread period_rate_;                      ///< particles a period
     double periods_per_second_ = 1.0;             ///< 1, or the frame rate
     std::uint64_t born_ = 0;
+    std::uint64_t refused_ = 0;
     bool burst_done_ = false;
     std::uint64_t period_ = 0;  ///< whole periods since start that are accounted for in expected_
     double expected_ = 0.0;     ///< integral of the rate up to period_

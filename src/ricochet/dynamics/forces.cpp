@@ -94,6 +94,11 @@ std::unique_ptr<Force> make_acceleration(std::function<Vec3(const ForceInput&)> 
 
 namespace {
 
+ForceInput whole(ForceInput input) {
+    input.radius = std::exchange(input.whole_radius, 0.0);
+    return input;
+}
+
 std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<Force>> forces) {
     for (std::size_t k = 0; k < forces.size(); ++k) {
         if (!forces[k]) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
@@ -114,12 +119,14 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
 }
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
+    if (input.whole_radius > 0.0) return acceleration(whole(input));
     Vec3 sum = input.coupling;
     for (const auto& force : forces_) sum += force->acceleration(input);
     return sum;
 }
 
 std::optional<double> ForceField::potential_energy(const ForceInput& input) const {
+    if (input.whole_radius > 0.0) return potential_energy(whole(input));
     double sum = 0.0;
     for (const auto& force : forces_) {
         const std::optional<double> energy = force->potential_energy(input);

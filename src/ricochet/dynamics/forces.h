@@ -24,6 +24,9 @@ struct ForceInput {
     std::uint64_t id = 0;
     /// What other particles do to it, m/s^2: held from a bounce to the end of the step, zero where nothing couples.
     Vec3 coupling{};
+    /// m: of a sphere that collides as a part of itself, whose radius then stands in `radius`; 0 otherwise. ForceField
+    /// shows forces the whole.
+    double whole_radius = 0.0;
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.

@@ -123,6 +123,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["children"] = statistics.children;
     json["births_refused_by_depth"] = statistics.births_refused_by_depth;
     json["births_refused_by_population"] = statistics.births_refused_by_population;
+    json["births_refused_by_overlap"] = statistics.births_refused_by_overlap;
     json["frozen"] = statistics.frozen;
     json["particle_steps"] = statistics.particle_steps;
     json["contacts"] = statistics.contacts;
@@ -132,6 +133,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["unsimulated_time"] = statistics.unsimulated_time;
     json["budget_exhausted"] = statistics.budget_exhausted;
     json["started_inside"] = statistics.started_inside;
+    json["started_in_overlap"] = statistics.started_in_overlap;
     json["stayed"] = statistics.stayed;
     json["lost_impulses"] = statistics.lost_impulses;
     json["springs_broken"] = statistics.springs_broken;

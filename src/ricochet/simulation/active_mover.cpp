@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "ricochet/collision/overlap.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
@@ -77,8 +78,10 @@ void ActiveMover::move_block(std::span<const std::uint32_t> active, const TimeSp
 void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record) {
     const TimeSpan life = life_in(i, step);
     if (life.end <= life.begin) return;
+    grow_core(i);
     MovingParticle particle = load(i, life.begin);
     scratch.segments.clear();
+    const std::size_t first_record = scratch.records.size();
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
     const bool as_planned = particle.planned != nullptr && life.begin == step.begin && life.end == step.end;
     const double duration = as_planned ? particle.planned->path.duration : life.end - life.begin;
@@ -86,7 +89,26 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     if (parts_.check != nullptr) {
         parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations);
     }
+    for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
+        scratch.records[k].radius = particle.state.whole_radius;
+    }
     take_over(i, particle, outcome, life.end, record);
+}
+
+/// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces.
+void ActiveMover::grow_core(std::size_t i) {
+    ParticleStore& store = parts_.store;
+    if (!store.cores().has(i) || store.is_fixed(i)) return;
+    const Particles& particles = store.particles();
+    if (particles.support[i][0] != kNoSupport) return;
+    const Vec3& position = particles.position[i];
+    const double radius = particles.radius[i];
+    const std::optional<Overlap> overlap = deepest_overlap(parts_.response.rules().world, position, radius);
+    if (overlap) {
+        store.set_core(i, std::max(store.cores().radius(i), core_radius(*overlap, position, radius)));
+    } else {
+        store.release_from_overlap(i);
+    }
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -94,6 +116,7 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
     for (std::size_t k = 0; k < system.size(); ++k) {
         const std::size_t i = range.begin + k;
         const TimeSpan life = life_in(i, step);
+        grow_core(i);
         system[k].particle = load(i, life.begin);
         system[k].start = life.begin;
         system[k].stop = life.end;
@@ -152,7 +175,7 @@ void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const Mo
 void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until) {
     if (parts_.store.is_fixed(i) || parts_.store.is_asleep(i)) {
         parts_.schedule.leave_alone(i);
-    } else if (!flies_on(moved, outcome) || parts_.coupled.is_active()) {
+    } else if (!flies_on(moved, outcome) || parts_.coupled.is_active() || parts_.store.cores().has(i)) {
         parts_.schedule.forget(i);
     } else {
         FreeFlightForecast forecast;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/overlap.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/coupled_motion.h"
@@ -48,7 +49,11 @@ struct Simulation::Impl {
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
     void add(Particle&& particle);
-    [[nodiscard]] bool starts_in_overlap(const Particle& particle) const;
+    [[nodiscard]] BirthTest birth_test() const;
+    [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
+    [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
+    /// A sentence about those of the setup's particles that are in overlap; nothing without any.
+    [[nodiscard]] std::optional<std::string> overlap_warning() const;
     void remove_leavers(double time);
     void compact(const std::vector<std::uint8_t>& keep);
 

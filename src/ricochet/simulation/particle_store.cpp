@@ -33,6 +33,7 @@ void ParticleStore::append(Particle&& particle) {
     }
     if (particle.pinned) particle.velocity = particle.spin = Vec3{};
     particles_.append(particle);
+    cores_.append();
     sides_.resize(particles_.size() * colliders_);
 }
 
@@ -49,6 +50,7 @@ void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
         if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
     }
     sides_.erase(kept, sides_.end());
+    cores_.compact(keep);
     particles_.compact(keep);
 }
 
@@ -62,9 +64,26 @@ std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
 
 MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
     MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
+    if (cores_.has(i)) load_core(i, particle);
     if (in_contact) load_contact(i, particle.contact);
     particle.sides = sides_of(i);
     return particle;
+}
+
+/// Forces see the whole sphere, the rest of the response its core.
+void ParticleStore::load_core(std::size_t i, MovingParticle& particle) const {
+    particle.state.whole_radius = particles_.radius[i];
+    particle.state.radius = cores_.radius(i);
+    particle.spin = OverlapCores::spin_of_core(particle.spin, cores_.radius(i), particles_.radius[i]);
+}
+
+/// Its spin where the response has moved its core; the bits of the one before where that has not changed.
+Vec3 ParticleStore::spin_of(std::size_t i, const MovingParticle& moved) const {
+    if (!cores_.has(i)) return moved.spin;
+    const double core = cores_.radius(i);
+    const Vec3& before = particles_.spin[i];
+    if (moved.spin == OverlapCores::spin_of_core(before, core, particles_.radius[i])) return before;
+    return (core / particles_.radius[i]) * moved.spin;
 }
 
 void ParticleStore::load_contact(std::size_t i, KeptContact& contact) const {
@@ -78,7 +97,7 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
                           bool may_be_held) {
     particles_.position[i] = moved.state.position;
     particles_.velocity[i] = moved.state.velocity;
-    if (particles_.spin[i] != moved.spin) particles_.spin[i] = moved.spin;
+    if (const Vec3 spin = spin_of(i, moved); particles_.spin[i] != spin) particles_.spin[i] = spin;
     if (particles_.draws[i] != moved.draws) particles_.draws[i] = moved.draws;
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;

@@ -10,6 +10,7 @@
 
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
+#include "ricochet/simulation/overlap_cores.h"
 
 namespace ricochet {
 
@@ -30,6 +31,13 @@ public:
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
+
+    /// As what spheres in overlap collide.
+    [[nodiscard]] const OverlapCores& cores() const { return cores_; }
+    /// From now on it collides as its core.
+    void set_core(std::size_t i, double core) { cores_.set(i, core, size()); }
+    /// From now on it collides as itself.
+    void release_from_overlap(std::size_t i) { cores_.release(i); }
 
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
     [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
@@ -64,10 +72,13 @@ public:
     void archive(Archive& a);
 
 private:
+    void load_core(std::size_t i, MovingParticle& particle) const;
+    [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
     void load_contact(std::size_t i, KeptContact& contact) const;
     void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_held);
 
     Particles particles_;
+    OverlapCores cores_;
     std::vector<SideMemory> sides_;  // one a collider for every particle, for responses that keep sides
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
@@ -88,6 +99,7 @@ void ParticleStore::archive(Archive& a) {
     a(p.unsimulated_time), a(p.contacts), a(p.frozen), a(p.resting), a(p.held), a(p.absorbed), a(p.pinned);
     a(p.draws), a(p.support), a(p.cascade_left), a(p.accounted_until);
     p.attributes.archive(a);
+    cores_.archive(a);
     auto origins = static_cast<std::uint64_t>(p.origin.size());
     a(origins);
     if constexpr (Archive::kReads) p.origin.resize(origins);

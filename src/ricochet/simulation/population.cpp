@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/overlap.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
@@ -21,16 +22,21 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, store.size());
     std::vector<Particle> born;
     std::uint64_t count = 0;
+    std::uint64_t refused = 0;
+    const BirthTest test = birth_test();
     for (Emitter& emitter : emitters) {
         const std::uint64_t before = emitter.born();
-        std::vector<Particle> births = emitter.births(step.begin, step.end, room);
+        const std::uint64_t refused_before = emitter.refused();
+        std::vector<Particle> births = emitter.births(step.begin, step.end, room, test);
         count += emitter.born() - before;
+        refused += emitter.refused() - refused_before;
         born.insert(born.end(), std::make_move_iterator(births.begin()), std::make_move_iterator(births.end()));
     }
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
     const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
-    recorder.statistics().births_refused_by_population += count - allowed;
+    recorder.statistics().births_refused_by_overlap += refused;
+    recorder.statistics().births_refused_by_population += count - refused - allowed;
     reserve(allowed);
     for (std::size_t k = 0; k < allowed; ++k) add(std::move(born[k]));
     if (allowed > 0 && coupled.is_active()) coupled.bind(particles());
@@ -62,26 +68,45 @@ void Simulation::Impl::reserve(std::size_t more) {
     free_flights.reserve(more);
 }
 
+/// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface. Empty without surfaces.
+BirthTest Simulation::Impl::birth_test() const {
+    if (world.surface_count() == 0) return {};
+    return [this](const Particle& particle) { return !overlap_of(particle); };
+}
+
+/// Of a sphere at the position at which it would be taken in.
+std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) const {
+    const Vec3 position = flush_tiny(particle.position);
+    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return std::nullopt;
+    return deepest_overlap(world, position, particle.radius);
+}
+
 void Simulation::Impl::add(Particle&& particle) {
     world.prepare_radius(particle.radius);
-    if (starts_in_overlap(particle)) ++recorder.statistics().started_inside;
+    const std::optional<Overlap> overlap = overlap_of(particle);
+    SimulationStatistics& statistics = recorder.statistics();
+    statistics.started_in_overlap += overlap ? 1 : 0;
+    statistics.started_inside += overlap || starts_on_surface(particle) ? 1 : 0;
     schedule.append(particle.pinned);
     free_flights.append();
     store.append(std::move(particle));
     const std::size_t i = store.size() - 1;
-    if (response->keeps_sides() && is_finite(particles().position[i])) {
+    if (!response->keeps_sides()) {
+        if (overlap) store.set_core(i, core_radius(*overlap, particles().position[i], particles().radius[i]));
+    } else if (is_finite(particles().position[i])) {
         response->first_sides(particles().position[i], store.sides_of(i));
     }
-    ++recorder.statistics().emitted;
+    ++statistics.emitted;
 }
 
-bool Simulation::Impl::starts_in_overlap(const Particle& particle) const {
+/// Points only: a sphere whose centre lies there is in overlap.
+bool Simulation::Impl::starts_on_surface(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
-    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
+    if (particle.radius > 0.0 || !is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
     ContactScratch scratch;
     const SurfaceGeometry geometry(world, scratch.plane_cache);
     const Path path = line_path(position, Vec3{}, 0.0);
-    return find_first_contact(geometry, {path, particle.radius}, scratch).near.starts_in_overlap();
+    return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
 // What users change between two steps.

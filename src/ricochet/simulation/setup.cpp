@@ -111,7 +111,37 @@ bool keeps_origin(const std::vector<Emitter>& emitters) {
     });
 }
 
+std::string named(const ColliderDescription& collider, std::size_t number) {
+    return collider.name.empty() ? fmt::format("colliders[{}]", number) : fmt::format("'{}'", collider.name);
+}
+
 }  // namespace
+
+std::optional<std::string> Simulation::Impl::overlap_warning() const {
+    std::size_t count = 0;
+    std::size_t first = 0;
+    std::uint32_t collider = 0;
+    double first_depth = 0.0;
+    double deepest = 0.0;
+    for (std::size_t i = 0; i < store.size() && recorder.statistics().started_in_overlap > 0; ++i) {
+        const double radius = particles().radius[i];
+        const auto overlap = deepest_overlap(world, particles().position[i], radius);
+        if (!overlap) continue;
+        const double depth = radius - overlap->distance;
+        if (count++ == 0) {
+            first = i;
+            first_depth = depth;
+            collider = world.name_of(overlap->surface).collider;
+        }
+        deepest = std::max(deepest, depth);
+    }
+    if (count == 0) return std::nullopt;
+    return fmt::format(
+        "{} {} born in overlap with a surface: the first is particle {}, {:.3g} m deep in {}; the deepest is {:.3g} m; "
+        "they can leave and slide, but nothing pushes them out: place them a radius away",
+        count, count == 1 ? "sphere is" : "spheres are", particles().id[first], first_depth,
+        named(world.colliders()[collider], collider), deepest);
+}
 
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
@@ -142,6 +172,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
     world.set_culling(acceleration.culling);
     reserve(setup.particles.size());
     for (Particle& particle : setup.particles) add(std::move(particle));
+    if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
     if (coupled.is_active()) coupled.bind(particles());
 }
 

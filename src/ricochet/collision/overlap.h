@@ -1,0 +1,27 @@
+/// \file
+/// Whether a sphere at rest overlaps a surface: the question at its birth.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/collision/collision_world.h"
+
+namespace ricochet {
+
+/// A surface that a sphere overlaps.
+struct Overlap {
+    SurfaceId surface = 0;
+    double distance = 0.0;  ///< m, of the centre from it: the sphere reaches its radius less this behind it
+};
+
+/// The nearest of the surfaces that are nearer to the centre than the radius by more than sphere_tolerance(), of
+/// several at one distance the smallest number; nothing for a sphere that touches at most, for a point (radius 0), and
+/// for a centre that is not finite. What lies wholly inside a solid overlaps nothing. The broad phase proposes the
+/// triangles: one query of a point. Safe from any number of threads.
+[[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
+
+/// Radius, m, of the largest ball about the centre that a sphere in overlap can collide with as if it overlapped
+/// nothing: one contact offset less than the distance. 0 for a point, where rounding of positions would be felt.
+[[nodiscard]] double core_radius(const Overlap& overlap, const Vec3& center, double radius);
+
+}  // namespace ricochet

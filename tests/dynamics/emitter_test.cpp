@@ -36,6 +36,10 @@ std::vector<Particle> all_births(const EmitterDescription& description, double d
     return Emitter(description, seed, 0).births(0.0, duration);
 }
 
+std::vector<Particle> all_births_of(const EmitterDescription& description, std::uint64_t seed, std::uint32_t number) {
+    return Emitter(description, seed, number).births(0.0, 1.0);
+}
+
 // Chi-square of the samples over equally likely bins, against the value exceeded with probability 1e-6.
 void expect_uniform(const std::vector<Particle>& samples, std::size_t bins,
                     const std::function<double(const Particle&)>& fraction) {
@@ -384,6 +388,83 @@ TEST(Emitter, RefusesWhatItCannotEmitAndNamesIt) {
     refused([](auto& d) { d.shape = SphereShape{{}, -1, false}; }, "radius");
     refused([](auto& d) { d.shape = MeshSurfaceShape{}; }, "mesh");
     refused([](auto& d) { d.shape = MeshSurfaceShape{std::make_shared<TriangleMesh>()}; }, "area");
+}
+
+TEST(EmitterBirthTest, ThatRefusesNothingChangesNoBit) {
+    EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 200);
+    description.speed = {2.0, 1.0};
+    description.mass = {1.0, 0.5};
+    description.radius = {0.2, 0.1};
+    const auto all = [](const Particle&) { return true; };
+    expect_same_bits(Emitter(description, 7, 3).births(0.0, 1.0, 1000, all), all_births_of(description, 7, 3));
+}
+
+TEST(EmitterBirthTest, MovesOnlyWhatItRefusesAndKeepsAllElse) {
+    EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 2000);
+    description.direction = {0, 0, 1};
+    description.speed = {2.0, 1.0};
+    description.mass = {1.0, 0.5};
+    description.radius = {0.2, 0.1};
+    const auto is_left = [](const Particle& p) { return p.position.x < 0.0; };
+    const auto before = all_births_of(description, 7, 3);
+    Emitter emitter(description, 7, 3);
+    const auto after = emitter.births(0.0, 1.0, 5000, is_left);
+    EXPECT_EQ(emitter.refused(), 0U);
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        ASSERT_TRUE(is_left(after[i]));
+        if (is_left(before[i])) ASSERT_EQ(after[i].position, before[i].position);
+        ASSERT_EQ(after[i].velocity, before[i].velocity);
+        ASSERT_EQ(after[i].mass, before[i].mass);
+        ASSERT_EQ(after[i].radius, before[i].radius);
+        ASSERT_EQ(after[i].origin.lineage, before[i].origin.lineage);
+    }
+    expect_uniform(after, 10, [](const Particle& p) { return 2.0 * (p.position.x + 0.5); });
+}
+
+TEST(EmitterBirthTest, RefusesAfterABoundedNumberOfPositionsAndGoesOn) {
+    EmitterDescription description = burst_of(SphereShape{{}, 1.0, false}, 5);
+    description.rate = {10.0, 0.0};
+    int asked = 0;
+    const BirthTest none = [&](const Particle&) { return ++asked == 0; };
+    Emitter emitter(description, 1, 0);
+    EXPECT_TRUE(emitter.births(0.0, 1.0, 100, none).empty());
+    EXPECT_EQ(emitter.born(), 15U);
+    EXPECT_EQ(emitter.refused(), 15U);
+    EXPECT_EQ(asked, 15 * (1 + Emitter::kMostRedraws));
+    EXPECT_EQ(emitter.births(1.0, 2.0).size(), 10U);
+}
+
+TEST(EmitterBirthTest, AsksOnceAtAPoint) {
+    int asked = 0;
+    const BirthTest none = [&](const Particle&) { return ++asked == 0; };
+    Emitter emitter(burst_of(PointShape{}, 8), 1, 0);
+    EXPECT_TRUE(emitter.births(0.0, 1.0, 100, none).empty());
+    EXPECT_EQ(emitter.refused(), 8U);
+    EXPECT_EQ(asked, 8);
+}
+
+TEST(EmitterBirthTest, SparesWhatThereIsNoRoomFor) {
+    int asked = 0;
+    const BirthTest all = [&](const Particle&) { return ++asked > 0; };
+    Emitter emitter(burst_of(PointShape{}, 8), 1, 0);
+    EXPECT_EQ(emitter.births(0.0, 1.0, 3, all).size(), 3U);
+    EXPECT_EQ(asked, 3);
+    EXPECT_EQ(emitter.refused(), 0U);
+    EXPECT_EQ(emitter.born(), 8U);
+}
+
+TEST(EmitterBirthTest, SeesThePositionInTheWorld) {
+    EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 100);
+    FrameDescription frame;
+    frame.name = "cart";
+    frame.translation = {100, 0, 0};
+    description.frames = std::make_shared<const FrameTree>(std::vector{frame});
+    description.frame = 0;
+    const BirthTest right = [](const Particle& p) { return p.position.x > 100.0; };
+    const auto born = Emitter(description, 1, 0).births(0.0, 1.0, 1000, right);
+    EXPECT_EQ(born.size(), 100U);
+    for (const Particle& p : born) ASSERT_TRUE(p.position.x > 100.0 && p.position.x < 100.5);
 }
 
 }  // namespace

@@ -143,6 +143,9 @@ void run_check(const cli::SceneArguments& arguments) {
         counted(scene.setup.particles.size(), "explicit particle"), counted(scene.setup.forces.size(), "force"));
     try {
         const Simulation simulation(std::move(scene.setup));
+        for (const std::string& warning : simulation.warnings()) {
+            fmt::print(stderr, "ricochet: warning: {}: {}\n", arguments.file, warning);
+        }
         fmt::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
                    simulation.options().time_step);
     } catch (const InputError& error) {

@@ -1,0 +1,58 @@
+#include "ricochet/geometry/mesh/mesh_openings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/core/random.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+/// A tube about z of a rectangle, open below and above.
+TriangleMesh tube(double x, double y) {
+    TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {x, y, 1});
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        const double z = mesh.vertices[t[0]].z;
+        return mesh.vertices[t[1]].z == z && mesh.vertices[t[2]].z == z;
+    });
+    return mesh;
+}
+
+TEST(MeshOpenings, OfATubeAreItsEnds) {
+    const auto openings = openings_of(tube(2.0, 0.5));
+    ASSERT_EQ(openings.size(), 2U);
+    for (const MeshOpening& opening : openings) {
+        EXPECT_NEAR(opening.width, 0.5, 1e-12);
+        EXPECT_NEAR(opening.diameter, std::hypot(2.0, 0.5), 1e-12);
+    }
+}
+
+TEST(MeshOpenings, OfAClosedMeshAreNone) { EXPECT_TRUE(openings_of(testing::sphere_mesh({}, 1.0, 2)).empty()); }
+
+TEST(WindingNumber, IsOneInsideAndNoneOutsideOfAClosedMesh) {
+    constexpr std::uint64_t kSeed = 3;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    const TriangleMesh ball = testing::sphere_mesh({1, 2, 3}, 1.0, 2);
+    RandomSequence random(kSeed, 1, 0);
+    for (int k = 0; k < static_cast<int>(test::scaled(200)); ++k) {
+        const Vec3 direction = random.unit_vector();
+        EXPECT_NEAR(winding_number(ball, Vec3{1, 2, 3} + 0.9 * random.uniform() * direction), 1.0, 1e-12);
+        EXPECT_NEAR(winding_number(ball, Vec3{1, 2, 3} + (1.1 + random.uniform()) * direction), 0.0, 1e-12);
+    }
+    EXPECT_NEAR(winding_number(testing::flipped(ball), {1, 2, 3}), -1.0, 1e-12);
+}
+
+// From its centre a cube without a face shows five sixths of itself.
+TEST(WindingNumber, IsThePartOfDirectionsThatAnOpenMeshCloses) {
+    TriangleMesh cube = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
+    std::erase_if(cube.triangles, [&](const Triangle& t) {
+        return cube.vertices[t[0]].z + cube.vertices[t[1]].z + cube.vertices[t[2]].z == 3.0;
+    });
+    EXPECT_NEAR(winding_number(cube, {}), 5.0 / 6.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace ricochet

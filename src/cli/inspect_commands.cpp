@@ -9,11 +9,13 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/scene_warnings.h"
 
 namespace ricochet {
 
@@ -135,6 +137,10 @@ std::size_t triangle_count(const SimulationSetup& setup) {
     return triangles;
 }
 
+void print_warnings(const std::string& file, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) fmt::print(stderr, "ricochet: warning: {}: {}\n", file, warning);
+}
+
 void run_check(const cli::SceneArguments& arguments) {
     SceneDescription scene = cli::load_scene(arguments);
     const std::string counts = fmt::format(
@@ -142,10 +148,11 @@ void run_check(const cli::SceneArguments& arguments) {
         counted(triangle_count(scene.setup), "triangle"), counted(scene.setup.emitters.size(), "emitter"),
         counted(scene.setup.particles.size(), "explicit particle"), counted(scene.setup.forces.size(), "force"));
     try {
+        const std::vector<EmitterDescription> emitters = scene.setup.emitters;
+        const Vec3 fall = uniform_acceleration(scene.setup);
         const Simulation simulation(std::move(scene.setup));
-        for (const std::string& warning : simulation.warnings()) {
-            fmt::print(stderr, "ricochet: warning: {}: {}\n", arguments.file, warning);
-        }
+        print_warnings(arguments.file, simulation.warnings());
+        print_warnings(arguments.file, scene_warnings(simulation, emitters, fall));
         fmt::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
                    simulation.options().time_step);
     } catch (const InputError& error) {

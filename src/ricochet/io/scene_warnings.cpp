@@ -1,0 +1,279 @@
+#include "ricochet/io/scene_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "ricochet/collision_queries.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/mesh_openings.h"
+
+namespace ricochet {
+namespace {
+
+/// Starts that are looked at: of an emitter, of the explicit particles.
+constexpr std::uint64_t kStarts = 256;
+constexpr std::size_t kMostExplicit = 2000;
+
+/// Triangles times starts that are looked at where every triangle counts for every start.
+constexpr double kMostSolidAngles = 2e7;
+
+/// Part of a mesh's size above which an opening is a mouth, which is meant; below, what is closed otherwise leaks.
+constexpr double kMouth = 0.25;
+
+/// Units in the last place of the coordinates that a radius should measure: contact keeps 16 of them.
+constexpr double kLeastRadiusUlps = 1e3;
+
+/// Particles that begin for one reason, some of them.
+struct Starts {
+    std::string where;
+    std::vector<Particle> particles;
+    double largest_radius = 0.0;    ///< m, of all
+    std::uint64_t overlapping = 0;  ///< of an emitter: draws besides them that would be refused
+};
+
+std::string named(std::string_view list, std::size_t index, const std::string& name) {
+    const std::string path = fmt::format("{}[{}]", list, index);
+    return name.empty() ? path : fmt::format("{} '{}'", path, name);
+}
+
+Starts explicit_starts(const Simulation& simulation) {
+    const Particles& all = simulation.particles();
+    Starts starts{"particles", {}, 0.0, 0};
+    const std::size_t count = std::min(all.size(), kMostExplicit);
+    for (std::size_t k = 0; k < count; ++k) starts.particles.push_back(all.at(k * all.size() / count));
+    for (const double radius : all.radius) starts.largest_radius = std::max(starts.largest_radius, radius);
+    return starts;
+}
+
+bool overlaps(const Simulation& simulation, const Particle& p) {
+    if (!is_finite(p.position) || max_abs(p.position) > kLargestCoordinate) return false;
+    const double least = p.radius - sphere_tolerance(p.radius, max_abs(p.position));
+    if (!(least > 0.0) || simulation.colliders().empty()) return false;
+    const auto closest = simulation.collisions().closest_point(p.position, p.radius);
+    return closest && closest->distance < least;
+}
+
+/// Drawn for themselves, not as those of the run.
+Starts starts_of(const Simulation& simulation, const EmitterDescription& emitter, std::size_t index) {
+    Starts starts{named("emitters", index, emitter.name), {}, emitter.radius.mean + emitter.radius.spread, 0};
+    const ShapeSampler sampler(emitter.shape);
+    RandomSequence random(0, 0, index);
+    for (std::uint64_t k = 0; k < kStarts; ++k) {
+        Particle particle;
+        particle.radius = random.uniform_around(emitter.radius.mean, emitter.radius.spread);
+        particle.position = sampler.draw(particle.radius, random).position;
+        particle.birth_time = emitter.start;
+        if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
+        if (overlaps(simulation, particle)) {
+            ++starts.overlapping;
+        } else {
+            starts.particles.push_back(particle);
+        }
+    }
+    return starts;
+}
+
+/// A mesh collider with boundary loops.
+struct OpenMesh {
+    std::string where;
+    TriangleMesh mesh;
+    Box3 box;
+    std::vector<MeshOpening> openings;  ///< the largest first
+};
+
+class SceneReview {
+public:
+    SceneReview(const Simulation& simulation, std::span<const EmitterDescription> emitters, const Vec3& fall)
+        : simulation_(simulation), emitters_(emitters), fall_(fall) {
+        if (!simulation.particles().empty()) starts_.push_back(explicit_starts(simulation));
+        for (std::size_t k = 0; k < emitters.size(); ++k) {
+            if (!emitters[k].parent) starts_.push_back(starts_of(simulation, emitters[k], k));
+        }
+    }
+
+    std::vector<std::string> lines() {
+        review_surfaces();
+        for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
+        for (const Starts& starts : starts_) {
+            review_positions(starts);
+            review_radius(starts);
+        }
+        return std::move(lines_);
+    }
+
+private:
+    void review_surfaces();
+    void review_collider(std::size_t i);
+    void review_sides(const Starts& starts, const CollisionQueries& solid, const std::string& where);
+    void review_leaks(const Starts& starts, const OpenMesh& open);
+    void review_fit(const Starts& starts, const OpenMesh& open);
+    void review_positions(const Starts& starts);
+    void review_radius(const Starts& starts);
+    [[nodiscard]] bool falls_to(const Particle& particle, const Box3& box) const;
+
+    const Simulation& simulation_;
+    std::span<const EmitterDescription> emitters_;
+    Vec3 fall_;
+    std::vector<Starts> starts_;
+    std::vector<std::string> lines_;
+};
+
+/// Scenes without colliders are common: only what needs them is told.
+void SceneReview::review_surfaces() {
+    if (!simulation_.colliders().empty() || starts_.empty()) return;
+    const std::string advice = "add colliders, or leave it out";
+    for (std::size_t k = 0; k < emitters_.size(); ++k) {
+        if (!emitters_[k].parent || emitters_[k].parent->on != BirthEvent::impact) continue;
+        lines_.push_back(fmt::format("{}: its particles are born at impacts, and there is nothing to hit: {}",
+                                     named("emitters", k, emitters_[k].name), advice));
+    }
+    if (simulation_.options().response != ResponseKind::exact) {
+        lines_.push_back(
+            fmt::format("simulation.response: a response is chosen, and there is nothing to hit: {}", advice));
+    }
+    if (simulation_.options().record_contacts) {
+        lines_.push_back(
+            fmt::format("output.contacts: contacts are asked for, and there is nothing to hit: {}", advice));
+    }
+}
+
+std::optional<OpenMesh> open_mesh(const Simulation& simulation, std::size_t i, std::string where) {
+    if (!std::holds_alternative<MeshShape>(simulation.colliders()[i].shape)) return std::nullopt;
+    OpenMesh open{std::move(where), *simulation.collider_mesh(i), {}, {}};
+    open.openings = openings_of(open.mesh);
+    if (open.openings.empty()) return std::nullopt;
+    std::sort(open.openings.begin(), open.openings.end(),
+              [](const MeshOpening& a, const MeshOpening& b) { return a.diameter > b.diameter; });
+    for (const Vec3& vertex : open.mesh.vertices) open.box.include(vertex);
+    return open;
+}
+
+/// A collider with the mesh that the simulation has taken over.
+ColliderDescription in_world(const Simulation& simulation, std::size_t i) {
+    ColliderDescription collider = simulation.colliders()[i];
+    if (!std::holds_alternative<MeshShape>(collider.shape)) return collider;
+    auto mesh = std::make_shared<const TriangleMesh>(*simulation.collider_mesh(i));
+    collider.shape = MeshShape{std::move(mesh), {}, ""};
+    return collider;
+}
+
+void SceneReview::review_collider(std::size_t i) {
+    const ColliderDescription& collider = simulation_.colliders()[i];
+    const std::string where = named("colliders", i, collider.name);
+    if (std::holds_alternative<PlaneShape>(collider.shape)) return;
+    if (const std::optional<OpenMesh> open = open_mesh(simulation_, i, where)) {
+        for (const Starts& starts : starts_) {
+            review_leaks(starts, *open);
+            review_fit(starts, *open);
+        }
+        return;
+    }
+    const CollisionQueries solid({in_world(simulation_, i)});
+    for (const Starts& starts : starts_) review_sides(starts, solid, where);
+}
+
+void SceneReview::review_sides(const Starts& starts, const CollisionQueries& solid, const std::string& where) {
+    const auto is_inside = [&](const Particle& p) { return is_finite(p.position) && solid.is_inside(p.position); };
+    const auto inside = std::count_if(starts.particles.begin(), starts.particles.end(), is_inside);
+    if (inside == 0 || inside == std::ssize(starts.particles)) return;
+    lines_.push_back(
+        fmt::format("{}: {} of {} begin inside {}, which is closed, the others outside: none ever changes sides; "
+                    "move them to one side if that is not meant",
+                    starts.where, inside, starts.particles.size(), where));
+}
+
+/// Of what is closed but for small holes, so that its maker may think it closed.
+void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
+    if (starts.particles.empty() || open.openings[0].diameter > kMouth * open.box.diagonal()) return;
+    const double affordable = kMostSolidAngles / static_cast<double>(open.mesh.triangles.size());
+    const auto looked_at = static_cast<std::size_t>(
+        std::clamp(affordable, 1.0, static_cast<double>(std::min<std::size_t>(starts.particles.size(), 64))));
+    std::size_t inside = 0;
+    for (std::size_t k = 0; k < looked_at; ++k) {
+        const Vec3& position = starts.particles[k * starts.particles.size() / looked_at].position;
+        if (!open.box.contains(position)) continue;
+        inside += std::fabs(winding_number(open.mesh, position)) > 0.5 ? 1 : 0;
+    }
+    if (inside == 0) return;
+    lines_.push_back(
+        fmt::format("{}: {} of {} begin inside {}, which is open: {} {}, the largest {:.3g} m across, let "
+                    "them out; close the mesh (`ricochet info` tells more) if that is not meant",
+                    starts.where, inside, looked_at, open.where, open.openings.size(),
+                    open.openings.size() == 1 ? "hole" : "holes", open.openings[0].diameter));
+}
+
+/// Of what has a mouth and an outlet, such as a funnel.
+void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
+    if (open.openings.size() < 2 || open.openings[0].diameter < kMouth * open.box.diagonal()) return;
+    double narrowest = open.openings[0].width;
+    for (const MeshOpening& opening : open.openings) narrowest = std::min(narrowest, opening.width);
+    if (starts.particles.empty() || !(2.0 * starts.largest_radius > narrowest)) return;
+    const auto falls = std::count_if(starts.particles.begin(), starts.particles.end(),
+                                     [&](const Particle& particle) { return falls_to(particle, open.box); });
+    if (2 * falls < std::ssize(starts.particles)) return;
+    lines_.push_back(
+        fmt::format("{}: spheres of up to {:.3g} m across do not fit through the narrowest opening of {}, {:.3g} m "
+                    "wide: use smaller ones, or a wider opening, if they are to pass",
+                    starts.where, 2.0 * starts.largest_radius, open.where, narrowest));
+}
+
+/// True when it begins in the box, or above it as things fall.
+bool SceneReview::falls_to(const Particle& particle, const Box3& box) const {
+    if (box.contains(particle.position)) return true;
+    double begin = 0.0;
+    double end = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = (box.lower[axis] - particle.position[axis]) / fall_[axis];
+        const double high = (box.upper[axis] - particle.position[axis]) / fall_[axis];
+        if (fall_[axis] == 0.0) {
+            const double x = particle.position[axis];
+            if (x < box.lower[axis] || x > box.upper[axis]) return false;
+            continue;
+        }
+        begin = std::max(begin, std::min(low, high));
+        end = std::min(end, std::max(low, high));
+    }
+    return begin <= end && fall_ != Vec3{};
+}
+
+/// Explicit particles in overlap are told by the simulation itself.
+void SceneReview::review_positions(const Starts& starts) {
+    // Where one position in twenty is free, one birth in thirty finds none.
+    if (20 * starts.overlapping < 19 * kStarts) return;
+    lines_.push_back(
+        fmt::format("{}: {} of {} positions that were tried overlap a surface: births there are refused; "
+                    "make the spheres smaller or move the emitter off",
+                    starts.where, starts.overlapping, kStarts));
+}
+
+void SceneReview::review_radius(const Starts& starts) {
+    for (const Particle& particle : starts.particles) {
+        const double largest = max_abs(particle.position);
+        if (!(particle.radius > 0.0) || !std::isfinite(largest)) continue;
+        if (particle.radius >= kLeastRadiusUlps * ulp(largest)) continue;
+        lines_.push_back(
+            fmt::format("{}: a radius of {:.3g} m at coordinates of {:.3g} m is less than {:g} units in "
+                        "their last place: move the scene to the origin, or use points",
+                        starts.where, particle.radius, largest, kLeastRadiusUlps));
+        return;
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Simulation& simulation, std::span<const EmitterDescription> emitters,
+                                        const Vec3& fall) {
+    return SceneReview(simulation, emitters, fall).lines();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,23 @@
+/// \file
+/// What is probably not meant in a scene that can be run: `ricochet check` says so.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+
+/// One line each: where, what, what to do about it. About particles that begin on both sides of a closed collider or
+/// inside one that leaks, spheres that find no position, do not fit through the opening that they fall to or are too
+/// small for their coordinates, and collisions that are asked for where there is nothing to hit. What is said rests on
+/// some hundred starts of every emitter and some thousand of the explicit particles; a scene without a line here may
+/// still be wrong. simulation: before its first step. emitters: of the setup that it was made from. fall: m/s^2, the
+/// acceleration that is the same everywhere (uniform_acceleration()).
+[[nodiscard]] std::vector<std::string> scene_warnings(const Simulation& simulation,
+                                                      std::span<const EmitterDescription> emitters, const Vec3& fall);
+
+}  // namespace ricochet

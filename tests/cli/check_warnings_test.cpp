@@ -1,0 +1,194 @@
+// What `ricochet check` warns of in scenes that can be run: each warning where it belongs, and not where it does not.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "cli/run_program.h"
+#include "io/sample_scene.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+using test::run_ricochet;
+using test::SampleFolder;
+
+std::string obj_of(const TriangleMesh& mesh) {
+    std::ostringstream out;
+    out.precision(17);
+    for (const Vec3& v : mesh.vertices) out << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (const Triangle& t : mesh.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+    return out.str();
+}
+
+/// An open cone about z, from a ring of the upper radius at z = 1 to one of the lower radius at z = 0.
+TriangleMesh funnel_mesh(double upper, double lower) {
+    constexpr std::uint32_t kSides = 24;
+    TriangleMesh mesh;
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kSides;
+        mesh.vertices.push_back({upper * std::cos(angle), upper * std::sin(angle), 1});
+        mesh.vertices.push_back({lower * std::cos(angle), lower * std::sin(angle), 0});
+        const std::uint32_t next = (k + 1) % kSides;
+        mesh.triangles.push_back({2 * k, 2 * k + 1, 2 * next});
+        mesh.triangles.push_back({2 * next, 2 * k + 1, 2 * next + 1});
+    }
+    return mesh;
+}
+
+/// A scene with meshes beside it: `hull.obj`, a sphere of radius 1, `leaky.obj`, the same with a small hole, and
+/// `funnel.obj`, 2 m wide above and 0.2 m below.
+class CheckWarnings : public ::testing::Test {
+protected:
+    CheckWarnings() {
+        TriangleMesh hull = testing::sphere_mesh({}, 1.0, 3);
+        (void)folder_.write("hull.obj", obj_of(hull));
+        hull.triangles.pop_back();
+        (void)folder_.write("leaky.obj", obj_of(hull));
+        (void)folder_.write("funnel.obj", obj_of(funnel_mesh(1.0, 0.1)));
+    }
+
+    /// What check prints to standard error for a scene of these parts; it must end with 0.
+    std::string warnings(const std::string& parts) {
+        const std::string scene =
+            folder_
+                .write("s.json", R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 0.1},)" + parts + "}")
+                .string();
+        const test::ProgramResult result = run_ricochet({"check", scene});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_NE(result.output.find(": ok: "), std::string::npos);
+        std::string text = result.errors;
+        const std::string prefix = "ricochet: warning: " + scene + ": ";
+        for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
+            text.erase(at, prefix.size());
+        }
+        return text;
+    }
+
+    static std::string collider(const std::string& keys) {
+        return R"("materials": {"m": {"restitution": 0.5}}, "colliders": [{"name": "c", "material": "m", )" + keys +
+               "}]";
+    }
+    static std::string mesh(const std::string& file) { return collider(R"("type": "mesh", "file": ")" + file + "\""); }
+    static std::string emitter(const std::string& keys) {
+        return R"(, "emitters": [{"name": "e", "burst": 10, )" + keys + "}]";
+    }
+    static std::string gravity() { return R"(, "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}])"; }
+
+private:
+    SampleFolder folder_;
+};
+
+TEST_F(CheckWarnings, TellsOfALeakOnlyToWhatBeginsInside) {
+    const std::string inside = emitter(R"("type": "sphere", "center": [0, 0, 0], "radius": 0.5)");
+    const std::string outside = emitter(R"("type": "sphere", "center": [0, 0, 3], "radius": 0.5)");
+    const std::string text = warnings(mesh("leaky.obj") + inside);
+    EXPECT_EQ(
+        text.rfind("emitters[0] 'e': 64 of 64 begin inside colliders[0] 'c', which is open: 1 hole, the largest ", 0),
+        0U)
+        << text;
+    EXPECT_NE(text.find("close the mesh"), std::string::npos);
+    EXPECT_EQ(warnings(mesh("leaky.obj") + outside), "");
+    EXPECT_EQ(warnings(mesh("hull.obj") + inside), "");
+    EXPECT_EQ(warnings(mesh("funnel.obj") + inside), "");
+}
+
+TEST_F(CheckWarnings, TellsOfStartsOnBothSidesOfAClosedCollider) {
+    const std::string across = emitter(R"("type": "box", "center": [1, 0, 0], "size": [1, 1, 1])");
+    const std::string within = emitter(R"("type": "box", "center": [0, 0, 0], "size": [1, 1, 1])");
+    for (const std::string& solid : {mesh("hull.obj"), collider(R"("type": "sphere", "radius": 1)"),
+                                     collider(R"("type": "box", "size": [2, 2, 2])")}) {
+        const std::string text = warnings(solid + across);
+        EXPECT_NE(text.find("begin inside colliders[0] 'c', which is closed, the others outside"), std::string::npos)
+            << text;
+        EXPECT_EQ(warnings(solid + within), "");
+    }
+    EXPECT_EQ(warnings(collider(R"("type": "plane", "point": [1, 0, 0], "normal": [1, 0, 0])") + across), "");
+    const std::string both = R"(, "particles": [{"position": [0, 0, 0]}, {"position": [0, 0, 3]}])";
+    EXPECT_EQ(warnings(mesh("hull.obj") + both).rfind("particles: 1 of 2 begin inside", 0), 0U);
+    EXPECT_EQ(warnings(mesh("hull.obj") + R"(, "particles": [{"position": [0, 0, 3]}])"), "");
+}
+
+TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
+    const auto particles = [](double z) {
+        return R"(, "particles": [{"position": [0, 0, 5], "radius": 0.5}, {"position": [3, 0, )" + std::to_string(z) +
+               R"(], "radius": 0.5}])";
+    };
+    const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
+    EXPECT_EQ(warnings(floor + particles(0.25)),
+              "1 sphere is born in overlap with a surface: the first is particle 1, 0.25 m deep in 'c'; the deepest is "
+              "0.25 m; "
+              "they can leave and slide, but nothing pushes them out: place them a radius away\n");
+    EXPECT_EQ(warnings(floor + particles(0.5)), "");
+}
+
+TEST_F(CheckWarnings, TellsOfAnEmitterWithoutFreePositions) {
+    const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
+    const auto point = [](const std::string& z) {
+        return emitter(R"("type": "point", "particle_radius": 0.5, "center": [0, 0, )" + z + "]");
+    };
+    EXPECT_EQ(
+        warnings(floor + point("0.2")),
+        "emitters[0] 'e': 256 of 256 positions that were tried overlap a surface: births there are refused; make the "
+        "spheres smaller or move the emitter off\n");
+    EXPECT_EQ(warnings(floor + point("0.5")), "");
+    EXPECT_EQ(
+        warnings(floor + emitter(R"("type": "box", "center": [0, 0, 1], "size": [1, 1, 2], "particle_radius": 0.5)")),
+        "");
+}
+
+TEST_F(CheckWarnings, TellsOfSpheresThatDoNotFitThroughAnOutlet) {
+    const auto pour = [](const std::string& x, const std::string& radius) {
+        return gravity() + emitter(R"("type": "sphere", "radius": 0.2, "center": [)" + x +
+                                   R"(, 0, 3], "particle_radius": )" + radius);
+    };
+    const std::string text = warnings(mesh("funnel.obj") + pour("0", "[0.09, 0.02]"));
+    EXPECT_EQ(text.rfind("emitters[0] 'e': spheres of up to 0.22 m across do not fit through the narrowest opening of "
+                         "colliders[0] 'c', 0.198 m wide",
+                         0),
+              0U)
+        << text;
+    EXPECT_EQ(warnings(mesh("funnel.obj") + pour("0", "0.09")), "");
+    EXPECT_EQ(warnings(mesh("funnel.obj") + pour("5", "0.11")), "");  // falls beside it
+    EXPECT_EQ(warnings(mesh("leaky.obj") + pour("0", "0.11")), "");   // a hole, no outlet
+}
+
+TEST_F(CheckWarnings, TellsOfRadiiThatCoordinatesHardlyResolve) {
+    const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
+    const auto far = [](const std::string& x) {
+        return emitter(R"("type": "point", "particle_radius": 0.001, "center": [)" + x + R"(, 0, 3])");
+    };
+    const std::string text = warnings(floor + far("1e11"));
+    EXPECT_EQ(text.rfind("emitters[0] 'e': a radius of 0.001 m at coordinates of 1e+11 m is less than 1000 units", 0),
+              0U)
+        << text;
+    EXPECT_EQ(warnings(floor + far("1e6")), "");
+}
+
+TEST_F(CheckWarnings, TellsOfNothingToHitWhereImpactsAreAskedFor) {
+    const std::string sparks = R"("emitters": [{"name": "e", "type": "point", "burst": 10},
+        {"name": "sparks", "type": "child", "parent": "e", "on": "impact", "count": 3}])";
+    EXPECT_EQ(warnings(sparks),
+              "emitters[1] 'sparks': its particles are born at impacts, and there is nothing to hit: add colliders, or "
+              "leave it out\n");
+    EXPECT_EQ(warnings(collider(R"("type": "plane", "normal": [0, 0, 1])") + ", " + sparks), "");
+    const std::string plain = R"("emitters": [{"name": "e", "type": "point", "burst": 10}])";
+    EXPECT_EQ(warnings(plain), "");
+    EXPECT_NE(warnings(plain + R"(, "output": {"contacts": true})").find("output.contacts: "), std::string::npos);
+}
+
+TEST_F(CheckWarnings, TellsOfStepsBeyondAStabilityBound) {
+    const auto stiff = [](const std::string& stiffness) {
+        return R"("particles": [{"position": [0, 0, 1]}, {"position": [0, 0, 2]}], "springs": [{"type": "list", "springs": [
+            {"first": 0, "second": 1, "stiffness": )" +
+               stiffness + "}]}]";
+    };
+    EXPECT_NE(warnings(stiff("1e7")).find("up to which"), std::string::npos) << warnings(stiff("1e7"));
+    EXPECT_EQ(warnings(stiff("10")), "");
+}
+
+}  // namespace
+}  // namespace ricochet

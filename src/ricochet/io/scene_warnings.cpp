@@ -30,6 +30,9 @@ constexpr double kMostSolidAngles = 2e7;
 /// Part of a mesh's size above which an opening is a mouth, which is meant; below, what is closed otherwise leaks.
 constexpr double kMouth = 0.25;
 
+/// Part of a mesh's size up to which an opening's width makes it a seam between parts, which nothing is poured through.
+constexpr double kCrack = 1e-3;
+
 /// Units in the last place of the coordinates that a radius should measure: contact keeps 16 of them.
 constexpr double kLeastRadiusUlps = 1e3;
 
@@ -204,7 +207,7 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
         if (!open.box.contains(position)) continue;
         inside += std::fabs(winding_number(open.mesh, position)) > 0.5 ? 1 : 0;
     }
-    if (inside == 0) return;
+    if (2 * inside < looked_at) return;  // a container holds most of them
     lines_.push_back(
         fmt::format("{}: {} of {} begin inside {}, which is open: {} {}, the largest {:.3g} m across, let "
                     "them out; close the mesh (`ricochet info` tells more) if that is not meant",
@@ -216,7 +219,9 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
 void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
     if (open.openings.size() < 2 || open.openings[0].diameter < kMouth * open.box.diagonal()) return;
     double narrowest = open.openings[0].width;
-    for (const MeshOpening& opening : open.openings) narrowest = std::min(narrowest, opening.width);
+    for (const MeshOpening& opening : open.openings) {
+        if (opening.width > kCrack * open.box.diagonal()) narrowest = std::min(narrowest, opening.width);
+    }
     if (starts.particles.empty() || !(2.0 * starts.largest_radius > narrowest)) return;
     const auto falls = std::count_if(starts.particles.begin(), starts.particles.end(),
                                      [&](const Particle& particle) { return falls_to(particle, open.box); });

@@ -1,4 +1,4 @@
-#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/held_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ std::array<Vec3, 1> slope(double angle) { return {Vec3{std::sin(angle), 0, std::
 ContactInterval plan_slide(const Vec3& velocity, const Vec3& a, std::span<const Vec3> normals, double friction,
                            double duration) {
     std::vector<HoldingSurface> surfaces;
-    for (const Vec3& normal : normals) surfaces.push_back({normal, friction, 0.0});
+    for (const Vec3& normal : normals) surfaces.push_back({normal, friction});
     return plan_interval({velocity, {}}, 0.0, a, surfaces, {}, duration);
 }
 
@@ -31,19 +31,19 @@ TEST(ContactMode, RestsOnAFloorWithoutPull) {
 TEST(ContactMode, SlidesFreelyWithoutFriction) {
     const ContactInterval slide = plan_slide({3, 0, -1}, {0, 0, -kG}, kFloor, 0.0, 2.0);
     EXPECT_FALSE(slide.at_rest);
-    EXPECT_FALSE(slide.stops);
+    EXPECT_FALSE(slide.stuck[0].to_slip);
     EXPECT_EQ(slide.motion.velocity, (Vec3{3, 0, 0}));
     EXPECT_EQ(slide.acceleration, (Vec3{0, 0, 0}));
 }
 
 TEST(ContactMode, FrictionStopsASlideAfterTheClosedFormTime) {
     const ContactInterval slide = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 10.0);
-    EXPECT_TRUE(slide.stops);
+    EXPECT_TRUE(slide.stuck[0].to_slip);
     EXPECT_NEAR(slide.duration, 5.0 / (0.5 * kG), 1e-15);
     EXPECT_NEAR(slide.acceleration.x, -0.5 * kG * 0.6, 1e-15);
     EXPECT_NEAR(slide.acceleration.y, -0.5 * kG * 0.8, 1e-15);
     const ContactInterval shorter = plan_slide({3, 4, 0}, {0, 0, -kG}, kFloor, 0.5, 0.1);
-    EXPECT_FALSE(shorter.stops);
+    EXPECT_FALSE(shorter.stuck[0].to_slip);
     EXPECT_EQ(shorter.duration, 0.1);
 }
 
@@ -62,7 +62,7 @@ TEST(ContactMode, SpeedsUpDownhillAgainstFriction) {
     const Vec3 downhill{std::cos(angle), 0, -std::sin(angle)};
     const ContactInterval slide = plan_slide(2.0 * downhill, {0, 0, -kG}, slope(angle), 0.2, 1.0);
     EXPECT_NEAR(dot(slide.acceleration, downhill), kG * (std::sin(angle) - 0.2 * std::cos(angle)), 1e-14);
-    EXPECT_FALSE(slide.stops);
+    EXPECT_FALSE(slide.stuck[0].to_slip);
 }
 
 TEST(ContactMode, AValleyOfThreeWallsHoldsWithoutFriction) {

@@ -87,18 +87,18 @@ inline constexpr double kSameNormal = 1e-12;
 /// a wall's contact offset.
 inline constexpr double kProjectionRounding = 0x1p-48;
 
-/// Slip of a sphere, relative to the speeds whose difference it is, below which it is rounding and the sphere rolls.
-/// Smaller: rolling is chopped into segments of sliding. Larger: slow slip ends too early.
-inline constexpr double kSlipRounding = 0x1p-40;
-
 /// Speed left by braking to a stop, relative to the speed before, that still is a stop: rounding across the heading.
 /// Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: sideways motion is lost.
 inline constexpr double kStopRounding = 0x1p-40;
 
-/// Angle, rad, by which the direction of sliding or of slip may turn in one contact interval: friction keeps its
-/// direction over an interval. Smaller: more segments (each costs a query). Larger: where a slide ends depends on the
-/// time step.
+/// Angle, rad, by which the direction of sliding or of slip may turn in one contact interval: friction keeps the
+/// direction of its middle. Smaller: more segments (each costs a query). Larger: where a slide ends depends on the time
+/// step by the angle's square.
 inline constexpr double kMaxHeadingTurn = 0.05;
+
+/// Sine of the angle between friction's directions at the start and in the middle of a contact interval below which
+/// they are one. Smaller: rounding has the contact problem solved twice. Larger: slow turns add up.
+inline constexpr double kStraightHeading = 0x1p-44;
 
 /// Angle, rad, by which a particle turns around an edge or a curved surface in one straight segment of sliding or
 /// rolling with the rollback response, and along flows. Smaller: more segments (each costs a query). Larger: it leaves

@@ -170,11 +170,9 @@ Vec3 ContactArc::forces(const State& state, double t) const {
     return forces_.acceleration(input);
 }
 
-ContactInterval ContactArc::plan_at(const State& state, double t, double duration,
-                                    const std::array<Stuck, kMostHolding>& stuck) const {
+ContactInterval ContactArc::plan_at(const State& state, double t, double duration, const StuckSurfaces& stuck) const {
     const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
-    return plan_held_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration,
-                              stuck);
+    return plan_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration, stuck);
 }
 
 ContactArc::Rate ContactArc::rate(const State& state, double t) const {
@@ -198,7 +196,7 @@ void ContactArc::put_on_surfaces(State& state) const {
     }
     const Holding there = holding(state);
     Holding holding_ones;
-    std::array<Stuck, kMostHolding> stuck{};
+    StuckSurfaces stuck{};
     for (std::size_t i = 0; i < there.count; ++i) {
         if (!holds_[i]) continue;
         stuck[holding_ones.count] = stuck_[i];
@@ -215,6 +213,7 @@ bool ContactArc::dissipates() const {
         if (!holds_[k]) continue;
         if (surface.friction > 0.0 && !stuck_[k].to_slip) return true;
         if (surface.rolling_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_turning) return true;
+        if (surface.spinning_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_spinning) return true;
     }
     return false;
 }

@@ -75,7 +75,7 @@ private:
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
     [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
-                                          const std::array<Stuck, kMostHolding>& stuck = {}) const;
+                                          const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
     void put_on_surfaces(State& state) const;
     void restore_energy(State& state, double t) const;
@@ -88,8 +88,8 @@ private:
     ArcStart start_;
     std::array<SurfaceId, kMostHolding> surfaces_{};
     ContactInterval plan_;
-    std::array<bool, kMostHolding> holds_{};   // at the start
-    std::array<Stuck, kMostHolding> stuck_{};  // from the start on
+    std::array<bool, kMostHolding> holds_{};  // at the start
+    StuckSurfaces stuck_{};                   // from the start on
     bool keeps_energy_ = false;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_motion.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/impact_answer.h"
 
@@ -123,15 +122,14 @@ void ContactManifold::load(const Vec3& pull) {
     for (std::size_t k = 0; k < count_; ++k) loads_[k] = accelerations[k] * normals_[k];
 }
 
-void ContactManifold::load(const ContactInterval& interval) {
-    if (count_ > 1) loads_ = interval.push;
-}
+void ContactManifold::load(const ContactInterval& interval) { loads_ = interval.push; }
 
 ContactManifold::Holding ContactManifold::holding(const ImpactAnswer& impact) const {
     Holding holding;
     for (std::size_t k = 0; k < count_; ++k) {
         const Material& material = impact.material_of(surfaces_[k]);
-        holding.surfaces[holding.count++] = {normals_[k], material.friction, material.rolling_friction};
+        holding.surfaces[holding.count++] = {normals_[k], material.friction, material.rolling_friction,
+                                             material.spinning_friction};
     }
     return holding;
 }

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "ricochet/collision/contact_scratch.h"
-#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {

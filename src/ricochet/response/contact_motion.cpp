@@ -5,7 +5,6 @@
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/held_motion.h"
 
 namespace ricochet {
 namespace {
@@ -37,89 +36,6 @@ double exponential(RandomSequence& random) {
         }
         if (run % 2 == 1) return whole + first;
     }
-}
-
-/// Share of the force on a solid sphere's centre that accelerates it while it rolls.
-constexpr double kRollingShare = 5.0 / 7.0;
-
-/// Ends a braked interval where the speed along the heading reaches zero.
-void brake(ContactInterval& interval, double speed, double braking) {
-    if (braking <= 0.0 || speed >= braking * interval.duration) return;
-    interval.duration = speed / braking;
-    interval.stops = true;
-}
-
-/// Time until what points along a unit `heading` at `speed`, and is pulled by `along`, has turned by kMaxHeadingTurn.
-double time_to_turn(const Vec3& along, const Vec3& heading, double speed, const Grip& grip, double duration) {
-    const double across = length(along - dot(along, heading) * heading);
-    if (across * duration <= kMaxHeadingTurn * speed) return duration;
-    return std::min(duration, std::max(grip.shortest, kMaxHeadingTurn * speed / across));
-}
-
-/// With constant pull and friction f > |pull| a point stops after (f v + pull . v) / (f^2 - pull^2): the derivative of
-/// f |v| + pull . v is pull^2 - f^2 whatever the direction.
-bool stops_at_once(const Vec3& velocity, const Vec3& along, double most_friction, double negligible_path) {
-    const double surplus = most_friction * most_friction - length_squared(along);
-    if (!(surplus > 0.0)) return false;
-    const double speed = length(velocity);
-    return speed * (most_friction * speed + dot(along, velocity)) <= surplus * negligible_path;
-}
-
-ContactInterval slide_of_point(const Motion& motion, const Vec3& along, double most_friction, const Grip& grip,
-                               double duration) {
-    ContactInterval interval{motion, along, {}, duration, false, false, false};
-    const double speed = length(motion.velocity);
-    if (speed == 0.0 || stops_at_once(motion.velocity, along, most_friction, grip.negligible_path)) {
-        const double pull = length(along);
-        interval.at_rest = pull <= most_friction;
-        interval.acceleration = interval.at_rest ? Vec3{} : along * (1.0 - most_friction / pull);
-        return interval;
-    }
-    const Vec3 heading = motion.velocity / speed;
-    interval.acceleration = along - most_friction * heading;
-    if (most_friction > 0.0) {
-        interval.duration = time_to_turn(along, heading, speed, grip, duration);
-        brake(interval, speed, -dot(interval.acceleration, heading));
-    }
-    return interval;
-}
-
-/// Kinetic friction on a slipping sphere: brakes the centre and turns the sphere until the slip is gone.
-ContactInterval slide_of_sphere(const Motion& motion, double radius, const Vec3& n, const Vec3& along,
-                                const Vec3& slip_heading, double slip, double most_friction, const Grip& grip,
-                                double duration) {
-    const Vec3 force = -most_friction * slip_heading;
-    ContactInterval interval{motion, along + force, (-2.5 / radius) * cross(n, force), duration, false, false, false};
-    if (slip > 0.0) interval.duration = time_to_turn(along, slip_heading, slip, grip, duration);
-    const double braking = 3.5 * most_friction - dot(along, slip_heading);
-    if (slip > 0.0 && braking > 0.0 && slip < braking * interval.duration) {
-        interval.duration = slip / braking;
-        interval.rolls = true;
-    }
-    return interval;
-}
-
-/// Rolling without slip, braked by rolling friction.
-ContactInterval roll(const Motion& motion, double radius, const Vec3& n, const Vec3& along, double most_rolling,
-                     const Grip& grip, double duration) {
-    ContactInterval interval = slide_of_point(motion, along, most_rolling, grip, duration);
-    if (interval.at_rest) return interval;
-    interval.acceleration *= kRollingShare;
-    interval.duration = length(motion.velocity) > 0.0 && most_rolling > 0.0
-                            ? time_to_turn(along, normalized(motion.velocity), length(motion.velocity), grip, duration)
-                            : duration;
-    interval.stops = false;
-    const double speed = length(motion.velocity);
-    if (speed > 0.0 && most_rolling > 0.0) brake(interval, speed, -dot(interval.acceleration, motion.velocity / speed));
-    interval.rolls = true;
-    interval.spin_acceleration = cross(n, interval.acceleration) / radius;
-    return interval;
-}
-
-/// Does friction keep a sphere rolling? It gives 2/7 of what the centre is pulled by; at rest all of the pull.
-bool grips(double speed, double pull, double most_rolling, double most_friction) {
-    if (speed == 0.0 && pull <= most_rolling) return pull <= most_friction;
-    return (1.0 - kRollingShare) * pull <= most_friction;
 }
 
 /// The weights of the vectors whose bits in `chosen` are set, whose sum is nearest to r (at most three, not parallel).
@@ -246,53 +162,6 @@ std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> 
         best_error = length(rest);
     }
     return best;
-}
-
-ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
-                              std::span<const HoldingSurface> surfaces, const Grip& grip, double duration) {
-    if (surfaces.size() != 1) return plan_held_interval(motion, radius, a, surfaces, grip, duration);
-    const HoldingSurface& surface = surfaces.front();
-    const Vec3& n = surface.normal;
-    const Motion start{project_off(motion.velocity, {&n, 1}), motion.spin};
-    const Vec3 along = project_off(a, {&n, 1});
-    const double pressing = grip.pressure * length(a - along);
-    const double most_friction = surface.friction * pressing;
-    if (radius == 0.0) return slide_of_point(start, along, most_friction, grip, duration);
-    const Vec3 slip = slip_velocity(start, radius, n);
-    const double slip_speed = length(slip);
-    if (slip_speed > kSlipRounding * (length(start.velocity) + radius * length(start.spin))) {
-        return slide_of_sphere(start, radius, n, along, slip / slip_speed, slip_speed, most_friction, grip, duration);
-    }
-    // Resistance to rolling brakes the centre by friction too: by no more than friction can give.
-    const double most_rolling = std::min(surface.rolling_friction * pressing, most_friction / kRollingShare);
-    const double pull = length(along);
-    if (grips(length(start.velocity), pull, most_rolling, most_friction)) {
-        return roll(start, radius, n, along, most_rolling, grip, duration);
-    }
-    return slide_of_sphere(start, radius, n, along, along / pull, 0.0, most_friction, grip, duration);
-}
-
-Motion end_of_interval(const ContactInterval& interval, double elapsed, Motion motion, double radius,
-                       std::span<const HoldingSurface> surfaces) {
-    motion.spin = interval.motion.spin + elapsed * interval.spin_acceleration;
-    const bool whole = elapsed >= interval.duration;
-    if (surfaces.size() > 1) {
-        return whole ? along_surfaces(motion, radius, surfaces, interval.stuck) : motion;
-    }
-    if (whole && interval.stops) {
-        // After braking to a stop only rounding is left along the heading.
-        const Vec3 heading = normalized(interval.motion.velocity);
-        motion.velocity -= dot(motion.velocity, heading) * heading;
-        if (length(motion.velocity) <= kStopRounding * length(interval.motion.velocity)) motion.velocity = Vec3{};
-    }
-    if (interval.rolls && radius > 0.0 && !surfaces.empty() && (whole || interval.motion.spin == Vec3{})) {
-        motion.spin = rolling_spin(motion, radius, surfaces.front().normal);
-    }
-    return motion;
-}
-
-Vec3 rolling_spin(const Motion& motion, double radius, const Vec3& n) {
-    return cross(n, motion.velocity) / radius + dot(motion.spin, n) * n;
 }
 
 double cascade_duration(double rebound_speed, double pressing, double restitution) {

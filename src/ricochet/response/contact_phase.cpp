@@ -27,7 +27,8 @@ ContactPhase::ContactPhase(ParticleStep& step)
       impact_(step.impact()),
       manifold_(step.geometry(), step.state()),
       began_(particle_.contact),
-      began_still_(state_.velocity == Vec3{} && particle_.spin == Vec3{}),
+      began_still_(state_.velocity == Vec3{}),
+      began_spin_(particle_.spin),
       shortest_interval_(step.remaining() / kShortestIntervals) {}
 
 std::optional<Contact> ContactPhase::resume() {
@@ -39,8 +40,11 @@ std::optional<Contact> ContactPhase::resume() {
     if (!support) return std::nullopt;
     if (kicks_first(rules_.settings.integrator.kind)) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
-        const bool still = state_.velocity == Vec3{} && particle_.spin == Vec3{};
-        if (still && is_finite(forces) && plan(forces, 1.0, step_.remaining()).at_rest) rest(forces, true);
+        if (!began_still_ || !is_finite(forces)) return std::nullopt;
+        const ContactInterval interval = plan(forces, 1.0, step_.remaining());
+        if (!interval.at_rest) return std::nullopt;
+        particle_.spin = interval.motion.spin;
+        rest(forces, true);
         return std::nullopt;
     }
     const Stop stop = spend_cascade(*support, before.cascade_left);
@@ -62,6 +66,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     if (!support) return std::nullopt;
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
+        particle_.spin = Vec3{};
         rest(is_kicked(flight) ? Vec3{} : forces_now(flight), false);
         return std::nullopt;
     }
@@ -141,7 +146,7 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     }
     const Motion motion{along_all(state_.velocity, {normals.data(), count}), particle_.spin};
     const ContactInterval interval =
-        plan_held_interval(motion, state_.radius, forces, {surfaces.data(), count}, Grip{}, 0.0);
+        plan_interval(motion, state_.radius, forces, {surfaces.data(), count}, Grip{}, 0.0);
     for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
     return pushes;
 }
@@ -246,7 +251,9 @@ ContactPhase::Stop ContactPhase::advance(ContactSurface& support, const Vec3& fo
     if (manifold_.empty()) return {std::nullopt, true, false};
     if (!bends()) {
         const ContactInterval interval = plan(forces, pressure, duration);
-        return interval.at_rest ? Stop{std::nullopt, false, true} : follow(interval, support, forces);
+        if (!interval.at_rest) return follow(interval, support, forces);
+        particle_.spin = interval.motion.spin;
+        return {std::nullopt, false, true};
     }
     Stop stop = follow_arc(forces, has_forces, pressure, duration);
     if (stop.is_early() || stop.rests) return stop;
@@ -261,7 +268,6 @@ ContactInterval ContactPhase::plan(const Vec3& pull, double pressure, double dur
     const Grip grip{pressure, shortest_interval_, kTouchingOffsets * contact_offset(state_.position)};
     const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull,
                                                    manifold_.holding(impact_).all(), grip, duration);
-    manifold_.load(pull);
     manifold_.load(interval);
     return interval;
 }
@@ -276,8 +282,8 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const C
     Stop stop{step_.follow(flight), leaves_surface, false};
     const double elapsed = before - step_.remaining();
     manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
-    const Motion motion = end_of_interval(interval, elapsed, {state_.velocity, particle_.spin}, state_.radius,
-                                          manifold_.holding(impact_).all());
+    const Motion motion =
+        end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     return stop;
@@ -319,7 +325,10 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     const ContactArc arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
                          {particle_.spin, pressure, has_forces, shortest_interval_,
                           kTouchingOffsets * contact_offset(state_.position), duration});
-    if (arc.plan().at_rest) return {std::nullopt, false, true};
+    if (arc.plan().at_rest) {
+        particle_.spin = arc.plan().motion.spin;
+        return {std::nullopt, false, true};
+    }
     if (!arc.is_held(arc.start(), 0.0)) return {std::nullopt, true, false};
     Stop stop;
     const double whole = arc_duration(arc, stop.left_surface);
@@ -450,10 +459,10 @@ void ContactPhase::rest(const Vec3& forces, bool held) {
     if (state_.position != start && length(state_.position - start) <= kTouchingOffsets * contact_offset(start)) {
         step_.return_to_start();
     }
-    particle_.spin = Vec3{};
     wait(step_.remaining(), forces);
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
-    const bool stays = held && began_still_ && state_.position == start && began_ == manifold_.kept();
+    const bool stays =
+        held && began_still_ && began_spin_ == particle_.spin && state_.position == start && began_ == manifold_.kept();
     step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
     particle_.contact = manifold_.kept();
 }

@@ -8,7 +8,7 @@
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_arc.h"
 #include "ricochet/response/contact_manifold.h"
-#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/held_motion.h"
 #include "ricochet/response/particle_step.h"
 #include "ricochet/response/response.h"
 
@@ -81,7 +81,8 @@ private:
     ContactManifold manifold_;
     std::vector<SurfaceId> held_;         // surfaces that are touched where the manifold's are
     KeptContact began_;                   // what the particle touched at the start of the step
-    bool began_still_;                    // nothing moved then
+    bool began_still_;                    // its place stayed then
+    Vec3 began_spin_;                     // rad/s
     double shortest_interval_;            // s
     int slow_contacts_ = 0;               // in a row, all slower than the resting speed or without time between them
     double remaining_at_contact_ = -1.0;  // s, at the last one

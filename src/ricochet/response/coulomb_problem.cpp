@@ -26,12 +26,6 @@ constexpr int kSweepsOfPart = 100;
 constexpr double kEnoughOnTheWay = 1e-10;
 constexpr double kHopeless = 1e6;
 
-double product(const MotionVector& a, const MotionVector& b) {
-    double sum = 0.0;
-    for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
-    return sum;
-}
-
 }  // namespace
 
 bool CoulombProblem::solve(Effort effort, double friction) {
@@ -41,8 +35,10 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     for (std::size_t i = 0; i < unknowns_; ++i) scale = std::max(scale, std::fabs(free_rate_[i]));
     if (scale == 0.0) return true;
     for (std::size_t i = 0; i < unknowns_; ++i) free_rate_[i] /= scale;
-    const bool is_stiff = make_stiff(effort);
-    if (is_stiff) make_rigid();
+    const bool apart = is_apart();
+    if (apart) solve_apart();
+    const bool is_stiff = apart || make_stiff(effort);
+    if (is_stiff && !apart) make_rigid();
     const double residual = find_defects({});
     cut_to_bounds();
     for (std::size_t i = 0; i < unknowns_; ++i) force_[i] *= scale;
@@ -76,7 +72,27 @@ void CoulombProblem::set_up() {
         for (std::size_t d = 0; d < r.size; ++d) add_unknown(r.direction[d], r.rate[d]);
     }
     for (std::size_t i = 0; i < unknowns_; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) delassus_[i][j] = delassus_[j][i] = product(direction_[i], direction_[j]);
+        for (std::size_t j = 0; j <= i; ++j) delassus_[i][j] = delassus_[j][i] = dot(direction_[i], direction_[j]);
+    }
+}
+
+/// True where no force changes another's rate: on one surface without resistance to rolling, say.
+bool CoulombProblem::is_apart() const {
+    for (std::size_t i = 0; i < unknowns_; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (std::fabs(delassus_[i][j]) > kCoulombRounding * delassus_[j][j]) return false;
+        }
+    }
+    return true;
+}
+
+void CoulombProblem::solve_apart() {
+    for (std::size_t k = 0; k < contact_count_; ++k) force_[k] = std::max(0.0, -free_rate_[k] / delassus_[k][k]);
+    (void)find_defects({});
+    for (std::size_t k = 0; k < resistance_count_; ++k) {
+        const Wish wish = wish_of(k, {});
+        const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+        for (std::size_t d = 0; d < resistances_[k].size; ++d) force_[first_[k] + d] = part * wish.force[d];
     }
 }
 
@@ -182,7 +198,7 @@ bool CoulombProblem::newton(const Compliance& compliance, double enough) {
 void CoulombProblem::relax(const Compliance& compliance, int sweeps) {
     MotionVector all = change();
     const auto find_rate = [&](std::size_t i) {
-        rate_[i] = free_rate_[i] + product(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
+        rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
     };
     const auto set = [&](std::size_t i, double value) {
         for (std::size_t c = 0; c < all.size(); ++c) all[c] += (value - force_[i]) * direction_[i][c];
@@ -232,7 +248,7 @@ CoulombProblem::Wish CoulombProblem::wish_of(std::size_t resistance, const Compl
 double CoulombProblem::find_defects(const Compliance& compliance) {
     const MotionVector all = change();
     for (std::size_t i = 0; i < unknowns_; ++i) {
-        rate_[i] = free_rate_[i] + product(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
+        rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
     }
     for (std::size_t k = 0; k < contact_count_; ++k) {
         defect_[k] = force_[k] - std::max(0.0, force_[k] - gain_of(k, compliance) * rate_[k]);

@@ -28,6 +28,13 @@ namespace ricochet {
 /// A direction in the space of motions: three components of the velocity and three of sqrt(2/5) r omega.
 using MotionVector = std::array<double, 6>;
 
+/// The sum of the products of the coordinates.
+[[nodiscard]] inline double dot(const MotionVector& a, const MotionVector& b) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
+    return sum;
+}
+
 /// One contact: 0 <= N, 0 <= rate, N rate = 0.
 struct CoulombContact {
     MotionVector direction{};  ///< the surface's normal
@@ -93,6 +100,8 @@ private:
     };
 
     void set_up();
+    [[nodiscard]] bool is_apart() const;
+    void solve_apart();
     [[nodiscard]] bool make_stiff(Effort effort);
     void make_rigid();
     void cut_to_bounds();

@@ -15,12 +15,6 @@ constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
 /// Plans that end at once, one after the other, before the last counts.
 constexpr int kMostPlans = 4;
 
-double product(const MotionVector& a, const MotionVector& b) {
-    double sum = 0.0;
-    for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
-    return sum;
-}
-
 void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
     for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
 }
@@ -29,18 +23,18 @@ void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
 class Remover {
 public:
     void add(MotionVector direction) {
-        const double whole = std::sqrt(product(direction, direction));
+        const double whole = std::sqrt(dot(direction, direction));
         for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(direction, -product(direction, basis_[k]), basis_[k]);
+            for (std::size_t k = 0; k < count_; ++k) add_multiple(direction, -dot(direction, basis_[k]), basis_[k]);
         }
-        const double left = std::sqrt(product(direction, direction));
+        const double left = std::sqrt(dot(direction, direction));
         if (count_ == basis_.size() || !(left > kDependentDirection * whole)) return;
         for (double& x : direction) x /= left;
         basis_[count_++] = direction;
     }
     void remove_from(MotionVector& motion) const {
         for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(motion, -product(motion, basis_[k]), basis_[k]);
+            for (std::size_t k = 0; k < count_; ++k) add_multiple(motion, -dot(motion, basis_[k]), basis_[k]);
         }
     }
 
@@ -51,46 +45,62 @@ private:
 
 /// Something that resists, and how it is going.
 struct Resistance {
+    enum class Kind { slip, turning, spinning };
+
     std::size_t surface = 0;
-    bool is_rolling = false;  ///< against turning; otherwise against slip
-    Vec3 rate;                ///< slip, or radius times angular velocity along the surface, m/s
-    double speed = 0.0;       ///< 0 where it is stuck
+    Kind kind = Kind::slip;
+    Vec3 rate;           ///< slip, or radius times angular velocity along the surface or about its normal, m/s
+    double speed = 0.0;  ///< 0 where it is stuck
+    Vec3 heading;        ///< unit, of what it resists; where the speed is above 0
 };
+
+bool& is_stuck(Stuck& stuck, Resistance::Kind kind) {
+    if (kind == Resistance::Kind::slip) return stuck.to_slip;
+    return kind == Resistance::Kind::turning ? stuck.to_turning : stuck.to_spinning;
+}
 
 /// One plan: the forces on a motion, and how long they stay.
 class Plan {
 public:
     Plan(const Motion& motion, double radius, const Vec3& a, std::span<const HoldingSurface> surfaces, const Grip& grip,
-         double duration, const std::array<Stuck, kMostHolding>& stuck)
+         double duration, const StuckSurfaces& stuck)
         : motion_(motion), radius_(radius), a_(a), surfaces_(surfaces), grip_(grip), duration_(duration) {
         find_resistances(stuck);
         solve();
     }
 
-    [[nodiscard]] ContactInterval interval() const {
-        ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration_};
-        interval.push = push_;
-        interval.at_rest = is_still() && stays_still();
-        if (!interval.at_rest) limit(interval);
+    [[nodiscard]] ContactInterval interval() {
+        if (rests()) return {motion_, {}, {}, duration_, true, push_, {}};
+        const double duration = time_to_turn();
+        if (aim_at_middle(duration)) solve();
+        ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, push_, {}};
+        stop(interval);
         return interval;
     }
 
 private:
-    [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
+    using Kind = Resistance::Kind;
 
-    void find_resistances(const std::array<Stuck, kMostHolding>& stuck) {
+    [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
+    [[nodiscard]] std::span<Resistance> resistances() { return {resistances_.data(), count_}; }
+
+    void find_resistances(StuckSurfaces stuck) {
         const double scale = length(motion_.velocity) + radius_ * length(motion_.spin);
-        const auto add = [&](std::size_t surface, bool is_rolling, const Vec3& rate) {
+        const auto add = [&](std::size_t surface, Kind kind, const Vec3& rate) {
             const double speed = length(rate);
-            const bool is_stuck = is_rolling ? stuck[surface].to_turning : stuck[surface].to_slip;
-            resistances_[count_++] = {surface, is_rolling, rate, !is_stuck && speed > kSlowSlip * scale ? speed : 0.0};
+            Resistance& added = resistances_[count_++];
+            added = {surface, kind, rate, 0.0, {}};
+            if (is_stuck(stuck[surface], kind) || !(speed > kSlowSlip * scale)) return;
+            added.speed = speed;
+            added.heading = rate / speed;
         };
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
             const HoldingSurface& surface = surfaces_[k];
-            if (surface.friction > 0.0) add(k, false, slip_velocity(motion_, radius_, surface.normal));
-            if (surface.rolling_friction == 0.0 || !is_sphere()) continue;
-            const Vec3 turning = motion_.spin - dot(motion_.spin, surface.normal) * surface.normal;
-            add(k, true, radius_ * turning);
+            if (surface.friction > 0.0) add(k, Kind::slip, slip_velocity(motion_, radius_, surface.normal));
+            if (!is_sphere()) continue;
+            const Vec3 spinning = dot(motion_.spin, surface.normal) * surface.normal;
+            if (surface.rolling_friction > 0.0) add(k, Kind::turning, radius_ * (motion_.spin - spinning));
+            if (surface.spinning_friction > 0.0) add(k, Kind::spinning, radius_ * spinning);
         }
     }
 
@@ -99,11 +109,10 @@ private:
         for (const HoldingSurface& surface : surfaces_) {
             problem.add({normal_direction(surface.normal), dot(a_, surface.normal) + surface.bend});
         }
-        for (std::size_t r = 0; r < count_; ++r) problem.add(resistance(resistances_[r]));
+        for (const Resistance& r : resistances()) problem.add(resistance(r));
         // What slides can jam; what is at rest has an answer.
         const bool slides =
-            std::any_of(resistances_.begin(), resistances_.begin() + static_cast<std::ptrdiff_t>(count_),
-                        [](const Resistance& r) { return r.speed > 0.0; });
+            std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
         for (const double part : kFrictionParts) {
             if (problem.solve(effort, part * grip_.pressure)) break;
@@ -111,7 +120,8 @@ private:
         for (std::size_t k = 0; k < surfaces_.size(); ++k) push_[k] = problem.push(k) * surfaces_[k].normal;
         for (std::size_t r = 0; r < count_; ++r) {
             const std::size_t k = resistances_[r].surface;
-            if (!resistances_[r].is_rolling) push_[k] += along_tangents(problem.force_of(r), surfaces_[k].normal);
+            if (resistances_[r].kind == Kind::slip)
+                push_[k] += along_tangents(problem.force_of(r), surfaces_[k].normal);
         }
         const MotionVector change = problem.change();
         acceleration_ = a_ + velocity_of(change);
@@ -122,68 +132,88 @@ private:
         const HoldingSurface& surface = surfaces_[r.surface];
         const auto contact = static_cast<std::uint32_t>(r.surface);
         const auto [first, second] = tangent_frame(surface.normal);
-        CoulombResistance result = sliding_friction(contact, surface.normal, surface.friction, is_sphere(),
-                                                    r.is_rolling ? Vec3{} : a_ + surface.slip_bend);
-        if (r.is_rolling) {
+        CoulombResistance result =
+            sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_bend);
+        if (r.kind != Kind::slip) result.rate = {};
+        if (r.kind == Kind::turning) {
             result.bound = surface.rolling_friction;
             result.direction = {turning_direction(first), turning_direction(second)};
         }
         result.is_moving = r.speed > 0.0;
-        if (result.is_moving) result.heading = {dot(r.rate, first) / r.speed, dot(r.rate, second) / r.speed};
+        if (result.is_moving) result.heading = {dot(r.heading, first), dot(r.heading, second)};
+        if (r.kind == Kind::spinning) {
+            result.size = 1;
+            result.bound = surface.spinning_friction / radius_;
+            result.direction[0] = turning_direction(surface.normal);
+            result.heading = {dot(r.heading, surface.normal) < 0.0 ? -1.0 : 1.0, 0.0};
+        }
         return result;
     }
 
-    /// It does not move, or by less than can be told.
-    [[nodiscard]] bool is_still() const {
-        const double speed = length(motion_.velocity) + radius_ * length(motion_.spin);
-        return speed == 0.0 || (duration_ > 0.0 && speed * duration_ <= grip_.negligible_path);
-    }
-    [[nodiscard]] bool stays_still() const {
+    /// Its place stays: its centre does not move, and nothing changes its motion.
+    [[nodiscard]] bool rests() const {
+        if (motion_.velocity != Vec3{}) return false;
         return length(acceleration_) + radius_ * length(spin_acceleration_) <= kHoldRounding * length(a_);
     }
 
     /// What the forces change the rate of a resistance by, m/s^2.
     [[nodiscard]] Vec3 change_of(const Resistance& r) const {
         const Vec3& n = surfaces_[r.surface].normal;
-        if (!r.is_rolling) {
+        if (r.kind == Kind::slip) {
             const Vec3& bend = surfaces_[r.surface].slip_bend;
             return slip_velocity({acceleration_, spin_acceleration_}, radius_, n) + bend - dot(bend, n) * n;
         }
-        return radius_ * (spin_acceleration_ - dot(spin_acceleration_, n) * n);
+        const Vec3 spinning = dot(spin_acceleration_, n) * n;
+        return radius_ * (r.kind == Kind::turning ? spin_acceleration_ - spinning : spinning);
     }
 
-    /// Ends the interval where something comes to a stop, or has turned.
-    void limit(ContactInterval& interval) const {
-        for (std::size_t r = 0; r < count_; ++r) {
-            const Resistance& resistance = resistances_[r];
-            Stuck& stuck = interval.stuck[resistance.surface];
-            bool& sticks = resistance.is_rolling ? stuck.to_turning : stuck.to_slip;
-            const Vec3 change = change_of(resistance);
-            if (resistance.speed == 0.0) {
+    /// s, until some friction has turned by kMaxHeadingTurn.
+    [[nodiscard]] double time_to_turn() {
+        double duration = duration_;
+        for (const Resistance& r : resistances()) {
+            if (r.speed == 0.0) continue;
+            const Vec3 change = change_of(r);
+            const double turning = length(change - dot(change, r.heading) * r.heading);
+            if (turning * duration <= kMaxHeadingTurn * r.speed) continue;
+            duration = std::min(duration, std::max(grip_.shortest, kMaxHeadingTurn * r.speed / turning));
+        }
+        return duration;
+    }
+
+    /// Gives friction the directions of the middle of the interval. False when they are those that it has.
+    bool aim_at_middle(double duration) {
+        bool turns = false;
+        for (Resistance& r : resistances()) {
+            if (r.speed == 0.0) continue;
+            const Vec3 change = change_of(r);
+            const double along = dot(change, r.heading);
+            // Half of the way where it is braked to a stop before the end.
+            const double whole = along < 0.0 ? std::min(duration, r.speed / -along) : duration;
+            const Vec3 across = (0.5 * whole) * (change - along * r.heading);
+            if (!(length(across) > kStraightHeading * r.speed)) continue;
+            r.heading = normalized((r.speed + 0.5 * whole * along) * r.heading + across);
+            turns = true;
+        }
+        return turns;
+    }
+
+    /// Ends the interval where something comes to a stop, which then sticks.
+    void stop(ContactInterval& interval) {
+        for (const Resistance& r : resistances()) {
+            if (r.speed == 0.0) continue;
+            const double braking = -dot(change_of(r), r.heading);
+            const double speed = dot(r.rate, r.heading);
+            if (speed < braking * interval.duration) interval.duration = speed / braking;
+        }
+        for (const Resistance& r : resistances()) {
+            const Vec3 change = change_of(r);
+            bool& sticks = is_stuck(interval.stuck[r.surface], r.kind);
+            if (r.speed == 0.0) {
                 sticks = length(change) <= kHoldRounding * length(a_);
                 continue;
             }
-            const Vec3 heading = resistance.rate / resistance.speed;
-            const double along = dot(change, heading);
-            const double turning = length(change - along * heading);
-            if (turning * interval.duration > kMaxHeadingTurn * resistance.speed) {
-                end(interval, std::max(grip_.shortest, kMaxHeadingTurn * resistance.speed / turning));
-            }
-            if (along < 0.0 && resistance.speed < -along * interval.duration) {
-                end(interval, resistance.speed / -along);
-                sticks = true;
-            }
-        }
-    }
-
-    /// What would have stuck later does not.
-    void end(ContactInterval& interval, double duration) const {
-        if (!(duration < interval.duration)) return;
-        interval.duration = duration;
-        for (std::size_t r = 0; r < count_; ++r) {
-            if (resistances_[r].speed == 0.0) continue;
-            Stuck& stuck = interval.stuck[resistances_[r].surface];
-            (resistances_[r].is_rolling ? stuck.to_turning : stuck.to_slip) = false;
+            const double left = length(r.rate + interval.duration * change);
+            sticks = left <= kStopRounding * r.speed || left * interval.duration <= grip_.negligible_path;
         }
     }
 
@@ -193,7 +223,7 @@ private:
     std::span<const HoldingSurface> surfaces_;
     const Grip& grip_;
     double duration_;
-    std::array<Resistance, 2 * kMostHolding> resistances_{};
+    std::array<Resistance, 3 * kMostHolding> resistances_{};
     std::size_t count_ = 0;
     std::array<Vec3, kMostHolding> push_{};
     Vec3 acceleration_;
@@ -201,8 +231,9 @@ private:
 };
 
 bool ends_at_once(const ContactInterval& interval, double radius, double negligible_path) {
-    const bool sticks = std::any_of(interval.stuck.begin(), interval.stuck.end(),
-                                    [](const Stuck& stuck) { return stuck.to_slip || stuck.to_turning; });
+    const bool sticks = std::any_of(interval.stuck.begin(), interval.stuck.end(), [](const Stuck& stuck) {
+        return stuck.to_slip || stuck.to_turning || stuck.to_spinning;
+    });
     const double speed = length(interval.motion.velocity) + radius * length(interval.motion.spin);
     return sticks && speed > 0.0 && speed * interval.duration <= negligible_path;
 }
@@ -211,9 +242,9 @@ bool ends_at_once(const ContactInterval& interval, double radius, double negligi
 
 bool leaves(const Vec3& velocity, const Vec3& n) { return dot(velocity, n) > kLeavingRounding * length(velocity); }
 
-ContactInterval plan_held_interval(const Motion& motion, double radius, const Vec3& a,
-                                   std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
-                                   const std::array<Stuck, kMostHolding>& stuck) {
+ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
+                              std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
+                              const StuckSurfaces& stuck) {
     surfaces = surfaces.first(std::min(surfaces.size(), kMostHolding));
     Motion start = along_surfaces(motion, radius, surfaces, {});
     for (int k = 1;; ++k) {
@@ -222,6 +253,12 @@ ContactInterval plan_held_interval(const Motion& motion, double radius, const Ve
             return interval;
         start = along_surfaces(start, radius, surfaces, interval.stuck);
     }
+}
+
+Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity, double radius,
+                       std::span<const HoldingSurface> surfaces) {
+    const Motion motion{velocity, interval.motion.spin + elapsed * interval.spin_acceleration};
+    return elapsed >= interval.duration ? along_surfaces(motion, radius, surfaces, interval.stuck) : motion;
 }
 
 Vec3 along_all(const Vec3& v, std::span<const Vec3> normals) {
@@ -258,7 +295,7 @@ Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) 
 }
 
 Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                      const std::array<Stuck, kMostHolding>& stuck) {
+                      const StuckSurfaces& stuck) {
     const bool is_sphere = radius > 0.0;
     Remover remover;
     for (const HoldingSurface& surface : surfaces) remover.add(normal_direction(surface.normal));
@@ -268,11 +305,12 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Holdi
             if (stuck[k].to_slip) remover.add(sliding_direction(t, n, is_sphere));
             if (stuck[k].to_turning) remover.add(turning_direction(t));
         }
+        if (stuck[k].to_spinning) remover.add(turning_direction(n));
     }
     MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
-    const double before = std::sqrt(product(all, all));
+    const double before = std::sqrt(dot(all, all));
     remover.remove_from(all);
-    if (std::sqrt(product(all, all)) <= kStopRounding * before) return {};
+    if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
     return {velocity_of(all), is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }
 

@@ -1,23 +1,74 @@
 /// \file
-/// Private to the responses: how several surfaces at once hold what is pressed onto them.
+/// Private to the responses: contact that lasts, as intervals of constant acceleration. A particle rests, slides, rolls
+/// and spins on any number of surfaces at once as one contact problem says (coulomb_problem.h). Pure functions.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "ricochet/response/contact_motion.h"
 
 namespace ricochet {
 
+/// Surfaces that hold a particle at one time, at most.
+inline constexpr std::size_t kMostHolding = 3;
+
+/// A surface that holds a particle.
+struct HoldingSurface {
+    Vec3 normal;                     ///< unit, towards the particle
+    double friction = 0.0;           ///< Coulomb coefficient
+    double rolling_friction = 0.0;   ///< see Material
+    double spinning_friction = 0.0;  ///< m, see Material
+    /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip.
+    double bend = 0.0;
+    Vec3 slip_bend{};
+};
+
+/// What does not move at a surface.
+struct Stuck {
+    bool to_slip = false;
+    bool to_turning = false;   ///< resistance to rolling holds it
+    bool to_spinning = false;  ///< resistance to spinning about the normal holds it
+};
+using StuckSurfaces = std::array<Stuck, kMostHolding>;
+
+/// One interval of contact with constant acceleration along the surfaces.
+struct ContactInterval {
+    Motion motion;           ///< at the start, along the surfaces
+    Vec3 acceleration;       ///< along the surfaces, friction included, m/s^2
+    Vec3 spin_acceleration;  ///< rad/s^2
+    double duration = 0.0;   ///< s; shorter than asked for where slip or turning ends within, or friction turns much
+    bool at_rest = false;    ///< for the whole duration its place stays, and its spin with it
+    std::array<Vec3, kMostHolding> push{};  ///< force over the mass with which each surface holds it, m/s^2
+    StuckSurfaces stuck{};                  ///< from the end on
+};
+
+/// How surfaces grip while a particle is pressed on.
+struct Grip {
+    double pressure = 1.0;         ///< factor on friction (a bounce cascade presses with less than the full force)
+    double shortest = 0.0;         ///< s; intervals are not cut shorter than this because friction turns
+    double negligible_path = 0.0;  ///< m; motion that friction ends within this distance is rest already
+};
+
+/// Intervals of a step that are not cut further because friction turns: the usual 1 / Grip::shortest.
+inline constexpr double kShortestIntervals = 32.0;
+
 /// True when a velocity leaves a surface of unit normal n, by more than rounding: it does not hold then.
 [[nodiscard]] bool leaves(const Vec3& velocity, const Vec3& n);
 
-/// plan_interval() for two surfaces or more: one contact problem for the forces, and the time until slip or rolling at
-/// one of them comes to an end, or friction has turned. At most kMostHolding surfaces count. stuck: where slip and
-/// turning are an error of the motion that is given, and count as none.
-[[nodiscard]] ContactInterval plan_held_interval(const Motion& motion, double radius, const Vec3& a,
-                                                 std::span<const HoldingSurface> surfaces, const Grip& grip,
-                                                 double duration, const std::array<Stuck, kMostHolding>& stuck = {});
+/// Plans the contact of a particle under acceleration a with surfaces that hold it (at most kMostHolding count), as if
+/// their normals stayed, for at most `duration` seconds. It ends where slip, rolling or spinning comes to a stop at one
+/// of them, and before friction has turned by kMaxHeadingTurn; friction has the direction of the middle of the
+/// interval. For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of the motion
+/// that is given, and count as none.
+[[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
+                                            std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
+                                            const StuckSurfaces& stuck = {});
+
+/// The motion after `elapsed` seconds of an interval. velocity: what the path gave there.
+[[nodiscard]] Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity,
+                                     double radius, std::span<const HoldingSurface> surfaces);
 
 /// The vector nearest to v that is at right angles to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
@@ -29,6 +80,6 @@ namespace ricochet {
 /// The motion nearest to the given one (in energy) that is along all surfaces, and slips and turns on none where
 /// `stuck` says so.
 [[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                                    const std::array<Stuck, kMostHolding>& stuck);
+                                    const StuckSurfaces& stuck);
 
 }  // namespace ricochet

@@ -19,6 +19,8 @@ struct Material {
     /// the speed of arrival.
     std::optional<double> wall_temperature = std::nullopt;
     double absorption = 0.0;  ///< fraction of impacts that remove the particle, 0..1
+    /// Moment that resists spinning about the normal over the normal force, m, >= 0; spheres in contact that lasts.
+    double spinning_friction = 0.0;
 
     /// Restitution at an approach speed, m/s.
     [[nodiscard]] double restitution_at(double approach) const {

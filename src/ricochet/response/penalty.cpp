@@ -221,6 +221,7 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
     contact.damping = 2.0 * damping_ratios_[index] * std::sqrt(stiffness * mass);
     contact.friction = material.friction;
     contact.rolling_friction = material.rolling_friction;
+    contact.spinning_friction = material.spinning_friction;
     contact.mass = mass;
     return contact;
 }
@@ -317,10 +318,15 @@ ContactForce force_of(const PenaltyContact& contact, const Motion& motion, doubl
     ContactForce result;
     result.force = normal_force * n + friction;
     if (radius == 0.0) return result;
-    const Vec3 rolling = radius * (motion.spin - dot(motion.spin, n) * n);  // m/s
-    const Vec3 resistance =
-        brake(rolling, contact.rolling_friction * normal_force, limits.friction_speed, kSphereInertia * inertial);
-    result.torque = cross(-radius * n, friction) + radius * resistance;
+    const auto resistance = [&](const Vec3& spin, double coefficient) {
+        return brake(radius * spin, coefficient * normal_force, limits.friction_speed, kSphereInertia * inertial);
+    };
+    const Vec3 spinning = dot(motion.spin, n) * n;
+    result.torque =
+        cross(-radius * n, friction) + radius * resistance(motion.spin - spinning, contact.rolling_friction);
+    if (contact.spinning_friction > 0.0) {
+        result.torque += radius * resistance(spinning, contact.spinning_friction / radius);
+    }
     return result;
 }
 

@@ -58,7 +58,8 @@ struct PenaltyContact {
     double damping = 0.0;
     double friction = 0.0;
     double rolling_friction = 0.0;
-    double mass = 1.0;  ///< kg, of the particle
+    double spinning_friction = 0.0;  ///< m
+    double mass = 1.0;               ///< kg, of the particle
 };
 
 /// Force of one contact, N, on the particle.
@@ -73,9 +74,9 @@ struct ContactLimits {
     double step = 0.0;             ///< s that the integrator takes the force for
 };
 
-/// max(0, k d + c d') along the normal, friction against the slip, a moment against rolling. What brakes (the damper,
-/// friction, the moment) is at most what stops its motion within the step: an explicit step would turn it round, and
-/// make energy.
+/// max(0, k d + c d') along the normal, friction against the slip, moments against rolling and spinning. What brakes
+/// (the damper, friction, the moments) is at most what stops its motion within the step: an explicit step would turn it
+/// round, and make energy.
 [[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
                                     const ContactLimits& limits);
 

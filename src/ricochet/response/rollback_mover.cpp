@@ -171,11 +171,11 @@ void RollbackMover::follow_interval(double elapsed) {
     const Vec3 before = state_.velocity;
     const bool rests = interval_->at_rest;
     if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
-    const Motion arriving{rests ? Vec3{} : flight_.path.velocity(elapsed), particle_.spin};
-    const Motion motion =
-        end_of_interval(*interval_, elapsed, arriving, state_.radius, manifold_.holding(impact_).all());
+    const Motion motion = rests ? interval_->motion
+                                : end_of_interval(*interval_, elapsed, flight_.path.velocity(elapsed), state_.radius,
+                                                  manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
-    particle_.spin = rests ? Vec3{} : motion.spin;
+    particle_.spin = motion.spin;
     manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
     outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};

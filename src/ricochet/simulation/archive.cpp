@@ -67,7 +67,7 @@ std::uint64_t Simulation::Impl::settings_hash() const {
         options.penalty.contact_steps, options.penalty.substeps, options.penalty.friction_speed, options.walls,
         options.flow != nullptr, options.frame_rate, options.max_depth, options.most_particles);
     for (const Material& m : materials) {
-        add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.diffuse,
+        add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.spinning_friction, m.diffuse,
             m.wall_temperature.value_or(0.0), m.absorption);
     }
     if (bounds) {

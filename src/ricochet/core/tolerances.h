@@ -96,6 +96,10 @@ inline constexpr double kStopRounding = 0x1p-40;
 /// step by the angle's square.
 inline constexpr double kMaxHeadingTurn = 0.05;
 
+/// The same where the direction of slip turns within a small part of the step, since there is hardly any. Smaller: more
+/// segments for each reversal of a slip. Larger: a slip that begins depends on the time step.
+inline constexpr double kMostHeadingTurn = 0.5;
+
 /// Sine of the angle between friction's directions at the start and in the middle of a contact interval below which
 /// they are one. Smaller: rounding has the contact problem solved twice. Larger: slow turns add up.
 inline constexpr double kStraightHeading = 0x1p-44;

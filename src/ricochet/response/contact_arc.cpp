@@ -16,13 +16,12 @@ constexpr double kCurvatureStep = 1e-4;
 constexpr int kCorrections = 3;
 
 /// The same of a shape with a formula: by the difference of its normals along the motion.
-Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface, const Vec3& position,
-                       const Vec3& velocity) {
+Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface, const Vec3& normal,
+                       const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
     if (speed == 0.0) return {};
     const double size = geometry.world().size_of(surface);
     const double step = kCurvatureStep * (radius > 0.0 ? std::min(size, radius) : size);
-    const Vec3 normal = geometry.nearest(surface, position).normal;
     const Vec3 heading = velocity / speed;
     // A tangent soon comes out on the other side of a surface that bends towards it.
     const auto normal_at = [&](double distance) {
@@ -43,7 +42,8 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
 Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                  const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const CollisionWorld& world = geometry.world();
-    if (!world.is_flat(surface)) return shape_normal_rate(geometry, radius, surface, position, velocity);
+    if (!world.is_flat(surface))
+        return shape_normal_rate(geometry, radius, surface, nearest.normal, position, velocity);
     if (nearest.flat || radius == 0.0) return {};
     Vec3 across = velocity - dot(velocity, nearest.normal) * nearest.normal;
     const auto triangle = world.triangle_of(surface);

@@ -167,7 +167,7 @@ private:
         return radius_ * (r.kind == Kind::turning ? spin_acceleration_ - spinning : spinning);
     }
 
-    /// s, until some friction has turned by kMaxHeadingTurn.
+    /// s, until some friction has turned by kMaxHeadingTurn; by more where that is soon.
     [[nodiscard]] double time_to_turn() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -175,7 +175,8 @@ private:
             const Vec3 change = change_of(r);
             const double turning = length(change - dot(change, r.heading) * r.heading);
             if (turning * duration <= kMaxHeadingTurn * r.speed) continue;
-            duration = std::min(duration, std::max(grip_.shortest, kMaxHeadingTurn * r.speed / turning));
+            const double least = std::min(grip_.shortest, kMostHeadingTurn * r.speed / turning);
+            duration = std::min(duration, std::max(least, kMaxHeadingTurn * r.speed / turning));
         }
         return duration;
     }
@@ -213,7 +214,9 @@ private:
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
-            sticks = left <= kStopRounding * r.speed || left * interval.duration <= grip_.negligible_path;
+            const bool is_soon_over =
+                left < kMostHeadingTurn * r.speed && left * interval.duration <= grip_.negligible_path;
+            sticks = left <= kStopRounding * r.speed || is_soon_over;
         }
     }
 

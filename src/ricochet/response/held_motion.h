@@ -47,7 +47,7 @@ struct ContactInterval {
 /// How surfaces grip while a particle is pressed on.
 struct Grip {
     double pressure = 1.0;         ///< factor on friction (a bounce cascade presses with less than the full force)
-    double shortest = 0.0;         ///< s; intervals are not cut shorter than this because friction turns
+    double shortest = 0.0;         ///< s; friction that turns sooner turns by kMostHeadingTurn
     double negligible_path = 0.0;  ///< m; motion that friction ends within this distance is rest already
 };
 
@@ -59,9 +59,9 @@ inline constexpr double kShortestIntervals = 32.0;
 
 /// Plans the contact of a particle under acceleration a with surfaces that hold it (at most kMostHolding count), as if
 /// their normals stayed, for at most `duration` seconds. It ends where slip, rolling or spinning comes to a stop at one
-/// of them, and before friction has turned by kMaxHeadingTurn; friction has the direction of the middle of the
-/// interval. For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of the motion
-/// that is given, and count as none.
+/// of them, and before friction has turned by kMaxHeadingTurn (kMostHeadingTurn where that is soon); friction has the
+/// direction of the middle of the interval. For a duration of 0 it says what the forces are. stuck: where slip and
+/// turning are an error of the motion that is given, and count as none.
 [[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
                                             std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
                                             const StuckSurfaces& stuck = {});

@@ -1,0 +1,105 @@
+/// \file
+/// One sphere or point in lasting contact, run through the library's interface: what the tests of contact share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet::testing {
+
+inline constexpr double kStandardGravity = 9.81;
+inline constexpr double kPiNumber = 3.14159265358979323846;
+[[nodiscard]] constexpr double radians(double degrees) { return degrees * kPiNumber / 180.0; }
+
+/// What a run with one particle starts from. Collider i is of material i where there is more than one, else of the
+/// only one.
+struct ContactScene {
+    std::vector<ColliderDescription> colliders;
+    std::vector<Material> materials;
+    Vec3 gravity{0, 0, -kStandardGravity};
+    Particle particle;
+    double time_step = 0.01;
+    double duration = 1.0;
+    Integrator integrator = IntegratorKind::ballistic;
+};
+
+/// A particle at a place, with a velocity, a radius and a spin.
+[[nodiscard]] inline Particle particle_of(const Vec3& position, const Vec3& velocity = {}, double radius = 0.0,
+                                          const Vec3& spin = {}) {
+    Particle particle;
+    particle.position = position;
+    particle.velocity = velocity;
+    particle.radius = radius;
+    particle.spin = spin;
+    return particle;
+}
+
+[[nodiscard]] inline Simulation simulation_of(const ContactScene& scene) {
+    SimulationSetup setup;
+    setup.options.time_step = scene.time_step;
+    setup.options.duration = scene.duration;
+    setup.options.integrator = scene.integrator;
+    setup.options.triangle_totals = false;
+    setup.options.record_contacts = true;
+    if (scene.gravity != Vec3{}) setup.forces.push_back(make_gravity(scene.gravity));
+    setup.materials = scene.materials;
+    setup.colliders = scene.colliders;
+    for (std::size_t k = 0; k < setup.colliders.size() && scene.materials.size() > 1; ++k) {
+        setup.colliders[k].material = static_cast<std::uint32_t>(k);
+    }
+    setup.particles.push_back(scene.particle);
+    return Simulation(std::move(setup));
+}
+
+/// Nothing of the particle's time was lost.
+inline void expect_no_time_lost(const Simulation& simulation) {
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+}
+
+/// The particle at the end of the run.
+[[nodiscard]] inline Particle end_of(const ContactScene& scene) {
+    Simulation simulation = simulation_of(scene);
+    while (!simulation.finished()) simulation.step();
+    expect_no_time_lost(simulation);
+    return simulation.particles().at(0);
+}
+
+/// Calls visit(time, particle) at the start and after every step until it says no.
+template <class Visit>
+void watch(const ContactScene& scene, Visit&& visit) {
+    Simulation simulation = simulation_of(scene);
+    bool goes_on = visit(0.0, simulation.particles().at(0));
+    while (goes_on && !simulation.finished()) {
+        simulation.step();
+        goes_on = visit(simulation.time(), simulation.particles().at(0));
+    }
+    expect_no_time_lost(simulation);
+}
+
+/// One step of the classical Runge-Kutta method for a state of numbers: references are integrated with it.
+template <class State, class Rates>
+[[nodiscard]] State runge_kutta_step(const State& y, double h, const Rates& rates) {
+    const auto moved = [&](const State& rate, double by) {
+        State z = y;
+        for (std::size_t i = 0; i < z.size(); ++i) z[i] += by * rate[i];
+        return z;
+    };
+    const State k1 = rates(y);
+    const State k2 = rates(moved(k1, 0.5 * h));
+    const State k3 = rates(moved(k2, 0.5 * h));
+    const State k4 = rates(moved(k3, h));
+    State z = y;
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+    return z;
+}
+
+}  // namespace ricochet::testing

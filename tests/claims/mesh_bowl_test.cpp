@@ -1,0 +1,88 @@
+// Does a bowl of triangles tend to the smooth one as it is refined? A facet's edge takes what it takes of the speed
+// (by the angle that it turns, h / R, squared), so the paths differ by the edge length's first order at most.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "claims/contact_scene.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kG = kStandardGravity;
+constexpr double kAngle = 0.5;  // where it starts, beside the lowest point
+
+/// The position on the way from the centre along `direction` where the surface is `radius` away.
+Vec3 touching(const std::vector<ColliderDescription>& colliders, const Vec3& direction, double radius) {
+    const CollisionQueries queries(colliders);
+    double low = 0.0;
+    double high = 1.0;
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (low + high);
+        const bool is_free = queries.is_inside(middle * direction) &&
+                             queries.closest_point(middle * direction)->distance >= std::max(radius, 1e-13);
+        (is_free ? low : high) = middle;
+    }
+    return low * direction;
+}
+
+ContactScene swing(ColliderDescription bowl, const Vec3& direction, double radius, double friction) {
+    ContactScene scene;
+    scene.colliders = {std::move(bowl)};
+    scene.materials = {{"", 0.0, friction}};
+    scene.particle = particle_of(touching(scene.colliders, direction, radius), {}, radius);
+    scene.time_step = 0.01;
+    scene.duration = 1.5;  // three quarters of a swing
+    return scene;
+}
+
+/// The largest distance between the paths in an icosphere of 8 * 4^levels triangles and in the ball, m, the mean over
+/// five directions of start.
+double distance_from_smooth(int levels, double radius, double friction) {
+    double sum = 0.0;
+    for (const double azimuth : {0.1, 0.4, 0.8, 1.3, 1.9}) {
+        const Vec3 direction{std::sin(kAngle) * std::cos(azimuth), std::sin(kAngle) * std::sin(azimuth),
+                             -std::cos(kAngle)};
+        Simulation smooth = simulation_of(swing({"ball", BallShape{1.0, {}}, 0}, direction, radius, friction));
+        Simulation faceted =
+            simulation_of(swing(mesh_collider(sphere_mesh({}, 1.0, levels)), direction, radius, friction));
+        double worst = 0.0;
+        while (!faceted.finished()) {
+            smooth.step();
+            faceted.step();
+            worst = std::max(worst, length(faceted.particles().position[0] - smooth.particles().position[0]));
+        }
+        expect_no_time_lost(faceted);
+        sum += worst;
+    }
+    return sum / 5.0;
+}
+
+class MeshBowl : public ::testing::TestWithParam<std::pair<double, double>> {};
+
+INSTANTIATE_TEST_SUITE_P(Of, MeshBowl,
+                         ::testing::Values(std::pair{0.0, 0.0}, std::pair{0.0, 0.1}, std::pair{0.05, 0.0},
+                                           std::pair{0.05, 0.1}),
+                         [](const auto& test) {
+                             return std::string(test.param.first > 0.0 ? "Spheres" : "Points") +
+                                    (test.param.second > 0.0 ? "WithFriction" : "WithoutFriction");
+                         });
+
+TEST_P(MeshBowl, TendsToTheSmoothOneAtFirstOrder) {
+    const auto [radius, friction] = GetParam();
+    const double coarse = distance_from_smooth(3, radius, friction);
+    double last = coarse;
+    for (const int factor : {2, 4, 8}) {
+        const double error = distance_from_smooth(factor == 2 ? 4 : factor == 4 ? 5 : 6, radius, friction);
+        // First order or better; half as much again for the few edges that a path happens to meet.
+        EXPECT_LT(error, 1.5 * coarse / factor) << "refined " << factor << " times, before " << last;
+        last = error;
+    }
+    EXPECT_LT(coarse, 0.3);  // m: it is the same swing
+}
+
+}  // namespace
+}  // namespace ricochet::testing

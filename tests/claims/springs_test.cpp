@@ -183,7 +183,7 @@ TEST(Springs, TheSameBitsForAnyThreadCount) {
     }
 }
 
-/// A vertical pair bouncing once: after the bounce what the spring does is held, so the order is one there.
+/// A vertical pair bouncing once.
 double height_after_bounce(IntegratorKind kind, int steps) {
     SimulationSetup setup;
     setup.options.integrator = kind;

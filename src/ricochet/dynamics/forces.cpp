@@ -120,7 +120,7 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
     if (input.whole_radius > 0.0) return acceleration(whole(input));
-    Vec3 sum = input.coupling;
+    Vec3 sum = input.coupling != nullptr ? input.coupling->acceleration(input) : Vec3{};
     for (const auto& force : forces_) sum += force->acceleration(input);
     return sum;
 }

@@ -13,6 +13,8 @@
 
 namespace ricochet {
 
+class Coupling;
+
 /// What a force may depend on: one particle's own state at a time.
 struct ForceInput {
     Vec3 position;  ///< m
@@ -22,11 +24,21 @@ struct ForceInput {
     double time;    ///< s
     /// Which particle it is, for forces that act on some only.
     std::uint64_t id = 0;
-    /// What other particles do to it, m/s^2: held from a bounce to the end of the step, zero where nothing couples.
-    Vec3 coupling{};
+    /// What other particles do to it, from a bounce to the end of the step; null where nothing couples.
+    const Coupling* coupling = nullptr;
     /// m: of a sphere that collides as a part of itself, whose radius then stands in `radius`; 0 otherwise. ForceField
     /// shows forces the whole.
     double whole_radius = 0.0;
+};
+
+/// What other particles do to one that has left the plan of a step by a bounce. Pure like a force.
+class Coupling {
+public:
+    virtual ~Coupling() = default;
+    /// Force divided by mass, m/s^2.
+    [[nodiscard]] virtual Vec3 acceleration(const ForceInput& input) const = 0;
+    /// True when it depends on position, velocity or time.
+    [[nodiscard]] virtual bool varies() const = 0;
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.
@@ -77,6 +89,10 @@ public:
     [[nodiscard]] bool empty() const { return forces_.empty(); }
     /// True when the acceleration depends on neither position, velocity nor time.
     [[nodiscard]] bool is_uniform() const { return uniform_; }
+    /// The same for one particle, with what others do to it.
+    [[nodiscard]] bool is_uniform_for(const ForceInput& input) const {
+        return uniform_ && (input.coupling == nullptr || !input.coupling->varies());
+    }
     /// The acceleration where it is the same for all particles, everywhere and always, m/s^2: that of acceleration(),
     /// with the same bits, for particles that nothing couples.
     [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }

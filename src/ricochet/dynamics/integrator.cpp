@@ -64,6 +64,7 @@ PhaseState one_step(IntegratorKind kind, const ForceField& forces, const ForceIn
         case IntegratorKind::midpoint:
             return midpoint_step(forces, state, h);
         case IntegratorKind::velocity_verlet:
+        case IntegratorKind::ballistic:
             return verlet_step(forces, state, h);
         case IntegratorKind::dormand_prince:
             return dormand_prince_step(forces, state, h).end;
@@ -145,19 +146,20 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
         case IntegratorKind::symplectic_euler:
             return kicked_flight(forces, state, duration);
         case IntegratorKind::implicit_euler:
-            if (!forces.is_uniform()) return implicit_flight(forces, state, duration);
+            if (!forces.is_uniform_for(state)) return implicit_flight(forces, state, duration);
             return kicked_flight(forces, state, duration);
         case IntegratorKind::velocity_verlet:
-            if (!forces.is_uniform()) return verlet_flight(forces, state, duration);
+            if (!forces.is_uniform_for(state)) return verlet_flight(forces, state, duration);
+            break;
+        case IntegratorKind::ballistic:  // what couples particles is not held
+            if (state.coupling != nullptr && state.coupling->varies()) return verlet_flight(forces, state, duration);
             break;
         case IntegratorKind::midpoint:
         case IntegratorKind::rk4:
-            if (!forces.is_uniform()) return one_step_flight(integrator.kind, forces, state, duration);
+            if (!forces.is_uniform_for(state)) return one_step_flight(integrator.kind, forces, state, duration);
             break;  // the exact flow is a parabola, and all these methods reproduce it
         case IntegratorKind::dormand_prince:
-            if (!forces.is_uniform()) return adaptive_flight(integrator, forces, state, duration, duration);
-            break;
-        case IntegratorKind::ballistic:
+            if (!forces.is_uniform_for(state)) return adaptive_flight(integrator, forces, state, duration, duration);
             break;
     }
     return parabolic_flight(forces, state, duration);

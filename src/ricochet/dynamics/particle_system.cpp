@@ -147,21 +147,14 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
     });
 }
 
-// Every member gathers for itself, in the order of the springs: no two threads write to one entry.
 Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                      std::span<const Vec3> velocities) const {
-    require_index(i, size(), "member of a system");
     require_state(positions, velocities);
-    Vec3 sum;
-    for (std::uint32_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
-        const Link& link = links_[k];
-        const std::size_t first = link.is_first ? i : link.other;
-        const std::size_t second = link.is_first ? link.other : i;
-        const Vec3 force = spring_force(springs_.springs()[link.spring], positions[first], velocities[first],
-                                        positions[second], velocities[second]);
-        sum += link.is_first ? force : -force;
-    }
-    return sum;
+    struct State {
+        const Vec3& position;
+        const Vec3& velocity;
+    };
+    return spring_force_in(i, [&](std::size_t k) { return State{positions[k], velocities[k]}; });
 }
 
 Vec3 ParticleSystem::own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const {

@@ -69,6 +69,9 @@ public:
     /// What the springs do to member i, N.
     [[nodiscard]] Vec3 spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                        std::span<const Vec3> velocities) const;
+    /// The same in the state that state_of(k) says of every member k: anything with a position and a velocity.
+    template <class StateOf>
+    [[nodiscard]] Vec3 spring_force_in(std::size_t i, const StateOf& state_of) const;
     /// What forces on single particles do to member i, m/s^2.
     [[nodiscard]] Vec3 own_acceleration(std::size_t i, double time, const Vec3& position, const Vec3& velocity) const;
     /// Derivative of own_acceleration() at the end of a backward Euler step by the velocity there, see
@@ -120,6 +123,25 @@ private:
     std::vector<Link> links_;
     double time_ = 0.0;
 };
+
+// Every member gathers for itself, in the order of the springs: no two threads write to one entry.
+template <class StateOf>
+Vec3 ParticleSystem::spring_force_in(std::size_t i, const StateOf& state_of) const {
+    require_index(i, size(), "member of a system");
+    const auto own = state_of(i);
+    Vec3 sum;
+    for (std::uint32_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
+        const Link& link = links_[k];
+        const auto other = state_of(link.other);
+        const Spring& spring = springs_.springs()[link.spring];
+        if (link.is_first) {
+            sum += spring_force(spring, own.position, own.velocity, other.position, other.velocity);
+        } else {
+            sum += -spring_force(spring, other.position, other.velocity, own.position, own.velocity);
+        }
+    }
+    return sum;
+}
 
 /// An own solver: advances the system by `duration` seconds, through the classical interface. It must be a pure
 /// function of the system's state.

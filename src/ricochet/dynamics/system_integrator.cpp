@@ -150,15 +150,13 @@ SystemStep step_system(const Integrator& integrator, const ParticleSystem& syste
     return verlet_step(system, duration);
 }
 
-Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i,
-                      const Vec3& coupling) {
+Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i) {
     const double h = step.duration;
     const Vec3& x = system.positions()[i];
     const Vec3& v = system.velocities()[i];
     const Vec3& end_velocity = step.velocities[i];
     Flight flight;
     flight.start = system.input(i, system.time(), x, v);
-    flight.start.coupling = coupling;
     flight.acceleration = step.start_accelerations[i];
     flight.end_velocity = end_velocity;
     switch (kind) {
@@ -174,7 +172,7 @@ Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const S
             break;
         case IntegratorKind::velocity_verlet:
         case IntegratorKind::ballistic:
-            flight.path = parabola_path(x, v, flight.acceleration, h);
+            flight.path = hermite_path(x, v, parabola_end(x, v, flight.acceleration, h), end_velocity, h);
             break;
         default:
             flight.path = hermite_path(x, v, step.positions[i], end_velocity, h);
@@ -182,6 +180,8 @@ Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const S
     }
     return flight;
 }
+
+bool holds_coupling(IntegratorKind kind) { return kicks_first(kind) || kind == IntegratorKind::forward_euler; }
 
 Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i) {
     if (system.is_pinned(i)) return {};

@@ -83,7 +83,7 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
-    keeps_energy_ = (!start.has_forces || forces.is_uniform()) && !dissipates();
+    keeps_energy_ = (!start.has_forces || forces.is_uniform_for(particle)) && !dissipates();
 }
 
 ContactArc::State ContactArc::at(double t) const {

@@ -12,8 +12,10 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const LookAhea
                                             const ContactCandidates& candidates) {
     const Path& path = flight.path;
     if (!can_follow(path)) return std::nullopt;
+    const Vec3 departure = state().velocity;
     const Travel travelled = travel({path, state().radius, look_ahead, candidates});
     state().velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, travelled.elapsed);
+    record_flown(path, travelled.elapsed, departure, true);
     if (look_ahead != nullptr && !travelled.found.contact && state().position == path.end) {
         const LookAheadResult& ahead = travelled.found.ahead;
         outcome_.free_for = std::max(0.0, ahead.free_until - path.duration);
@@ -23,10 +25,21 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const LookAhea
     return travelled.found.contact;
 }
 
+std::optional<Contact> ParticleStep::follow(const Flight& flight) {
+    if (!can_follow(flight.path)) return std::nullopt;
+    const Vec3 departure = state().velocity;
+    const Travel travelled = travel({flight.path, state().radius, nullptr, {}});
+    state().velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, travelled.elapsed);
+    record_flown(flight.path, travelled.elapsed, departure, false);
+    return travelled.found.contact;
+}
+
 std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> held) {
     if (!can_follow(path)) return std::nullopt;
+    const Vec3 departure = state().velocity;
     const Travel travelled = travel({path, state().radius, nullptr, {}, held});
     state().velocity = path.velocity(travelled.elapsed);
+    record_flown(path, travelled.elapsed, departure, false);
     return travelled.found.contact;
 }
 
@@ -61,7 +74,7 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
     }
     record_chain();
     travel.elapsed = contact ? contact->time : path.duration;
-    wait(travel.elapsed);
+    pass(travel.elapsed);
     return travel;
 }
 
@@ -83,6 +96,17 @@ CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const Contac
 }
 
 void ParticleStep::wait(double duration) {
+    pass(duration);
+    record_flown(line_path(state().position, Vec3{}, duration), duration, Vec3{}, false);
+}
+
+/// After it: a piece of what the particle has flown.
+void ParticleStep::record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
+    if (!scratch_.record_flown) return;
+    scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
+}
+
+void ParticleStep::pass(double duration) {
     state().time += duration;
     remaining_ = std::max(0.0, remaining_ - duration);
 }

@@ -29,8 +29,10 @@ public:
 
     /// Moves the particle along the flight: to its end, or to a safe position at the contact that is returned. It is
     /// frozen where it cannot be followed. With a look-ahead the outcome tells how long it remains free.
-    std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead = nullptr,
-                                  const ContactCandidates& candidates = {});
+    std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead,
+                                  const ContactCandidates& candidates);
+    /// The same in contact with surfaces.
+    std::optional<Contact> follow(const Flight& flight);
     /// The same for a path whose velocity is the particle's, along surfaces that hold it where there are any.
     std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held = {});
     /// Calls found(surface) for all surfaces near the particle.
@@ -65,6 +67,8 @@ private:
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
     void record_chain();
+    void pass(double duration);
+    void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free);
 
     const ResponseRules& rules_;
     MovingParticle& particle_;

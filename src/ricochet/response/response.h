@@ -11,6 +11,7 @@
 
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/core/segment.h"
+#include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
@@ -33,8 +34,10 @@ struct MoveScratch {
     std::vector<SurfaceHit> hits;
     std::vector<ContactRecord> records;  ///< filled when record_contacts
     std::vector<Segment> segments;       ///< filled when record_segments
+    std::vector<FlownPiece> flown;       ///< filled when record_flown, by the exact response
     bool record_contacts = false;
     bool record_segments = false;
+    bool record_flown = false;
 };
 
 /// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.

@@ -85,7 +85,11 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
     const bool as_planned = particle.planned != nullptr && life.begin == step.begin && life.end == step.end;
     const double duration = as_planned ? particle.planned->path.duration : life.end - life.begin;
+    scratch.flown.clear();
+    scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
+    const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
+    if (outcome.bounces > 0 && goes_on && !scratch.flown.empty()) parts_.coupled.record_departure(i, scratch.flown);
     if (parts_.check != nullptr) {
         parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations);
     }

@@ -77,7 +77,7 @@ struct MoverParts {
     QuerySchedule& schedule;
     RunRecorder& recorder;
     const Response& response;
-    const CoupledMotion& coupled;
+    CoupledMotion& coupled;
     const Offspring* offspring;  ///< null where no particles spawn others
     RunCheck* check;             ///< null without options.verify
 };

@@ -55,14 +55,25 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     if (!springs_.empty()) watch_energy(step);
     unsolved_steps_ += step.solved ? 0 : 1;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
+    plan_flights(step);
+    return step.duration;
+}
+
+void CoupledMotion::plan_flights(const SystemStep& step) {
+    const bool holds = holds_coupling(integrator_.kind);
+    const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // a solver's path: the cubic
+    coupled_.resize(system_.size());
+    departures_.reset(system_.size(), kind);
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const Vec3 coupling = held_coupling(integrator_.kind, system_, step, k);
-            const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // a solver's path: the cubic
-            flights_[k] = planned_flight(kind, system_, step, k, coupling);
+            coupled_[k] = holds ? CoupledMember(held_coupling(integrator_.kind, system_, step, k))
+                                : CoupledMember(system_, flights_, k);
+            flights_[k] = planned_flight(kind, system_, step, k);
+            flights_[k].start.coupling = &coupled_[k];
+            // What a solver steps may be more than springs; its velocities are those of its path.
+            flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
         }
     });
-    return step.duration;
 }
 
 SystemStep CoupledMotion::stepped(double duration) {
@@ -133,6 +144,21 @@ void CoupledMotion::report_divergence(const SystemStep& step) const {
                     "particles hold over {} times the energy that forces and walls have given them; use a shorter "
                     "time step, more damping, or the integrator implicit_euler",
                     system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain));
+}
+
+void CoupledMotion::correct_velocities(Particles& particles) {
+    if (system_.size() == 0) return;
+    std::vector<Vec3> velocities(system_.size());
+    std::vector<std::uint8_t> is_free(system_.size());
+    for (std::size_t k = 0; k < system_.size(); ++k) {
+        const std::uint32_t i = system_.members()[k];
+        velocities[k] = particles.velocity[i];
+        const bool is_fixed = particles.pinned[i] != 0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0;
+        const bool in_contact = particles.support[i][0] != kNoSupport || particles.resting[i] != 0;
+        is_free[k] = is_fixed || in_contact ? 0 : 1;
+    }
+    departures_.correct(system_, flights_, is_free, velocities);
+    for (std::size_t k = 0; k < system_.size(); ++k) particles.velocity[system_.members()[k]] = velocities[k];
 }
 
 void CoupledMotion::settle(const Particles& particles) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/system_integrator.h"
 
@@ -31,12 +33,20 @@ public:
     [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
     /// The planned flight of a member; null for others.
     [[nodiscard]] const Flight* flight_of(std::size_t i) const { return holds(i) ? &flights_[slots_[i]] : nullptr; }
-    /// What others do to particle i after a bounce, m/s^2.
-    [[nodiscard]] Vec3 coupling_of(std::size_t i) const {
-        return holds(i) ? flights_[slots_[i]].start.coupling : Vec3{};
+    /// What others do to particle i after a bounce; null for those that are no members.
+    [[nodiscard]] const Coupling* coupling_of(std::size_t i) const {
+        return holds(i) ? flights_[slots_[i]].start.coupling : nullptr;
     }
+    /// True when what member i flies instead of its plan is to be noted.
+    [[nodiscard]] bool wants_departure_of(std::size_t i) const {
+        return holds(i) && flights_[slots_[i]].start.coupling->varies();
+    }
+    /// Notes it; several threads may do so for different members.
+    void record_departure(std::size_t i, std::span<const FlownPiece> flown) { departures_.record(slots_[i], flown); }
 
-    /// After the move: breaks what is overstretched.
+    /// After the move of what was planned: gives members the momentum that the departures of others mean.
+    void correct_velocities(Particles& particles);
+    /// After the step: breaks what is overstretched.
     void settle(const Particles& particles);
 
     /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h. Call bind after it.
@@ -59,6 +69,7 @@ private:
     static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
 
     [[nodiscard]] SystemStep stepped(double duration);
+    void plan_flights(const SystemStep& step);
     [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
     void watch_energy(const SystemStep& step);
     [[noreturn]] void report_divergence(const SystemStep& step) const;
@@ -67,9 +78,11 @@ private:
     SystemSolver solver_;
     Integrator integrator_;
     ParticleSystem system_;
-    std::vector<std::uint32_t> slots_;  // of every particle: its number among the members
-    std::vector<Flight> flights_;       // of the members
-    double first_try_ = 0.0;            // s, of an adaptive method
+    std::vector<std::uint32_t> slots_;    // of every particle: its number among the members
+    std::vector<Flight> flights_;         // of the members
+    std::vector<CoupledMember> coupled_;  // what the flights' starts point to
+    Departures departures_;               // of the members, from the flights
+    double first_try_ = 0.0;              // s, of an adaptive method
     std::uint64_t unsolved_steps_ = 0;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.

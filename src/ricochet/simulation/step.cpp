@@ -70,6 +70,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         move_part(batch, part, blocks);
         stop_runaways(blocks, step.end);
         recorder.record(blocks);
+        if (coupled.is_active() && batch.begin == 0) coupled.correct_velocities(store.particles());
         now = part.end;
     }
     if (coupled.is_active() && batch.begin == 0) coupled.settle(particles());

@@ -1,0 +1,193 @@
+#include "ricochet/dynamics/coupled_member.h"
+
+#include <algorithm>
+#include <array>
+
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+/// Springs per unit of parallel work.
+constexpr std::size_t kBlock = 64;
+
+/// A point of a rule of quadrature on [0, 1].
+struct Node {
+    double at;
+    double weight;
+};
+/// Gauss's rule, exact for polynomials of degree 5.
+constexpr std::array<Node, 3> kGauss{{{0.11270166537925831, 5.0 / 18.0},  // (1 - sqrt(3/5)) / 2
+                                      {0.5, 8.0 / 18.0},
+                                      {0.88729833462074169, 5.0 / 18.0}}};
+constexpr std::array<Node, 2> kTrapezoid{{{0.0, 0.5}, {1.0, 0.5}}};
+
+/// That of the method: velocity Verlet's kicks are forces at the ends of its paths, and with any other rule a bounce
+/// costs it energy (docs/decisions/2026-11-24-springs-that-bounce.md).
+std::span<const Node> rule_of(IntegratorKind kind) {
+    const bool is_verlet = kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::ballistic;
+    return is_verlet ? std::span<const Node>(kTrapezoid) : std::span<const Node>(kGauss);
+}
+
+/// The piece that is flown at a time.
+const FlownPiece& piece_at(std::span<const FlownPiece> pieces, double time) {
+    const auto next = std::upper_bound(pieces.begin() + 1, pieces.end(), time,
+                                       [](double t, const FlownPiece& piece) { return t < piece.begin; });
+    return *(next - 1);
+}
+
+/// The state s seconds into a path that is followed for a duration, to the velocity `arrival`.
+PhaseState state_along(const Path& path, double s, double duration, const Vec3& arrival) {
+    if (duration == 0.0) return {path.position(0.0), arrival};
+    s = std::clamp(s, 0.0, duration);
+    const double part = s / duration;
+    return {path.position(s), path.velocity(s) + (part * part) * (arrival - path.velocity(duration))};
+}
+
+/// A time within a step, s.
+struct TimeInterval {
+    double begin;
+    double end;
+    [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
+};
+
+/// The step cut where any of the pieces begins: in each part all paths and forces are smooth.
+std::vector<TimeInterval> parts_between(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
+                                        const FlownPiece& step) {
+    std::vector<double> times{step.begin + step.duration};
+    for (const FlownPiece& piece : first) times.push_back(piece.begin);
+    for (const FlownPiece& piece : second) times.push_back(piece.begin);
+    std::sort(times.begin(), times.end());
+    std::vector<TimeInterval> parts;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+        if (times[k] > times[k - 1]) parts.push_back({times[k - 1], times[k]});
+    }
+    return parts;
+}
+
+template <class Function>
+Vec3 integral(std::span<const Node> rule, const TimeInterval& part, const Function& f) {
+    const double duration = part.end - part.begin;
+    Vec3 sum;
+    for (const Node& node : rule) sum += (node.weight * duration) * f(part.begin + node.at * duration);
+    return sum;
+}
+
+/// What impacts have given a particle, m/s, which has the velocity `now` at the end.
+Vec3 turned_by_impacts(std::span<const FlownPiece> pieces, const Vec3& now) {
+    Vec3 sum;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        sum += (k + 1 < pieces.size() ? pieces[k + 1].departure : now) - pieces[k].arrival;
+    }
+    return sum;
+}
+
+}  // namespace
+
+PhaseState FlownPiece::at(double time) const { return state_along(path, time - begin, duration, arrival); }
+
+FlownPiece piece_of(const Flight& flight) {
+    return {flight.path, flight.start.time, flight.path.duration, flight.start.velocity, flight.end_velocity, true};
+}
+
+Vec3 CoupledMember::acceleration(const ForceInput& input) const {
+    if (system_ == nullptr) return held_;
+    const auto state_of = [&](std::size_t k) {
+        if (k == member_) return PhaseState{input.position, input.velocity};
+        const Flight& plan = (*plans_)[k];
+        return state_along(plan.path, input.time - plan.start.time, plan.path.duration, plan.end_velocity);
+    };
+    return system_->spring_force_in(member_, state_of) / input.mass;
+}
+
+void Departures::reset(std::size_t members, IntegratorKind kind) {
+    kind_ = kind;
+    flown_.resize(members);
+    for (std::vector<FlownPiece>& pieces : flown_) pieces.clear();
+}
+
+void Departures::record(std::size_t member, std::span<const FlownPiece> flown) {
+    flown_[member].assign(flown.begin(), flown.end());
+}
+
+void Departures::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
+                         const std::vector<std::uint8_t>& is_free, std::vector<Vec3>& velocities) const {
+    const auto has_left = [](const std::vector<FlownPiece>& pieces) { return !pieces.empty(); };
+    if (std::none_of(flown_.begin(), flown_.end(), has_left)) return;
+    const std::vector<Vec3> given = momentum_changes(system, plans);
+    for (std::size_t k = 0; k < velocities.size(); ++k) {
+        if (is_free[k] == 0) continue;
+        const std::vector<FlownPiece>& flown = flown_[k];
+        if (!flown.empty()) {
+            const bool was_free =
+                std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
+            if (!was_free) continue;
+            velocities[k] =
+                plans[k].end_velocity + turned_by_impacts(flown, velocities[k]) + own_change(system, k, plans[k]);
+        }
+        if (given[k] != Vec3{}) velocities[k] += given[k] / system.mass(k);
+    }
+}
+
+/// N s by member. Every spring's is found for itself by any thread; they are added in the order of the springs.
+std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
+    std::vector<Vec3> sums(system.size());
+    std::vector<ParticleSystem::Bond> changed;
+    for (const ParticleSystem::Bond& bond : system.bonds()) {
+        if (has_left(bond.first) || has_left(bond.second)) changed.push_back(bond);
+    }
+    std::vector<Vec3> impulses(changed.size());
+    parallel_for_blocks(changed.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) impulses[k] = impulse_change(system, changed[k], plans);
+    });
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+        sums[changed[k].first] += impulses[k];
+        sums[changed[k].second] -= impulses[k];
+    }
+    return sums;
+}
+
+/// What a spring has given its first end, N s, beyond what it would have given it between the planned paths.
+Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
+                                const std::vector<Flight>& plans) const {
+    const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
+    const auto flown_by = [&](std::size_t member, const FlownPiece& plan) {
+        return has_left(member) ? std::span<const FlownPiece>(flown_[member]) : std::span<const FlownPiece>(&plan, 1);
+    };
+    const auto first = flown_by(bond.first, planned[0]);
+    const auto second = flown_by(bond.second, planned[1]);
+    const Spring& spring = system.spring_of(bond);
+    const auto force = [&](const FlownPiece& a, const FlownPiece& b, double t) {
+        const PhaseState one = a.at(t);
+        const PhaseState other = b.at(t);
+        return spring_force(spring, one.position, one.velocity, other.position, other.velocity);
+    };
+    Vec3 sum;
+    for (const TimeInterval& part : parts_between(first, second, planned[0])) {
+        const FlownPiece& a = piece_at(first, part.middle());
+        const FlownPiece& b = piece_at(second, part.middle());
+        sum +=
+            integral(rule_of(kind_), part, [&](double t) { return force(a, b, t) - force(planned[0], planned[1], t); });
+    }
+    return sum;
+}
+
+/// What forces on single particles have done to a member, m/s, beyond what they would have done on its planned path.
+Vec3 Departures::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
+    if (system.has_uniform_forces()) return {};
+    const FlownPiece planned = piece_of(plan);
+    const auto acceleration = [&](const FlownPiece& piece, double t) {
+        const PhaseState state = piece.at(t);
+        return system.own_acceleration(member, t, state.position, state.velocity);
+    };
+    const std::span<const FlownPiece> flown(flown_[member]);
+    Vec3 sum;
+    for (const TimeInterval& part : parts_between(flown, {}, planned)) {
+        const FlownPiece& piece = piece_at(flown, part.middle());
+        sum +=
+            integral(rule_of(kind_), part, [&](double t) { return acceleration(piece, t) - acceleration(planned, t); });
+    }
+    return sum;
+}
+
+}  // namespace ricochet

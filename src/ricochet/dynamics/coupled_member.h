@@ -1,0 +1,82 @@
+/// \file
+/// Members of a system of particles that act on each other: what the others do to one that leaves the plan of a step,
+/// and what it does to them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ricochet/dynamics/flight.h"
+#include "ricochet/dynamics/particle_system.h"
+
+namespace ricochet {
+
+/// A part of what a particle has flown in a step, or would fly.
+struct FlownPiece {
+    Path path;
+    double begin = 0.0;     ///< s, when it begins
+    double duration = 0.0;  ///< s that it is followed, at most the path's own
+    Vec3 departure;         ///< velocity at its begin, m/s
+    Vec3 arrival;           ///< velocity at its end, m/s
+    bool is_free = false;   ///< in free flight; false in contact
+
+    /// The state at a time, s, within it. The velocity is the path's derivative with what it lacks at the end, where a
+    /// method's velocity is better than its path, put in by the square of the time.
+    [[nodiscard]] PhaseState at(double time) const;
+};
+
+/// A whole flight as one piece.
+[[nodiscard]] FlownPiece piece_of(const Flight& flight);
+
+/// What the springs of a member do to it in a step: held, or as they are between where it is and where the others are
+/// on their planned flights at the time.
+class CoupledMember final : public Coupling {
+public:
+    CoupledMember() = default;
+    /// Held at an acceleration, m/s^2.
+    explicit CoupledMember(const Vec3& held) : held_(held) {}
+    /// As the others fly; both must outlive it. plans: of all members.
+    CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member)
+        : system_(&system), plans_(&plans), member_(member) {}
+
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override;
+    [[nodiscard]] bool varies() const override { return system_ != nullptr; }
+
+private:
+    Vec3 held_;
+    const ParticleSystem* system_ = nullptr;
+    const std::vector<Flight>* plans_ = nullptr;
+    std::size_t member_ = 0;
+};
+
+/// The members that have left the plan of a step by an impact, and what follows for the velocities at its end.
+///
+/// The plan gives both ends of a spring opposite impulses, for the planned paths. Where an end has flown another path
+/// the difference, the integral of the force between the paths that were flown less that between the planned ones,
+/// goes to both ends with opposite signs: momentum is kept to rounding, and what the bounce of one does to the other
+/// is there, of third order in the step. Positions stay: they are at the ends of certified segments.
+class Departures {
+public:
+    /// Forgets all. members: how many there are; kind: the method that has planned.
+    void reset(std::size_t members, IntegratorKind kind);
+    /// Notes what a member has flown instead of its plan; several threads may do so for different members.
+    void record(std::size_t member, std::span<const FlownPiece> flown);
+    /// Changes the velocities of the members at the end of the step, m/s. is_free: those whose velocity no contact
+    /// determines; others keep it.
+    void correct(const ParticleSystem& system, const std::vector<Flight>& plans,
+                 const std::vector<std::uint8_t>& is_free, std::vector<Vec3>& velocities) const;
+
+private:
+    [[nodiscard]] bool has_left(std::size_t member) const { return !flown_[member].empty(); }
+    [[nodiscard]] std::vector<Vec3> momentum_changes(const ParticleSystem& system,
+                                                     const std::vector<Flight>& plans) const;
+    [[nodiscard]] Vec3 impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
+                                      const std::vector<Flight>& plans) const;
+    [[nodiscard]] Vec3 own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const;
+
+    std::vector<std::vector<FlownPiece>> flown_;  // of every member; empty: as planned
+    IntegratorKind kind_ = IntegratorKind::ballistic;
+};
+
+}  // namespace ricochet

@@ -120,8 +120,11 @@ Outcome run(SimulationSetup setup, int threads) {
 /// The state alone, by the calls that make many steps at once.
 std::uint64_t advance(SimulationSetup setup, int threads) {
     const ThreadLimit limit(threads);
+    // What the random scenes' small budgets lose is theirs; shipped scenes lose nothing.
+    const bool may_lose_time = setup.options.bounce_budget == kRandomSceneBudget;
     Simulation simulation(std::move(setup));
     simulation.advance(simulation.step_count());
+    EXPECT_TRUE(may_lose_time || simulation.statistics().budget_exhausted == 0);
     return simulation.state_hash();
 }
 
@@ -182,6 +185,16 @@ TEST_P(GoldenShippedScene, EndsInTheSameBits) {
           [&] { return read_scene(kRoot / "scenes" / (std::string(scene.name) + ".json"), overrides).setup; });
 }
 
+/// All of a shipped scene: contact that lasts costs no budgets of bounces, so no particle loses time.
+using ShippedSceneLong = GoldenShippedScene;
+
+TEST_P(ShippedSceneLong, LosesNoTime) {
+    Simulation simulation(read_scene(kRoot / "scenes" / (std::string(GetParam().name) + ".json")).setup);
+    simulation.advance(simulation.step_count());
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+}
+
 std::string shipped_name(const ::testing::TestParamInfo<ShippedScene>& info) {
     std::string name = info.param.name;
     for (char& c : name) {
@@ -191,6 +204,7 @@ std::string shipped_name(const ::testing::TestParamInfo<ShippedScene>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenShippedScene, ::testing::ValuesIn(kShippedScenes), shipped_name);
+INSTANTIATE_TEST_SUITE_P(Of, ShippedSceneLong, ::testing::ValuesIn(kShippedScenes), shipped_name);
 
 /// Random scenes, eight to a test.
 class GoldenRandomScenes : public ::testing::TestWithParam<int> {};

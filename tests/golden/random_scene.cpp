@@ -77,7 +77,7 @@ std::string simulation(int number, Numbers& numbers) {
     out += R"(, "seed": )" + std::to_string(number);
     out += R"(, "integrator": ")" + integrator(number) + R"(", )" + response(number);
     if (numbers.chance(0.3)) out += R"(, "resting_speed": 0.05)";
-    out += R"(, "bounce_budget": 200, "max_depth": 2, "most_particles": 600)";
+    out += R"(, "bounce_budget": )" + std::to_string(kRandomSceneBudget) + R"(, "max_depth": 2, "most_particles": 600)";
     if (has_flow(number)) {
         out += R"(, "motion": "flow", "flow": "stream", "walls": )";
         out += number % 16 == 3 ? R"("slide")" : R"("stop")";

@@ -1,0 +1,86 @@
+// Does anything that slides, rolls or spins on a surface gain energy? Every kind of curved surface, from inside, with
+// any friction and resistance to rolling, with and without spin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "claims/contact_scene.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kG = kStandardGravity;
+
+double energy_of(const Particle& p) {
+    return 0.5 * length_squared(p.velocity) + 0.2 * p.radius * p.radius * length_squared(p.spin) + kG * p.position.z;
+}
+
+/// The most that a run gains in one step, J/kg.
+double largest_gain(const ContactScene& scene) {
+    double last = energy_of(scene.particle);
+    double worst = 0.0;
+    watch(scene, [&](double, const Particle& p) {
+        worst = std::max(worst, energy_of(p) - last);
+        last = energy_of(p);
+        return true;
+    });
+    return worst;
+}
+
+/// Of a step: some hundred intervals at most, each with 4e-16 of the largest term, g times 1.2 m and v^2 / 2.
+constexpr double kRounding = 100 * 4e-16 * 15.0;
+
+struct Room {
+    const char* name;
+    ColliderShape shape;
+};
+
+std::vector<Room> rooms() {
+    const Placement uneven{{}, {0, 0, 1}, 0.0, {0.77, 1.06, 1.2}};
+    return {{"ball", BallShape{1.0, {}}}, {"ellipsoid", BallShape{1.0, uneven}}};
+}
+
+ContactScene tumbling(const Room& room, const Material& material, double radius, const Vec3& spin, double time_step) {
+    ContactScene scene;
+    scene.colliders = {{room.name, room.shape, 0}};
+    scene.materials = {material};
+    scene.particle = particle_of({0.1, 0.05, -0.3}, {2, 1, 0}, radius, spin);
+    scene.time_step = time_step;
+    scene.duration = 1.0;
+    return scene;
+}
+
+/// Points, small and large spheres, with and without spin, in every room.
+void expect_no_gain(const Material& material) {
+    for (const Room& room : rooms()) {
+        for (const auto& [radius, spin] : {std::pair{0.0, Vec3{}}, std::pair{0.02, Vec3{}}, std::pair{0.2, Vec3{}},
+                                           std::pair{0.02, Vec3{50, 50, -150}}, std::pair{0.2, Vec3{5, 5, -15}}}) {
+            for (const double step : {0.025, 0.005}) {
+                EXPECT_LE(largest_gain(tumbling(room, material, radius, spin, step)), kRounding)
+                    << room.name << ", radius " << radius << ", spin " << spin.x << ", step " << step << ", friction "
+                    << material.friction;
+            }
+        }
+    }
+}
+
+TEST(ContactOnACurve, GainsNoEnergyWithFriction) {
+    for (const double friction : {0.01, 0.1, 0.3, 1.4}) expect_no_gain({"", 0.3, friction});
+}
+
+TEST(ContactOnACurve, GainsNoEnergyWithoutFriction) { expect_no_gain({"", 0.3, 0.0}); }
+
+TEST(ContactOnACurve, GainsNoEnergyFromResistanceToRolling) {
+    for (const double rolling : {0.02, 0.15, 1.0}) {
+        Material material{"", 0.3, 1.4};
+        material.rolling_friction = rolling;
+        expect_no_gain(material);
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

@@ -1,0 +1,190 @@
+// Does a sphere in a groove roll and slip as the closed form says, whatever the walls, the slope and the time step?
+//
+// The groove runs down along d. Its walls, inclined by A and B across it, hold with N1 = c sin B / sin(A + B) and
+// N2 = c sin A / sin(A + B), c the part of gravity that presses into the groove. Friction t_i along d changes the speed
+// and the slips u_i by
+//     v' = s + t1 + t2,    u_i' = v' + 5/2 (t_i + cos(A + B) t_j),    s: gravity along the groove,
+// |t_i| <= mu N_i, against the slip; t_i holds u_i at zero where it can. Between changes everything is a parabola.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "claims/contact_scene.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kG = kStandardGravity;
+constexpr double kSphereRadius = 0.1;
+
+/// Walls to the horizontal across the groove, the groove to the horizontal along it, in radians.
+struct Groove {
+    double a, b, slope;
+    [[nodiscard]] double along() const { return kG * std::sin(slope); }
+    [[nodiscard]] std::array<double, 2> normal_forces() const {
+        const double c = kG * std::cos(slope) / std::sin(a + b);
+        return {c * std::sin(b), c * std::sin(a)};
+    }
+    /// The least friction at which both walls make it roll from rest.
+    [[nodiscard]] double rolling_limit() const {
+        const double half = std::cos(0.5 * (a + b));
+        const double share = 0.4 / (half * half);
+        const auto normal = normal_forces();
+        return 0.5 * along() * share / (1.0 + share) / std::min(normal[0], normal[1]);
+    }
+};
+
+/// The closed form: speed and slips, from change to change.
+class GrooveReference {
+public:
+    GrooveReference(const Groove& groove, double friction, double speed, const std::array<double, 2>& slip)
+        : groove_(groove), speed_(speed), slip_(slip) {
+        const auto normal = groove.normal_forces();
+        for (std::size_t i = 0; i < 2; ++i) bound_[i] = friction * normal[i];
+    }
+    /// How far it goes in `time` seconds.
+    double distance_after(double time) {
+        double distance = 0.0;
+        for (int change = 0; time > 0.0 && change < 10; ++change) {
+            const std::array<double, 2> t = friction();
+            const std::array<double, 2> rate = slip_rates(t);
+            double h = time;
+            for (std::size_t i = 0; i < 2; ++i) {
+                if (slip_[i] * rate[i] < 0.0) h = std::min(h, -slip_[i] / rate[i]);
+            }
+            const double acceleration = groove_.along() + t[0] + t[1];
+            distance += h * (speed_ + 0.5 * h * acceleration);
+            speed_ += h * acceleration;
+            for (std::size_t i = 0; i < 2; ++i) advance(slip_[i], rate[i], h);
+            time -= h;
+        }
+        return distance;
+    }
+
+private:
+    static void advance(double& slip, double rate, double h) {
+        const double before = slip;
+        slip += h * rate;
+        // The slip that ended the interval is zero to rounding, others are not near it.
+        if (std::fabs(slip) < 1e-12 * std::max(std::fabs(before), std::fabs(h * rate))) slip = 0.0;
+    }
+    [[nodiscard]] std::array<double, 2> slip_rates(const std::array<double, 2>& t) const {
+        const double c = std::cos(groove_.a + groove_.b);
+        const double rate = groove_.along() + t[0] + t[1];
+        std::array<double, 2> rates{rate + 2.5 * (t[0] + c * t[1]), rate + 2.5 * (t[1] + c * t[0])};
+        for (double& r : rates) {
+            if (std::fabs(r) < 1e-13 * kG) r = 0.0;  // the rounding of a slip that friction holds
+        }
+        return rates;
+    }
+    /// Projected Gauss-Seidel on two numbers, of a positive definite problem: it converges to rounding.
+    [[nodiscard]] std::array<double, 2> friction() const {
+        std::array<double, 2> t{};
+        for (int sweep = 0; sweep < 200'000; ++sweep) {
+            double change = 0.0;
+            for (std::size_t i = 0; i < 2; ++i) {
+                const double before = t[i];
+                if (slip_[i] != 0.0) {
+                    t[i] = -std::copysign(bound_[i], slip_[i]);
+                } else {
+                    t[i] = std::clamp(t[i] - slip_rates(t)[i] / 3.5, -bound_[i], bound_[i]);
+                }
+                change = std::max(change, std::fabs(t[i] - before));
+            }
+            if (change < 1e-17 * kG) break;
+        }
+        return t;
+    }
+
+    Groove groove_;
+    std::array<double, 2> bound_{};
+    double speed_;
+    std::array<double, 2> slip_;
+};
+
+/// The groove in space: down along d, up along u, across it s, and turned about the vertical, so that nothing is
+/// aligned with the axes.
+struct GrooveFrame {
+    explicit GrooveFrame(double slope) {
+        const double yaw = 0.3;
+        const Vec3 level{std::cos(yaw), std::sin(yaw), 0};
+        s = {-std::sin(yaw), std::cos(yaw), 0};
+        d = std::cos(slope) * level - Vec3{0, 0, std::sin(slope)};
+        u = std::sin(slope) * level + Vec3{0, 0, std::cos(slope)};
+    }
+    Vec3 d, u, s;
+};
+
+/// Normals of the walls, out of the groove.
+std::array<Vec3, 2> wall_normals(const Groove& g, const GrooveFrame& frame) {
+    return {std::sin(g.a) * frame.s + std::cos(g.a) * frame.u, -std::sin(g.b) * frame.s + std::cos(g.b) * frame.u};
+}
+
+std::vector<ColliderDescription> walls_of_planes(const Groove& g, const GrooveFrame& frame) {
+    const auto n = wall_normals(g, frame);
+    return {plane_collider({}, n[0]), plane_collider({}, n[1])};
+}
+
+using MakeWalls = std::vector<ColliderDescription> (*)(const Groove&, const GrooveFrame&);
+
+/// A sphere in a groove, its centre where it touches both walls, up to rounding.
+ContactScene in_groove(const Groove& g, const GrooveFrame& frame, std::vector<ColliderDescription> walls,
+                       double friction, double time_step) {
+    const double half = 0.5 * (g.a + g.b);
+    const double lean = 0.5 * (g.a - g.b);
+    const Vec3 center = kSphereRadius / std::cos(half) * (std::sin(lean) * frame.s + std::cos(lean) * frame.u);
+    ContactScene scene;
+    scene.colliders = std::move(walls);
+    scene.materials = {{"", 0.5, friction}};
+    scene.particle = particle_of(center, {}, kSphereRadius);
+    scene.time_step = time_step;
+    return scene;
+}
+
+constexpr std::array kSteps{0.001, 0.02, 0.05, 0.1};
+
+/// Bound of the contract, relative to the distance: parabolas, so any time step gives rounding only.
+constexpr double kBound = 1e-9;
+
+class GrooveGrid : public ::testing::TestWithParam<std::pair<const char*, MakeWalls>> {};
+
+INSTANTIATE_TEST_SUITE_P(Of, GrooveGrid,
+                         ::testing::Values(std::pair<const char*, MakeWalls>{"Planes", walls_of_planes}),
+                         [](const auto& walls) { return walls.param.first; });
+
+TEST_P(GrooveGrid, LetsSpheresThatRollOnTheLevelRollOn) {
+    for (const double degrees : {5.0, 45.0, 85.0}) {
+        const Groove g{radians(degrees), radians(degrees), 0.0};
+        const GrooveFrame frame(0.0);
+        for (const double step : kSteps) {
+            ContactScene scene = in_groove(g, frame, GetParam().second(g, frame), 0.3, step);
+            scene.particle.velocity = frame.d;
+            scene.particle.spin = 1.0 / (kSphereRadius * std::cos(g.a)) * frame.s;
+            scene.duration = 2.0;
+            const double reached = dot(end_of(scene).position - scene.particle.position, frame.d);
+            EXPECT_NEAR(reached / 2.0, 1.0, kBound) << degrees << " degrees, steps of " << step << " s";
+        }
+    }
+}
+
+// The contract's own words for equal walls, so that the reference above is itself held to them.
+TEST(GrooveReference, IsTheKnownClosedFormBetweenEqualWalls) {
+    for (const double degrees : {5.0, 45.0, 85.0}) {
+        const Groove g{radians(degrees), radians(degrees), radians(20.0)};
+        const double cosine = std::cos(g.a);
+        const double rolling = kG * std::sin(g.slope) / (1.0 + 0.4 / (cosine * cosine));
+        const double slipping = kG * std::sin(g.slope) - 0.5 * g.rolling_limit() * kG * std::cos(g.slope) / cosine;
+        // Bounds: the rounding of a few operations on some 4 m, and the end of the sweeps over both frictions.
+        EXPECT_NEAR(GrooveReference(g, 2.0 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * rolling, 1e-12);
+        EXPECT_NEAR(GrooveReference(g, 0.5 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * slipping, 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

@@ -1,37 +1,56 @@
 #include "ricochet/collision/overlap.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
+namespace {
+
+/// Calls within = consider(surface, distance) for all planes and shapes, and for the triangles within that distance.
+template <class Consider>
+void visit_distances(const CollisionWorld& world, const Vec3& center, double within, const Consider& consider) {
+    for (const auto& plane : world.planes()) {
+        within = consider(plane.surface, std::fabs(signed_distance(center, plane.plane)));
+    }
+    for (const auto& shape : world.shapes()) {
+        within = consider(shape.surface, std::fabs(shape.shape.closest_point(center).distance));
+    }
+    if (world.triangles().empty()) return;
+    world.bvh_for(0.0).query_point(center, within, [&](std::uint32_t triangle) {
+        if (world.is_degenerate(triangle)) return within;
+        const auto [a, b, c] = world.corners_of_triangle(triangle);
+        const double squared = closest_point_on_triangle(center, a, b, c).distance_squared;
+        within = consider(world.surface_of_triangle(triangle), std::sqrt(squared));
+        return within;
+    });
+}
+
+}  // namespace
 
 std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius) {
     if (!(radius > 0.0) || !is_finite(center)) return std::nullopt;
     const double least = radius - sphere_tolerance(radius, max_abs(center));
     std::optional<Overlap> deepest;
-    const auto consider = [&](SurfaceId surface, double distance) {
-        if (!(distance < least)) return;
-        if (deepest && (distance > deepest->distance || (distance == deepest->distance && surface >= deepest->surface)))
-            return;
-        deepest = Overlap{surface, distance};
-    };
-    for (const auto& plane : world.planes()) {
-        consider(plane.surface, std::fabs(signed_distance(center, plane.plane)));
-    }
-    for (const auto& shape : world.shapes()) {
-        consider(shape.surface, std::fabs(shape.shape.closest_point(center).distance));
-    }
-    if (world.triangles().empty()) return deepest;
-    world.bvh_for(0.0).query_point(center, deepest ? deepest->distance : radius, [&](std::uint32_t triangle) {
-        if (!world.is_degenerate(triangle)) {
-            const auto [a, b, c] = world.corners_of_triangle(triangle);
-            const double squared = closest_point_on_triangle(center, a, b, c).distance_squared;
-            consider(world.surface_of_triangle(triangle), std::sqrt(squared));
-        }
+    visit_distances(world, center, radius, [&](SurfaceId surface, double distance) {
+        const bool is_nearer =
+            !deepest || distance < deepest->distance || (distance == deepest->distance && surface < deepest->surface);
+        if (distance < least && is_nearer) deepest = Overlap{surface, distance};
         return deepest ? deepest->distance : radius;
     });
     return deepest;
+}
+
+std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius, double reach) {
+    std::vector<SurfaceId> touched;
+    if (!is_finite(center)) return touched;
+    visit_distances(world, center, radius + reach, [&](SurfaceId surface, double distance) {
+        if (distance > 0.0 && std::fabs(distance - radius) <= reach) touched.push_back(surface);
+        return radius + reach;
+    });
+    std::sort(touched.begin(), touched.end());
+    return touched;
 }
 
 double core_radius(const Overlap& overlap, const Vec3& center, double radius) {

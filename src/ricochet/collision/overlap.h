@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "ricochet/collision/collision_world.h"
 
@@ -19,6 +20,11 @@ struct Overlap {
 /// for a centre that is not finite. What lies wholly inside a solid overlaps nothing. The broad phase proposes the
 /// triangles: one query of a point. Safe from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
+
+/// The surfaces that a sphere, or a point (radius 0), touches: those from whose distance its radius differs by at most
+/// `reach`, m, by number. Not one that a point lies exactly on. One query of a point.
+[[nodiscard]] std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius,
+                                                      double reach);
 
 /// Radius, m, of the largest ball about the centre that a sphere in overlap can collide with as if it overlapped
 /// nothing: one contact offset less than the distance. 0 for a point, where rounding of positions would be felt.

@@ -37,7 +37,7 @@ std::optional<Contact> ContactPhase::resume() {
     manifold_.touch_again(before, TouchRule::at(state_.position));
     const Vec3 forces = rules_.forces.acceleration(state_);
     auto support = hardest_pressed(forces);
-    if (!support) return std::nullopt;
+    if (!support || lands()) return std::nullopt;
     if (kicks_first(rules_.settings.integrator.kind)) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         if (!began_still_ || !is_finite(forces)) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<Contact> ContactPhase::resume() {
         return std::nullopt;
     }
     const Stop stop = spend_cascade(*support, before.cascade_left);
-    return stop.is_early() ? stop.contact : follow_surface(*support, false);
+    return stop.is_early() ? stop.contact : follow_surface(false);
 }
 
 std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& contact, const Motion& arriving) {
@@ -56,6 +56,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     std::optional<ContactSurface> support;
     if (rebounds_slowly(flight, contact, arriving)) {
         manifold_.replace(contact.all(), TouchRule::at(state_.position));
+        gather();
         // What the step's own kick put into the velocity is not the speed of a departure.
         const double fastest =
             is_kicked(flight) ? std::numeric_limits<double>::infinity() : rules_.settings.resting_speed;
@@ -72,10 +73,10 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     }
     if (is_kicked(flight)) {
         land(arriving, impact_.material_of(support->surface).friction);
-        return follow_surface(*support, true);
+        return follow_surface(true);
     }
     const Stop stop = finish_cascade(*support);
-    return stop.is_early() ? stop.contact : follow_surface(*support, false);
+    return stop.is_early() ? stop.contact : follow_surface(false);
 }
 
 void ContactPhase::record_weight() {
@@ -181,7 +182,7 @@ void ContactPhase::land(const Motion& arriving, double friction) {
 }
 
 /// The rest of the bounce cascade, summed.
-ContactPhase::Stop ContactPhase::finish_cascade(ContactSurface support) {
+ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     const double rebound = std::max(0.0, dot(state_.velocity, support.normal));
     const Vec3 forces = rules_.forces.acceleration(state_);
     const double pressing = pressing_on(support, forces, state_.velocity);
@@ -208,14 +209,14 @@ void ContactPhase::settle(const Vec3& forces) {
 
 /// Lets the time of a cascade pass, s; on average it presses with (1 + e) / 2 of the full force. What the step's end
 /// cuts off goes on in the next step.
-ContactPhase::Stop ContactPhase::spend_cascade(ContactSurface& support, double left) {
+ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, double left) {
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
     // What is shorter than the clock can tell never passes.
     const auto passes = [&](double time) { return state_.time + time > state_.time; };
     for (int part = 0; part < kMostIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
         const Vec3 forces = rules_.forces.acceleration(state_);
         const double before = step_.remaining();
-        const Stop stop = advance(support, forces, true, pressure, std::min(left, before));
+        const Stop stop = advance(forces, true, pressure, std::min(left, before));
         if (stop.is_early()) return stop;
         if (stop.rests) wait(std::min(left, before), forces);
         left -= before - step_.remaining();
@@ -227,13 +228,31 @@ ContactPhase::Stop ContactPhase::spend_cascade(ContactSurface& support, double l
     return {};
 }
 
+/// Adds to the manifold all that is touched.
+void ContactPhase::gather() {
+    const TouchRule rule = TouchRule::at(state_.position);
+    step_.visit_near([&](SurfaceId surface) { manifold_.touch(surface, rule); });
+}
+
+/// True when it moves into one of the surfaces: an impact, as of what is born there.
+bool ContactPhase::lands() const {
+    return std::any_of(manifold_.normals().begin(), manifold_.normals().end(), [&](const Vec3& normal) {
+        return -dot(state_.velocity, normal) > kSlowSlip * length(state_.velocity);
+    });
+}
+
 /// Slides, rolls or rests. A kicked particle has had its force already.
-std::optional<Contact> ContactPhase::follow_surface(ContactSurface support, bool kicked) {
+std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
-        if (pressing_on(support, forces, state_.velocity) < 0.0) return std::nullopt;  // nothing presses any more
-        const Stop stop = advance(support, forces, !kicked, kicked ? 0.0 : 1.0, step_.remaining());
-        if (stop.is_early()) return stop.contact;
+        if (!is_pressed(forces)) return std::nullopt;
+        const Stop stop = advance(forces, !kicked, kicked ? 0.0 : 1.0, step_.remaining());
+        if (stop.contact) return stop.contact;
+        if (stop.left_surface) {
+            find_next_surfaces();
+            if (manifold_.empty() || lands()) return std::nullopt;
+            continue;
+        }
         if (stop.rests) {
             rest(forces, !kicked);
             return std::nullopt;
@@ -243,24 +262,32 @@ std::optional<Contact> ContactPhase::follow_surface(ContactSurface support, bool
     return std::nullopt;
 }
 
-/// One interval of at most `duration` seconds on all that is touched. support: one of it; replaced by the hardest
-/// pressed where the surfaces bend.
-ContactPhase::Stop ContactPhase::advance(ContactSurface& support, const Vec3& forces, bool has_forces, double pressure,
-                                         double duration) {
+/// Where a surface has ended: what holds it from there on, beside it or around its edge.
+void ContactPhase::find_next_surfaces() {
+    manifold_.touch_again(TouchRule::at(state_.position));
+    gather();
+    manifold_.drop_left();
+}
+
+/// True when something presses it onto one of the surfaces, or nothing pulls it off.
+bool ContactPhase::is_pressed(const Vec3& forces) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (pressing_on(manifold_[k], forces, state_.velocity) >= 0.0) return true;
+    }
+    return false;
+}
+
+/// One interval of at most `duration` seconds on all that is touched.
+ContactPhase::Stop ContactPhase::advance(const Vec3& forces, bool has_forces, double pressure, double duration) {
     manifold_.drop_left();
     if (manifold_.empty()) return {std::nullopt, true, false};
     if (!bends()) {
         const ContactInterval interval = plan(forces, pressure, duration);
-        if (!interval.at_rest) return follow(interval, support, forces);
+        if (!interval.at_rest) return follow(interval, forces);
         particle_.spin = interval.motion.spin;
         return {std::nullopt, false, true};
     }
-    Stop stop = follow_arc(forces, has_forces, pressure, duration);
-    if (stop.is_early() || stop.rests) return stop;
-    const auto next = hardest_pressed(has_forces ? rules_.forces.acceleration(state_) : Vec3{});
-    if (!next) return {std::nullopt, true, false};
-    support = *next;
-    return stop;
+    return follow_arc(forces, has_forces, pressure, duration);
 }
 
 /// Plans an interval against all that is surface.
@@ -273,13 +300,15 @@ ContactInterval ContactPhase::plan(const Vec3& pull, double pressure, double dur
 }
 
 /// Follows one interval on flat surfaces.
-ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const ContactSurface& support,
-                                        const Vec3& forces) {
-    const auto [flight, leaves_surface] = flight_along(interval, support);
-    if (flight.path.duration <= 0.0) return {std::nullopt, true, false};
+ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const Vec3& forces) {
+    const auto [path, leaves_surface] = path_along(interval);
+    if (path.duration <= 0.0) return {std::nullopt, true, false};
     const double before = step_.remaining();
     const Vec3 turned = interval.motion.velocity - state_.velocity;
-    Stop stop{step_.follow(flight), leaves_surface, false};
+    held_.clear();
+    for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
+    Stop stop{step_.follow(path, held_), leaves_surface, false};
+    add_held(stop.contact);
     const double elapsed = before - step_.remaining();
     manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
     const Motion motion =
@@ -289,33 +318,41 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const C
     return stop;
 }
 
-/// The path of an interval, up to where the support ends; its end keeps the contact offset.
-ContactPhase::ContactFlight ContactPhase::flight_along(const ContactInterval& interval,
-                                                       const ContactSurface& support) const {
+/// The path of an interval, up to where a surface ends; its end keeps the contact offset.
+ContactPhase::ContactPath ContactPhase::path_along(const ContactInterval& interval) const {
     const Vec3& v = interval.motion.velocity;
     const Vec3& a = interval.acceleration;
     Path path = parabola_path(state_.position, v, a, interval.duration);
-    if (!is_finite(path.end)) return {{path, a, 0.0, state_, v + path.duration * a}, false};
-    Path of_contact_point = path;
-    of_contact_point.c[0] -= state_.radius * support.normal;
-    const double on =
-        rules_.world.time_over(support.surface, of_contact_point, kTouchingOffsets * contact_offset(state_.position));
+    if (!is_finite(path.end)) return {path, false};
+    const double slack = kTouchingOffsets * contact_offset(state_.position);
+    double on = interval.duration;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        Path of_contact_point = path;
+        of_contact_point.c[0] -= state_.radius * manifold_[k].normal;
+        on = std::min(on, rules_.world.time_over(manifold_[k].surface, of_contact_point, slack));
+    }
     const bool leaves = on < interval.duration;
     if (leaves) path = parabola_path(state_.position, v, a, on);
-    if (path.duration > 0.0) keep_offset(support, path);
-    return {{path, a, 0.0, state_, v + path.duration * a}, leaves};
+    if (path.duration > 0.0) keep_offset(path);
+    return {path, leaves};
 }
 
-/// Puts the end of a path along a flat support at the contact offset above its plane, also where the end lies a little
-/// beyond the rim.
-void ContactPhase::keep_offset(const ContactSurface& support, Path& path) const {
+/// Puts the end of a path along flat surfaces at the contact offset above all their planes, also where the end lies a
+/// little beyond a rim.
+void ContactPhase::keep_offset(Path& path) const {
     const SurfaceGeometry& geometry = step_.geometry();
-    const double side = dot(geometry.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
-    const double height = side * geometry.signed_distance_from(support.surface, path.end) - state_.radius;
-    const double lift = contact_offset(path.end) - height;
+    std::array<double, kMostHolding> lifts{};
+    double largest = 0.0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
+        const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
+        lifts[k] = contact_offset(path.end) - height;
+        largest = std::max(largest, std::fabs(lifts[k]));
+    }
     // Next to the origin a height above a large triangle can be all rounding.
-    const bool is_rounding = std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end);
-    if (is_rounding) path.end = flush_tiny(path.end + lift * support.normal);
+    if (largest > 0.5 * kCandidateSlack * max_abs(path.end)) return;
+    path.end = flush_tiny(path.end + shift_by(manifold_.normals(), {lifts.data(), manifold_.size()}));
 }
 
 /// Follows one arc.

@@ -33,8 +33,8 @@ public:
 
 private:
     /// What a particle follows in one contact interval on flat surfaces.
-    struct ContactFlight {
-        Flight flight;
+    struct ContactPath {
+        Path path;
         bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
     };
     /// Why an interval, or several, have ended before their time.
@@ -50,19 +50,22 @@ private:
     [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     void land(const Motion& arriving, double friction);
-    [[nodiscard]] Stop finish_cascade(ContactSurface support);
+    [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
     void settle(const Vec3& forces);
-    [[nodiscard]] Stop spend_cascade(ContactSurface& support, double left);
-    std::optional<Contact> follow_surface(ContactSurface support, bool kicked);
-    [[nodiscard]] Stop advance(ContactSurface& support, const Vec3& forces, bool has_forces, double pressure,
-                               double duration);
+    [[nodiscard]] Stop spend_cascade(const ContactSurface& support, double left);
+    std::optional<Contact> follow_surface(bool kicked);
+    [[nodiscard]] Stop advance(const Vec3& forces, bool has_forces, double pressure, double duration);
     [[nodiscard]] ContactInterval plan(const Vec3& pull, double pressure, double duration);
-    [[nodiscard]] Stop follow(const ContactInterval& interval, const ContactSurface& support, const Vec3& forces);
-    [[nodiscard]] ContactFlight flight_along(const ContactInterval& interval, const ContactSurface& support) const;
-    void keep_offset(const ContactSurface& support, Path& path) const;
+    [[nodiscard]] Stop follow(const ContactInterval& interval, const Vec3& forces);
+    [[nodiscard]] ContactPath path_along(const ContactInterval& interval) const;
+    void keep_offset(Path& path) const;
     [[nodiscard]] Stop follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration);
     [[nodiscard]] double arc_duration(const ContactArc& arc, bool& leaves) const;
     [[nodiscard]] double time_on_pieces(const ContactArc& arc, const Path& path) const;
+    void gather();
+    [[nodiscard]] bool lands() const;
+    void find_next_surfaces();
+    [[nodiscard]] bool is_pressed(const Vec3& forces) const;
     void find_held();
     void touch_held();
     void add_held(std::optional<Contact>& contact) const;

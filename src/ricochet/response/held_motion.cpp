@@ -72,7 +72,7 @@ public:
     [[nodiscard]] ContactInterval interval() {
         if (rests()) return {motion_, {}, {}, duration_, true, push_, {}};
         const double duration = time_to_turn();
-        if (aim_at_middle(duration)) solve();
+        if (duration > 0.0 && turns(duration)) solve_for_middle(duration);
         ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, push_, {}};
         stop(interval);
         return interval;
@@ -111,8 +111,8 @@ private:
         }
         for (const Resistance& r : resistances()) problem.add(resistance(r));
         // What slides can jam; what is at rest has an answer.
-        const bool slides =
-            std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
+        const bool slides = weight_ == 0.0 && std::any_of(resistances().begin(), resistances().end(),
+                                                          [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
         for (const double part : kFrictionParts) {
             if (problem.solve(effort, part * grip_.pressure)) break;
@@ -135,25 +135,38 @@ private:
         CoulombResistance result =
             sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_bend);
         if (r.kind != Kind::slip) result.rate = {};
+        const bool is_implicit = weight_ > 0.0 && r.speed > 0.0;
         if (r.kind == Kind::turning) {
             result.bound = surface.rolling_friction;
             result.direction = {turning_direction(first), turning_direction(second)};
         }
-        result.is_moving = r.speed > 0.0;
+        result.is_moving = r.speed > 0.0 && !is_implicit;
         if (result.is_moving) result.heading = {dot(r.heading, first), dot(r.heading, second)};
+        std::array<double, 2> own{dot(r.rate, first), dot(r.rate, second)};
         if (r.kind == Kind::spinning) {
             result.size = 1;
             result.bound = surface.spinning_friction / radius_;
             result.direction[0] = turning_direction(surface.normal);
             result.heading = {dot(r.heading, surface.normal) < 0.0 ? -1.0 : 1.0, 0.0};
+            own = {dot(r.rate, surface.normal), 0.0};
         }
+        for (std::size_t d = 0; d < result.size && is_implicit; ++d) result.rate[d] += weight_ * own[d];
         return result;
     }
 
     /// Its place stays: its centre does not move, and nothing changes its motion.
     [[nodiscard]] bool rests() const {
         if (motion_.velocity != Vec3{}) return false;
-        return length(acceleration_) + radius_ * length(spin_acceleration_) <= kHoldRounding * length(a_);
+        return length(acceleration_) + radius_ * length(spin_acceleration_) <= kHoldRounding * scale();
+    }
+
+    /// The largest of what the accelerations are made of, m/s^2.
+    [[nodiscard]] double scale() const {
+        double largest = length(a_);
+        for (const HoldingSurface& surface : surfaces_) {
+            largest = std::max({largest, std::fabs(surface.bend), length(surface.slip_bend)});
+        }
+        return largest;
     }
 
     /// What the forces change the rate of a resistance by, m/s^2.
@@ -181,21 +194,31 @@ private:
         return duration;
     }
 
-    /// Gives friction the directions of the middle of the interval. False when they are those that it has.
-    bool aim_at_middle(double duration) {
-        bool turns = false;
-        for (Resistance& r : resistances()) {
-            if (r.speed == 0.0) continue;
+    /// True when some friction has another direction in the middle of the interval.
+    [[nodiscard]] bool turns(double duration) {
+        return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
+            if (r.speed == 0.0) return false;
             const Vec3 change = change_of(r);
-            const double along = dot(change, r.heading);
-            // Half of the way where it is braked to a stop before the end.
-            const double whole = along < 0.0 ? std::min(duration, r.speed / -along) : duration;
-            const Vec3 across = (0.5 * whole) * (change - along * r.heading);
-            if (!(length(across) > kStraightHeading * r.speed)) continue;
-            r.heading = normalized((r.speed + 0.5 * whole * along) * r.heading + across);
-            turns = true;
+            const Vec3 across = (0.5 * duration) * (change - dot(change, r.heading) * r.heading);
+            return length(across) > kStraightHeading * r.speed;
+        });
+    }
+
+    /// Gives friction the directions of the middle of the interval, which it has part in: the implicit midpoint rule,
+    /// since a slow slip turns at once. Where something would stop before, as it is braked until then.
+    void solve_for_middle(double duration) {
+        for (const Resistance& r : resistances()) {
+            if (r.speed == 0.0) continue;
+            const double braking = -dot(change_of(r), r.heading);
+            if (r.speed < braking * duration) duration = r.speed / braking;
         }
-        return turns;
+        weight_ = 2.0 / duration;
+        solve();
+        weight_ = 0.0;
+        for (Resistance& r : resistances()) {
+            const Vec3 middle = r.rate + (0.5 * duration) * change_of(r);
+            if (r.speed > 0.0 && length(middle) > 0.0) r.heading = normalized(middle);
+        }
     }
 
     /// Ends the interval where something comes to a stop, which then sticks.
@@ -210,7 +233,7 @@ private:
             const Vec3 change = change_of(r);
             bool& sticks = is_stuck(interval.stuck[r.surface], r.kind);
             if (r.speed == 0.0) {
-                sticks = length(change) <= kHoldRounding * length(a_);
+                sticks = length(change) <= kHoldRounding * scale();
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
@@ -231,6 +254,7 @@ private:
     std::array<Vec3, kMostHolding> push_{};
     Vec3 acceleration_;
     Vec3 spin_acceleration_;
+    double weight_ = 0.0;  // 1/s, of the present rates in those that friction is against; 0: their directions count
 };
 
 bool ends_at_once(const ContactInterval& interval, double radius, double negligible_path) {

@@ -51,6 +51,7 @@ struct Simulation::Impl {
     void add(Particle&& particle);
     [[nodiscard]] BirthTest birth_test() const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
+    void hold_what_touches(std::size_t i);
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
     /// A sentence about those of the setup's particles that are in overlap; nothing without any.
     [[nodiscard]] std::optional<std::string> overlap_warning() const;

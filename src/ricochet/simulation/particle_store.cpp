@@ -110,9 +110,13 @@ void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, co
     particles_.held[i] = outcome.end == MoveEnd::held && may_be_held ? 1 : 0;
     particles_.frozen[i] = outcome.is_frozen() ? 1 : 0;
     particles_.absorbed[i] = outcome.end == MoveEnd::shattered ? kShattered : outcome.is_absorbed() ? 1 : 0;
+    set_contact(i, moved.contact);
+}
+
+void ParticleStore::set_contact(std::size_t i, const KeptContact& contact) {
     particles_.support[i].fill(kNoSupport);
-    std::copy_n(moved.contact.surfaces.begin(), moved.contact.count, particles_.support[i].begin());
-    particles_.cascade_left[i] = moved.contact.cascade_left;
+    std::copy_n(contact.surfaces.begin(), contact.count, particles_.support[i].begin());
+    particles_.cascade_left[i] = contact.cascade_left;
 }
 
 void ParticleStore::prefetch(std::size_t i) const {

@@ -32,6 +32,9 @@ public:
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
 
+    /// What it touches at the start of its next step.
+    void set_contact(std::size_t i, const KeptContact& contact);
+
     /// As what spheres in overlap collide.
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
     /// From now on it collides as its core.

@@ -93,10 +93,24 @@ void Simulation::Impl::add(Particle&& particle) {
     const std::size_t i = store.size() - 1;
     if (!response->keeps_sides()) {
         if (overlap) store.set_core(i, core_radius(*overlap, particles().position[i], particles().radius[i]));
+        if (!overlap && options.response == ResponseKind::exact && !options.flow) hold_what_touches(i);
     } else if (is_finite(particles().position[i])) {
         response->first_sides(particles().position[i], store.sides_of(i));
     }
     ++statistics.emitted;
+}
+
+/// What is born touching a surface begins in contact with it.
+void Simulation::Impl::hold_what_touches(std::size_t i) {
+    const Vec3& position = particles().position[i];
+    if (!is_finite(position) || max_abs(position) > kLargestCoordinate || particles().pinned[i] != 0) return;
+    KeptContact contact;
+    const double reach = kTouchingOffsets * contact_offset(position);
+    for (const SurfaceId surface : surfaces_touched(world, position, particles().radius[i], reach)) {
+        if (contact.count == contact.surfaces.size()) break;
+        if (!materials[world.material_of(surface)].is_random()) contact.surfaces[contact.count++] = surface;
+    }
+    store.set_contact(i, contact);
 }
 
 /// Points only: a sphere whose centre lies there is in overlap.

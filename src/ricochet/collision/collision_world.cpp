@@ -57,6 +57,14 @@ Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& tria
     return all;
 }
 
+/// True where a triangle's rim is as near as its face, to rounding, and the face is below: a sphere that rolls over the
+/// rim changes from one to the other there, not a part in 1e8 of its radius before.
+bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_from_rim) {
+    const double height = std::fabs(triangle.signed_distance(p));
+    if (height < (1.0 - kRimTie) * distance_from_rim || height == 0.0) return false;
+    return projects_into_triangle(p, triangle.a(), triangle.b(), triangle.c(), triangle.unit_normal());
+}
+
 }  // namespace
 
 CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin)
@@ -258,12 +266,12 @@ CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p
 
 CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, const Vec3& p) {
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, triangle.a(), triangle.b(), triangle.c());
-    if (closest.feature == TriangleFeature::kFace) {
-        const double distance = triangle.signed_distance(p);
-        const Vec3& normal = triangle.unit_normal();
-        return {distance < 0.0 ? -normal : normal, std::fabs(distance), true};
-    }
     const double distance = length(closest.offset);
+    if (closest.feature == TriangleFeature::kFace || is_over_rim(triangle, p, distance)) {
+        const double height = triangle.signed_distance(p);
+        const Vec3& normal = triangle.unit_normal();
+        return {height < 0.0 ? -normal : normal, std::fabs(height), true};
+    }
     return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false};
 }
 

@@ -45,6 +45,10 @@ inline constexpr int kCertificateDepth = 52;
 /// contact offset is felt as curvature. Larger: spheres that are nearly half behind a surface lose friction's torque.
 inline constexpr double kSmallestCore = 0x1p-20;
 
+/// Part of a distance by which a triangle's rim may be farther than its face and count as as near. Reason: some ten
+/// roundings. Smaller: the rim counts within 1e-8 of the distance inside. Larger: nothing, the exact test decides.
+inline constexpr double kRimTie = 0x1p-48;
+
 // Contact phases
 
 /// A surface counts as touched while the particle is within this many contact offsets of its plane, and sliding goes on
@@ -99,6 +103,11 @@ inline constexpr double kMaxHeadingTurn = 0.05;
 /// The same where the direction of slip turns within a small part of the step, since there is hardly any. Smaller: more
 /// segments for each reversal of a slip. Larger: a slip that begins depends on the time step.
 inline constexpr double kMostHeadingTurn = 0.5;
+
+/// Angle, rad, up to which friction turns in an interval of constant acceleration; beyond, and up to kMaxHeadingTurn, the
+/// motion is integrated as an arc is. Reason: the midpoint rule's error is the angle's square by 24. Smaller: more cost.
+/// Larger: where a slide ends depends on the time step.
+inline constexpr double kMostStraightTurn = 1e-3;
 
 /// Sine of the angle between friction's directions at the start and in the middle of a contact interval below which
 /// they are one. Smaller: rounding has the contact problem solved twice. Larger: slow turns add up.
@@ -309,6 +318,10 @@ inline constexpr double kDependentDirection = 0x1p-36;
 /// Speed along a surface's normal, as a part of the speed, from which the particle leaves it. Reason: some hundred
 /// roundings. Smaller: rounding lets particles lose what holds them. Larger: slow departures are held back.
 inline constexpr double kLeavingRounding = 0x1p-46;
+
+/// The same where a face has ended and its edge turns away from the motion by as much as the particle is beyond it.
+/// Smaller: rolling over an edge begins with a fall and a landing. Larger: slow departures are held back.
+inline constexpr double kTurningAway = 0x1p-24;
 
 /// Angle, rad, by which a particle turns around an edge or along a curved surface in one arc. Reason: the fifth power
 /// of it is the error of an arc. Smaller: more arcs (each costs a query). Larger: paths of swings and rolls are less

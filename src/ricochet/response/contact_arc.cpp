@@ -78,7 +78,10 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
                        const ContactManifold& manifold, const ContactManifold::Holding& materials,
                        const ArcStart& start)
     : geometry_(geometry), forces_(forces), particle_(particle), materials_(materials), start_(start) {
-    for (std::size_t k = 0; k < manifold.size(); ++k) surfaces_[k] = manifold[k].surface;
+    for (std::size_t k = 0; k < manifold.size(); ++k) {
+        surfaces_[k] = manifold[k].surface;
+        is_flat_[k] = manifold[k].flat;
+    }
     plan_ = plan_at({particle.position, {particle.velocity, start.spin}}, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
@@ -136,8 +139,11 @@ double ContactArc::longest() const {
 }
 
 /// A surface as it is seen from the side of the start: within an arc a point may come behind it by the arc's own error.
+/// A face goes on beyond its rim.
 CollisionWorld::Nearest ContactArc::nearest(std::size_t k, const Vec3& position) const {
-    CollisionWorld::Nearest nearest = geometry_.nearest(surfaces_[k], position);
+    CollisionWorld::Nearest nearest{geometry_.unit_normal_of(surfaces_[k], position),
+                                    geometry_.signed_distance_from(surfaces_[k], position), true};
+    if (!is_flat_[k]) nearest = geometry_.nearest(surfaces_[k], position);
     if (dot(nearest.normal, materials_.surfaces[k].normal) < 0.0) {
         nearest.normal = -nearest.normal;
         nearest.distance = -nearest.distance;

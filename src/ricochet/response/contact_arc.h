@@ -87,6 +87,7 @@ private:
     const Holding& materials_;
     ArcStart start_;
     std::array<SurfaceId, kMostHolding> surfaces_{};
+    std::array<bool, kMostHolding> is_flat_{};
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on

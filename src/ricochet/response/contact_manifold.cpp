@@ -83,15 +83,17 @@ void ContactManifold::touch_again(const KeptContact& kept, const TouchRule& rule
     }
 }
 
-void ContactManifold::drop_left() {
+void ContactManifold::drop_left(double part) {
     for (std::size_t k = count_; k-- > 0;) {
-        if (leaves(particle_.velocity, normals_[k])) remove(k);
+        if (dot(particle_.velocity, normals_[k]) > part * length(particle_.velocity)) remove(k);
     }
 }
 
-bool ContactManifold::has_point(const Vec3& normal) const {
-    return std::any_of(normals().begin(), normals().end(),
-                       [&](const Vec3& n) { return 1.0 - dot(n, normal) <= seam_turn(particle_); });
+std::optional<std::size_t> ContactManifold::point_of(const Vec3& normal) const {
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (1.0 - dot(normals_[k], normal) <= seam_turn(particle_)) return k;
+    }
+    return std::nullopt;
 }
 
 void ContactManifold::touch(SurfaceId surface, const TouchRule& rule) {

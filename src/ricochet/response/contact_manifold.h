@@ -51,10 +51,10 @@ public:
     void add(const ContactSurface& surface);
     void clear();
     void remove(std::size_t k);
-    /// Removes the contact points that the velocity leaves.
-    void drop_left();
-    /// True when a contact point has this normal, but for rounding.
-    [[nodiscard]] bool has_point(const Vec3& normal) const;
+    /// Removes the contact points that the velocity leaves by more than this part of it.
+    void drop_left(double part);
+    /// The number of the contact point that has this normal, but for rounding.
+    [[nodiscard]] std::optional<std::size_t> point_of(const Vec3& normal) const;
     /// Adds a surface, if it is touched.
     void touch(SurfaceId surface, const TouchRule& rule);
 

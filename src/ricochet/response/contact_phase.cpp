@@ -35,6 +35,7 @@ std::optional<Contact> ContactPhase::resume() {
     if (particle_.contact.count == 0) return std::nullopt;
     const KeptContact before = std::exchange(particle_.contact, KeptContact{});
     manifold_.touch_again(before, TouchRule::at(state_.position));
+    if (before.is_placed()) gather();
     const Vec3 forces = rules_.forces.acceleration(state_);
     auto support = hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
@@ -47,7 +48,7 @@ std::optional<Contact> ContactPhase::resume() {
         rest(forces, true);
         return std::nullopt;
     }
-    const Stop stop = spend_cascade(*support, before.cascade_left);
+    const Stop stop = spend_cascade(*support, std::max(0.0, before.cascade_left));
     return stop.is_early() ? stop.contact : follow_surface(false);
 }
 
@@ -145,11 +146,23 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
         pushes[number[0]] = std::max(0.0, pressing) * normals[0];
         return pushes;
     }
-    const Motion motion{along_all(state_.velocity, {normals.data(), count}), particle_.spin};
-    const ContactInterval interval =
-        plan_interval(motion, state_.radius, forces, {surfaces.data(), count}, Grip{}, 0.0);
+    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    const StuckSurfaces stuck = sticking(together);
+    const Motion motion = along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, stuck);
+    const ContactInterval interval = plan_interval(motion, state_.radius, forces, together, Grip{}, 0.0, stuck);
     for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
     return pushes;
+}
+
+/// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
+StuckSurfaces ContactPhase::sticking(std::span<const HoldingSurface> surfaces) const {
+    StuckSurfaces stuck{};
+    const double scale = length(state_.velocity) + state_.radius * length(particle_.spin);
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        const Vec3 slip = slip_velocity({state_.velocity, particle_.spin}, state_.radius, surfaces[k].normal);
+        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip) <= kSlowSlip * scale;
+    }
+    return stuck;
 }
 
 /// The surface of the manifold that the particle is pressed onto most.
@@ -198,13 +211,18 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
 /// Other surfaces of the manifold that will hold it are landed on as well: rattling between them would not end.
 void ContactPhase::settle(const Vec3& forces) {
     const auto pushes = pushes_together(forces, rules_.settings.resting_speed);
-    std::array<Vec3, kMostHolding> normals;
+    const ContactManifold::Holding holding = manifold_.holding(impact_);
+    std::array<HoldingSurface, kMostHolding> surfaces;
     std::size_t count = 0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (pushes[k] != Vec3{}) normals[count++] = manifold_[k].normal;
+        if (pushes[k] != Vec3{}) surfaces[count++] = holding.surfaces[k];
     }
     if (count < 2) return;
-    state_.velocity = project_off(along_all(state_.velocity, {normals.data(), count}), manifold_.normals());
+    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    const Motion motion =
+        along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
+    state_.velocity = project_off(motion.velocity, manifold_.normals());
+    particle_.spin = motion.spin;
 }
 
 /// Lets the time of a cascade pass, s; on average it presses with (1 + e) / 2 of the full force. What the step's end
@@ -266,7 +284,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
 void ContactPhase::find_next_surfaces() {
     manifold_.touch_again(TouchRule::at(state_.position));
     gather();
-    manifold_.drop_left();
+    manifold_.drop_left(kTurningAway);
 }
 
 /// True when something presses it onto one of the surfaces, or nothing pulls it off.
@@ -279,13 +297,16 @@ bool ContactPhase::is_pressed(const Vec3& forces) const {
 
 /// One interval of at most `duration` seconds on all that is touched.
 ContactPhase::Stop ContactPhase::advance(const Vec3& forces, bool has_forces, double pressure, double duration) {
-    manifold_.drop_left();
+    manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
     if (!bends()) {
         const ContactInterval interval = plan(forces, pressure, duration);
-        if (!interval.at_rest) return follow(interval, forces);
-        particle_.spin = interval.motion.spin;
-        return {std::nullopt, false, true};
+        if (interval.at_rest) {
+            particle_.spin = interval.motion.spin;
+            return {std::nullopt, false, true};
+        }
+        const bool is_arc = interval.turn > kMostStraightTurn && !interval.is_stiff;
+        if (!is_arc) return follow(interval, forces);
     }
     return follow_arc(forces, has_forces, pressure, duration);
 }
@@ -305,16 +326,21 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const V
     if (path.duration <= 0.0) return {std::nullopt, true, false};
     const double before = step_.remaining();
     const Vec3 turned = interval.motion.velocity - state_.velocity;
-    held_.clear();
-    for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
+    if (std::exchange(crosses_seam_, false)) {
+        find_held();
+    } else {
+        held_.clear();
+        for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
+    }
     Stop stop{step_.follow(path, held_), leaves_surface, false};
-    add_held(stop.contact);
     const double elapsed = before - step_.remaining();
     manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
     const Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
+    if (stop.contact && goes_on_along(*stop.contact)) stop.contact.reset();
+    add_held(stop.contact);
     return stop;
 }
 
@@ -324,7 +350,7 @@ ContactPhase::ContactPath ContactPhase::path_along(const ContactInterval& interv
     const Vec3& a = interval.acceleration;
     Path path = parabola_path(state_.position, v, a, interval.duration);
     if (!is_finite(path.end)) return {path, false};
-    const double slack = kTouchingOffsets * contact_offset(state_.position);
+    const double slack = kEdgeOffsets * contact_offset(state_.position);
     double on = interval.duration;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
@@ -372,10 +398,13 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     if (!(whole > 0.0)) return {std::nullopt, true, false};
     ContactArc::State end = arc.at(whole);
     Path path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, whole);
+    Vec3 turning_point = path.end;
     if (const double on = time_on_pieces(arc, path); on < whole) {
+        turning_point = path.position(on);
+        const bool is_off = has_left_face(turning_point);
         end = arc.at(on);
         path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, on);
-        stop.left_surface = false;
+        stop.left_surface = is_off;
     }
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
@@ -388,8 +417,9 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     manifold_.load(arc.plan());
     manifold_.record_push(state_.velocity - velocity_before - (0.5 * elapsed) * (forces + forces_after), elapsed,
                           impact_);
+    if (stop.contact && goes_on_along(*stop.contact)) stop.contact.reset();
     add_held(stop.contact);
-    if (!stop.is_early()) touch_held();
+    if (!stop.is_early()) touch_held(turning_point);
     return stop;
 }
 
@@ -415,14 +445,19 @@ double ContactPhase::time_on_pieces(const ContactArc& arc, const Path& path) con
     const double reach = kTouchingOffsets * contact_offset(state_.position);
     const auto has_passed = [&](double t) {
         const Vec3 position = path.position(t);
-        double gap = std::numeric_limits<double>::infinity();
+        std::array<CollisionWorld::Nearest, kMostHolding> points;
         for (std::size_t k = 0; k < manifold_.size(); ++k) {
             const SurfaceId surface = manifold_[k].surface;
-            if (arc.feature(surface, position) != arc.feature(surface, state_.position)) return true;
-            gap = std::min(gap, geometry.nearest(surface, position).distance);
+            points[k] = geometry.nearest(surface, position);
+            if (manifold_[k].flat ? is_beyond_rim(surface, position)
+                                  : arc.feature(surface, position) != arc.feature(surface, state_.position)) {
+                return true;
+            }
         }
-        return std::any_of(held_.begin(), held_.end(), [&](SurfaceId surface) {
-            return geometry.nearest(surface, position).distance < gap - reach;
+        return std::any_of(held_points_.begin(), held_points_.end(), [&](const HeldPoint& other) {
+            const CollisionWorld::Nearest nearest = geometry.nearest(other.surface, position);
+            const CollisionWorld::Nearest& point = points[other.point];
+            return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
         });
     };
     if (!has_passed(path.duration)) return path.duration;
@@ -435,23 +470,58 @@ double ContactPhase::time_on_pieces(const ContactArc& arc, const Path& path) con
     return high;
 }
 
+/// True where a face of the manifold has ended.
+bool ContactPhase::has_left_face(const Vec3& position) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (manifold_[k].flat && is_beyond_rim(manifold_[k].surface, position)) return true;
+    }
+    return false;
+}
+
+/// True where the foot of a position on a face's plane is so far beyond the face that it holds the particle no more.
+bool ContactPhase::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
+    const SurfaceGeometry& geometry = step_.geometry();
+    const Vec3 height = geometry.signed_distance_from(surface, position) * geometry.unit_normal_of(surface, position);
+    return geometry.nearest(surface, position - height).distance > kEdgeOffsets * contact_offset(position);
+}
+
 /// All surfaces that are touched at the points of the manifold: the triangles around an edge or a vertex.
 void ContactPhase::find_held() {
     held_.clear();
+    held_points_.clear();
+    if (state_.radius > 0.0) {
+        const double reach = state_.radius + kTouchingOffsets * contact_offset(state_.position);
+        step_.visit_near([&](SurfaceId surface) {
+            const CollisionWorld::Nearest nearest = step_.geometry().nearest(surface, state_.position);
+            const auto point = manifold_.point_of(nearest.normal);
+            if (nearest.distance > reach || !point || manifold_[*point].surface == surface) return;
+            held_points_.push_back({surface, *point});
+        });
+    }
     for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
-    if (state_.radius == 0.0) return;
-    const double reach = state_.radius + kTouchingOffsets * contact_offset(state_.position);
-    step_.visit_near([&](SurfaceId surface) {
-        const CollisionWorld::Nearest nearest = step_.geometry().nearest(surface, state_.position);
-        if (nearest.distance > reach || std::find(held_.begin(), held_.end(), surface) != held_.end()) return;
-        if (manifold_.has_point(nearest.normal)) held_.push_back(surface);
-    });
+    for (const HeldPoint& other : held_points_) held_.push_back(other.surface);
 }
 
-/// The manifold as it is touched now, of what was touched before.
-void ContactPhase::touch_held() {
+/// The manifold as it is touched now, of what was touched before; and at a point on the way where another part began.
+void ContactPhase::touch_held(const Vec3& turning_point) {
     manifold_.touch_again(TouchRule::at(state_.position));
     for (const SurfaceId surface : held_) manifold_.touch(surface, TouchRule::at(state_.position));
+    for (const HeldPoint& other : held_points_) {
+        const CollisionWorld::Nearest nearest = step_.geometry().nearest(other.surface, turning_point);
+        if (nearest.flat) manifold_.add({other.surface, nearest.normal, true});
+    }
+}
+
+/// True for a contact with what continues the surfaces that hold the particle, such as the next triangle of a plane:
+/// no impact. They are among what holds it from now on.
+bool ContactPhase::goes_on_along(const Contact& contact) {
+    const bool all = std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return manifold_.point_of(surface.normal).has_value();
+    });
+    if (!all || ++seams_ > kMostIntervals) return false;
+    for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
+    crosses_seam_ = true;
+    return true;
 }
 
 /// What holds the particle takes part in an impact on something else.

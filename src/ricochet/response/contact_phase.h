@@ -45,9 +45,16 @@ private:
         [[nodiscard]] bool is_early() const { return contact || left_surface; }
     };
 
+    /// A surface that is touched at a contact point of the manifold.
+    struct HeldPoint {
+        SurfaceId surface = 0;
+        std::size_t point = 0;
+    };
+
     [[nodiscard]] bool rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const;
     [[nodiscard]] std::optional<ContactSurface> support_of(const Vec3& forces, double fastest) const;
     [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest) const;
+    [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     void land(const Motion& arriving, double friction);
     [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
@@ -66,8 +73,11 @@ private:
     [[nodiscard]] bool lands() const;
     void find_next_surfaces();
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
+    [[nodiscard]] bool has_left_face(const Vec3& position) const;
+    [[nodiscard]] bool is_beyond_rim(SurfaceId surface, const Vec3& position) const;
     void find_held();
-    void touch_held();
+    void touch_held(const Vec3& turning_point);
+    [[nodiscard]] bool goes_on_along(const Contact& contact);
     void add_held(std::optional<Contact>& contact) const;
     [[nodiscard]] bool bends() const;
     [[nodiscard]] double pressing_on(const ContactSurface& surface, const Vec3& forces, const Vec3& velocity) const;
@@ -82,7 +92,10 @@ private:
     ForceInput& state_;
     ImpactAnswer& impact_;
     ContactManifold manifold_;
-    std::vector<SurfaceId> held_;         // surfaces that are touched where the manifold's are
+    std::vector<SurfaceId> held_;         // surfaces that are touched, for paths along them
+    std::vector<HeldPoint> held_points_;  // those of them that are touched where the manifold's are
+    bool crosses_seam_ = false;           // the next interval begins there
+    int seams_ = 0;                       // at which the step has met the next part of a surface
     KeptContact began_;                   // what the particle touched at the start of the step
     bool began_still_;                    // its place stayed then
     Vec3 began_spin_;                     // rad/s

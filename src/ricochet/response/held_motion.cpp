@@ -12,6 +12,9 @@ namespace {
 /// Parts of the friction that are tried where the whole has no answer: a sphere that something jams in.
 constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
 
+/// What friction changes a sphere's slip by, over what it accelerates it with.
+constexpr double kSlipAcceleration = 3.5;
+
 /// Plans that end at once, one after the other, before the last counts.
 constexpr int kMostPlans = 4;
 
@@ -70,11 +73,13 @@ public:
     }
 
     [[nodiscard]] ContactInterval interval() {
-        if (rests()) return {motion_, {}, {}, duration_, true, push_, {}};
+        if (rests()) return {motion_, {}, {}, duration_, true, 0.0, false, push_, {}};
         const double duration = time_to_turn();
-        if (duration > 0.0 && turns(duration)) solve_for_middle(duration);
-        ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, push_, {}};
+        const double turn = turn_in(duration);
+        if (turn > kStraightHeading) solve_for_middle(duration);
+        ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, turn, false, push_, {}};
         stop(interval);
+        interval.is_stiff = is_stiff(interval.duration);
         return interval;
     }
 
@@ -194,13 +199,24 @@ private:
         return duration;
     }
 
-    /// True when some friction has another direction in the middle of the interval.
-    [[nodiscard]] bool turns(double duration) {
-        return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
-            if (r.speed == 0.0) return false;
+    /// rad, by which some friction turns; not more than is left of it where it is braked to a stop.
+    [[nodiscard]] double turn_in(double duration) {
+        double turn = 0.0;
+        for (const Resistance& r : resistances()) {
+            if (r.speed == 0.0) continue;
             const Vec3 change = change_of(r);
-            const Vec3 across = (0.5 * duration) * (change - dot(change, r.heading) * r.heading);
-            return length(across) > kStraightHeading * r.speed;
+            turn = std::max(turn, duration * length(change - dot(change, r.heading) * r.heading) / r.speed);
+        }
+        return turn;
+    }
+
+    /// Methods with stages do not follow what friction turns against faster than a step.
+    [[nodiscard]] bool is_stiff(double duration) {
+        return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
+            const HoldingSurface& surface = surfaces_[r.surface];
+            const double most =
+                kSlipAcceleration * grip_.pressure * surface.friction * dot(push_[r.surface], surface.normal);
+            return r.kind == Resistance::Kind::slip && r.speed > 0.0 && most * duration > r.speed;
         });
     }
 

@@ -40,6 +40,8 @@ struct ContactInterval {
     Vec3 spin_acceleration;  ///< rad/s^2
     double duration = 0.0;   ///< s; shorter than asked for where slip or turning ends within, or friction turns much
     bool at_rest = false;    ///< for the whole duration its place stays, and its spin with it
+    double turn = 0.0;       ///< rad, by which friction turns in it
+    bool is_stiff = false;   ///< friction could end a slip, if it were against it, before the interval ends
     std::array<Vec3, kMostHolding> push{};  ///< force over the mass with which each surface holds it, m/s^2
     StuckSurfaces stuck{};                  ///< from the end on
 };

@@ -46,6 +46,10 @@ struct KeptContact {
     std::uint8_t count = 0;               ///< 0: it flies
     double cascade_left = 0.0;            ///< s of a bounce cascade that the end of the step has cut in two
 
+    /// Of a particle that was placed where it touches these, and perhaps more.
+    static constexpr double kPlaced = -1.0;
+    [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
+
     friend bool operator==(const KeptContact&, const KeptContact&) = default;
 };
 

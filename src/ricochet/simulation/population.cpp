@@ -107,8 +107,11 @@ void Simulation::Impl::hold_what_touches(std::size_t i) {
     KeptContact contact;
     const double reach = kTouchingOffsets * contact_offset(position);
     for (const SurfaceId surface : surfaces_touched(world, position, particles().radius[i], reach)) {
-        if (contact.count == contact.surfaces.size()) break;
-        if (!materials[world.material_of(surface)].is_random()) contact.surfaces[contact.count++] = surface;
+        // What chance answers, answers each touch.
+        if (materials[world.material_of(surface)].is_random()) return;
+        contact.surfaces[0] = surface;
+        contact.count = 1;
+        contact.cascade_left = KeptContact::kPlaced;
     }
     store.set_contact(i, contact);
 }

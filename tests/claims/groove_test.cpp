@@ -131,6 +131,25 @@ std::vector<ColliderDescription> walls_of_planes(const Groove& g, const GrooveFr
     return {plane_collider({}, n[0]), plane_collider({}, n[1])};
 }
 
+/// Both walls as one mesh of strips along the groove, 3 m wide (a sphere of 0.1 m touches within 1.2 m of the bottom).
+std::vector<ColliderDescription> walls_of_triangles(const Groove& g, const GrooveFrame& frame) {
+    constexpr int kCells = 12;
+    const auto n = wall_normals(g, frame);
+    const std::array<Vec3, 2> up{3.0 * cross(frame.d, n[0]), -3.0 * cross(frame.d, n[1])};
+    TriangleMesh mesh;
+    for (int i = 0; i <= kCells; ++i) {
+        const Vec3 bottom = (-2.0 + i) * frame.d;
+        for (const Vec3& v : {bottom + up[0], bottom, bottom + up[1]}) mesh.vertices.push_back(v);
+    }
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+        for (std::uint32_t k = 3 * i; k < 3 * i + 2; ++k) {
+            mesh.triangles.push_back({k, k + 1, k + 3});
+            mesh.triangles.push_back({k + 1, k + 4, k + 3});
+        }
+    }
+    return {mesh_collider(std::move(mesh))};
+}
+
 using MakeWalls = std::vector<ColliderDescription> (*)(const Groove&, const GrooveFrame&);
 
 /// A sphere in a groove, its centre where it touches both walls, up to rounding.
@@ -149,14 +168,80 @@ ContactScene in_groove(const Groove& g, const GrooveFrame& frame, std::vector<Co
 
 constexpr std::array kSteps{0.001, 0.02, 0.05, 0.1};
 
+/// Calls visit(groove) for walls of 5 to 85 degrees and slopes of 2 to 70 degrees.
+template <class Visit>
+void for_every_groove(Visit&& visit) {
+    for (const double slope : {2.0, 20.0, 45.0, 70.0}) {
+        for (const double a : {5.0, 25.0, 45.0, 65.0, 85.0}) {
+            for (double b = 5.0; b <= a; b += 20.0) {
+                SCOPED_TRACE("walls at " + std::to_string(a) + " and " + std::to_string(b) + ", slope " +
+                             std::to_string(slope));
+                visit(Groove{radians(a), radians(b), radians(slope)});
+            }
+        }
+    }
+}
+
 /// Bound of the contract, relative to the distance: parabolas, so any time step gives rounding only.
 constexpr double kBound = 1e-9;
+
+void expect_closed_form_from_rest(const Groove& g, MakeWalls make_walls, double friction) {
+    const GrooveFrame frame(g.slope);
+    const double expected = GrooveReference(g, friction, 0.0, {}).distance_after(1.0);
+    for (const double step : kSteps) {
+        const ContactScene scene = in_groove(g, frame, make_walls(g, frame), friction, step);
+        const double reached = dot(end_of(scene).position - scene.particle.position, frame.d);
+        EXPECT_NEAR(reached / expected, 1.0, kBound) << "friction " << friction << ", steps of " << step << " s";
+    }
+}
 
 class GrooveGrid : public ::testing::TestWithParam<std::pair<const char*, MakeWalls>> {};
 
 INSTANTIATE_TEST_SUITE_P(Of, GrooveGrid,
-                         ::testing::Values(std::pair<const char*, MakeWalls>{"Planes", walls_of_planes}),
+                         ::testing::Values(std::pair<const char*, MakeWalls>{"Planes", walls_of_planes},
+                                           std::pair<const char*, MakeWalls>{"Triangles", walls_of_triangles}),
                          [](const auto& walls) { return walls.param.first; });
+
+TEST_P(GrooveGrid, LetsSpheresRollFromRestWhereBothWallsGrip) {
+    for_every_groove([&](const Groove& g) {
+        for (const double factor : {1.05, 2.0}) {
+            expect_closed_form_from_rest(g, GetParam().second, factor * g.rolling_limit());
+        }
+    });
+}
+
+TEST_P(GrooveGrid, LetsSpheresSlipFromRestWhereAWallDoesNotGrip) {
+    for_every_groove([&](const Groove& g) {
+        for (const double factor : {0.0, 0.2, 0.5, 0.95}) {
+            expect_closed_form_from_rest(g, GetParam().second, factor * g.rolling_limit());
+        }
+    });
+}
+
+// Thrown along the groove without spin, or with the spin of one that rolls the other way: each wall grips in its time.
+TEST_P(GrooveGrid, SlowsSpheresUntilTheyRoll) {
+    for_every_groove([&](const Groove& g) {
+        const GrooveFrame frame(g.slope);
+        const auto normals = wall_normals(g, frame);
+        for (const double friction : {0.1, 0.6}) {
+            for (const Vec3& spin : {Vec3{}, 12.0 * frame.s + 3.0 * frame.u}) {
+                const double speed = 0.8;
+                const auto slip = [&](const Vec3& n) { return speed + dot(cross(spin, -kSphereRadius * n), frame.d); };
+                const double expected =
+                    GrooveReference(g, friction, speed, {slip(normals[0]), slip(normals[1])}).distance_after(0.5);
+                for (const double step : {0.001, 0.05, 0.1}) {
+                    ContactScene scene = in_groove(g, frame, GetParam().second(g, frame), friction, step);
+                    scene.duration = 0.5;
+                    scene.particle.velocity = speed * frame.d;
+                    scene.particle.spin = spin;
+                    const double reached = dot(end_of(scene).position - scene.particle.position, frame.d);
+                    EXPECT_NEAR(reached, expected, kBound * std::max(0.1, std::fabs(expected)))
+                        << "friction " << friction << ", steps of " << step << " s, spin " << spin.x;
+                }
+            }
+        }
+    });
+}
 
 TEST_P(GrooveGrid, LetsSpheresThatRollOnTheLevelRollOn) {
     for (const double degrees : {5.0, 45.0, 85.0}) {

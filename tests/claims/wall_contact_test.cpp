@@ -116,8 +116,10 @@ struct Case {
 };
 
 TEST(AWallWithFriction, BrakesASphereThatRollsAlongItAsTheEquationsSay) {
-    for (const Case& c : {Case{0.3, 0.3, 0.01, {0, 1, 0}}, Case{0.3, 0.2, 1.0, {0, 1, 0}},
-                          Case{0.5, 0.5, 8.0, {0, 1, 0}}, Case{0.1, 0.6, 3.0, {0, 0.5, 2}}}) {
+    for (const Case& c :
+         {Case{0.3, 0.3, 0.01, {0, 1, 0}}, Case{0.3, 0.2, 1.0, {0, 1, 0}}, Case{0.5, 0.5, 8.0, {0, 1, 0}},
+          Case{0.1, 0.6, 3.0, {0, 0.5, 2}}, Case{0.2, 0.1, 3.0, {0.7, -0.4, 0.3}}, Case{0.1, 0.6, 3.0, {-1, 0.5, 2}},
+          Case{0.6, 0.6, 9.0, {1, 3, -4}}}) {
         ContactScene scene = along_the_wall(c.floor_friction, c.wall_friction, c.press, 0.01);
         scene.particle.spin = c.spin / kSphereRadius;
         for (const double time : {0.1, 2.0}) {

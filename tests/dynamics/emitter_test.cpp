@@ -413,7 +413,9 @@ TEST(EmitterBirthTest, MovesOnlyWhatItRefusesAndKeepsAllElse) {
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < after.size(); ++i) {
         ASSERT_TRUE(is_left(after[i]));
-        if (is_left(before[i])) ASSERT_EQ(after[i].position, before[i].position);
+        if (is_left(before[i])) {
+            ASSERT_EQ(after[i].position, before[i].position);
+        }
         ASSERT_EQ(after[i].velocity, before[i].velocity);
         ASSERT_EQ(after[i].mass, before[i].mass);
         ASSERT_EQ(after[i].radius, before[i].radius);

@@ -104,9 +104,13 @@ inline constexpr double kMaxHeadingTurn = 0.05;
 /// segments for each reversal of a slip. Larger: a slip that begins depends on the time step.
 inline constexpr double kMostHeadingTurn = 0.5;
 
-/// Angle, rad, up to which friction turns in an interval of constant acceleration; beyond, and up to kMaxHeadingTurn, the
-/// motion is integrated as an arc is. Reason: the midpoint rule's error is the angle's square by 24. Smaller: more cost.
-/// Larger: where a slide ends depends on the time step.
+/// Part of a slip that turns by which it may change in one arc. Reason: as kMaxArcAngle. Smaller: more arcs at the end
+/// of every slip. Larger: where a slide ends depends on the time step.
+inline constexpr double kMaxSlipChange = 0.1;
+
+/// Angle, rad, up to which friction turns in an interval of constant acceleration; beyond, and up to kMaxHeadingTurn,
+/// the motion is integrated as an arc is. Reason: the midpoint rule's error is the angle's square by 24. Smaller: more
+/// cost. Larger: where a slide ends depends on the time step.
 inline constexpr double kMostStraightTurn = 1e-3;
 
 /// Sine of the angle between friction's directions at the start and in the middle of a contact interval below which

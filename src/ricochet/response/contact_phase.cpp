@@ -269,6 +269,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
         if (stop.left_surface) {
             find_next_surfaces();
             if (manifold_.empty() || lands()) return std::nullopt;
+            state_.velocity = along_all(state_.velocity, manifold_.normals());
             continue;
         }
         if (stop.rests) {

@@ -12,6 +12,9 @@ namespace {
 /// Parts of the friction that are tried where the whole has no answer: a sphere that something jams in.
 constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
 
+/// Stages of the Runge-Kutta method damp what decays up to 2.78 times as fast as a step.
+constexpr double kStageLimit = 2.5;
+
 /// What friction changes a sphere's slip by, over what it accelerates it with.
 constexpr double kSlipAcceleration = 3.5;
 
@@ -74,8 +77,12 @@ public:
 
     [[nodiscard]] ContactInterval interval() {
         if (rests()) return {motion_, {}, {}, duration_, true, 0.0, false, push_, {}};
-        const double duration = time_to_turn();
-        const double turn = turn_in(duration);
+        double duration = time_to_turn();
+        double turn = turn_in(duration);
+        if (turn > kMostStraightTurn) {
+            duration = std::min(duration, time_to_change());
+            turn = turn_in(duration);
+        }
         if (turn > kStraightHeading) solve_for_middle(duration);
         ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, turn, false, push_, {}};
         stop(interval);
@@ -191,12 +198,28 @@ private:
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
             const Vec3 change = change_of(r);
-            const double turning = length(change - dot(change, r.heading) * r.heading);
-            if (turning * duration <= kMaxHeadingTurn * r.speed) continue;
-            const double least = std::min(grip_.shortest, kMostHeadingTurn * r.speed / turning);
-            duration = std::min(duration, std::max(least, kMaxHeadingTurn * r.speed / turning));
+            const double braking = -dot(change, r.heading);
+            const double turning = length(change + braking * r.heading);
+            const auto until = [&](double angle) {
+                const double rate = turning + angle * braking;  // what is braked turns ever faster
+                return rate > 0.0 ? angle * r.speed / rate : duration_;
+            };
+            const bool is_straight = turning <= kStraightHeading * std::max(braking, 0.0);
+            if (is_straight || until(kMaxHeadingTurn) >= duration) continue;
+            const double least = std::min(grip_.shortest, until(kMostHeadingTurn));
+            duration = std::min(duration, std::max(least, until(kMaxHeadingTurn)));
         }
         return duration;
+    }
+
+    /// s, until some slip has changed by kMaxSlipChange; not less than Grip::shortest.
+    [[nodiscard]] double time_to_change() {
+        double duration = duration_;
+        for (const Resistance& r : resistances()) {
+            const double change = length(change_of(r));
+            if (r.speed > 0.0 && change > 0.0) duration = std::min(duration, kMaxSlipChange * r.speed / change);
+        }
+        return std::max(duration, grip_.shortest);
     }
 
     /// rad, by which some friction turns; not more than is left of it where it is braked to a stop.
@@ -205,7 +228,9 @@ private:
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
             const Vec3 change = change_of(r);
-            turn = std::max(turn, duration * length(change - dot(change, r.heading) * r.heading) / r.speed);
+            const double braking = -dot(change, r.heading);
+            const double moving = braking * duration > r.speed ? r.speed / braking : duration;
+            turn = std::max(turn, moving * length(change + braking * r.heading) / r.speed);
         }
         return turn;
     }
@@ -216,7 +241,7 @@ private:
             const HoldingSurface& surface = surfaces_[r.surface];
             const double most =
                 kSlipAcceleration * grip_.pressure * surface.friction * dot(push_[r.surface], surface.normal);
-            return r.kind == Resistance::Kind::slip && r.speed > 0.0 && most * duration > r.speed;
+            return r.kind == Resistance::Kind::slip && r.speed > 0.0 && most * duration > kStageLimit * r.speed;
         });
     }
 

@@ -216,13 +216,18 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
         largest = std::max({largest, max_abs(segment.from), max_abs(segment.to)});
     const double least = step.radius - sphere_tolerance(step.radius, largest);
     if (!(least > 0.0)) return;
-    std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> first;
+    struct Name {
+        std::uint32_t collider;
+        std::optional<std::uint32_t> triangle;
+        [[nodiscard]] auto order() const { return std::pair(collider, triangle.value_or(0)); }
+    };
+    std::optional<Name> first;
     visit_nearer(step.to, least, [&](std::uint32_t collider, std::optional<std::uint32_t> triangle) {
-        const auto name = std::pair(collider, triangle);
-        if (!first || name < *first) first = name;
+        const Name name{collider, triangle};
+        if (!first || name.order() < first->order()) first = name;
     });
     if (first && particle.has_been_free) {
-        judged.report(ViolationKind::overlap, step.to, step.time, first->first, first->second);
+        judged.report(ViolationKind::overlap, step.to, step.time, first->collider, first->triangle);
     }
     particle.has_been_free = !first;
 }

@@ -172,7 +172,8 @@ void print_report(const RunSummary& summary, const std::string& output) {
     print_warnings(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;
-        fmt::print("  verified by independent exact checks: {} violations{}\n", *summary.leaks,
+        fmt::print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
+                   summary.energy_violations.value_or(0),
                    all_judged ? "" : "; overlaps from birth count once the sphere has been free");
     }
     fmt::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
@@ -180,8 +181,9 @@ void print_report(const RunSummary& summary, const std::string& output) {
 
 // Lists what a verified run found wrong. Returns whether there was anything.
 bool print_violations(const Simulation& simulation) {
-    const auto lines =
-        cli::violation_lines(simulation.violations(), simulation.statistics().violations, simulation.colliders());
+    const SimulationStatistics& statistics = simulation.statistics();
+    const auto lines = cli::violation_lines(
+        simulation.violations(), statistics.violations + statistics.energy_violations, simulation.colliders());
     for (const std::string& line : lines) fmt::print(stderr, "{}\n", line);
     return !lines.empty();
 }
@@ -272,7 +274,8 @@ void add_options(cli::Command command, RunArguments& a) {
     command.add_flag("--quiet", a.quiet, "No progress, no report");
     command.add_flag(
         "--verify", a.verify,
-        "Also check every segment, side and distance by independent exact code; leaks are listed and end with 1");
+        "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
+        "with 1");
     command.add_flag("--resume", a.resume,
                      "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
 }

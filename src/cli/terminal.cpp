@@ -79,14 +79,17 @@ const char* text_of(ViolationKind kind) {
             return "is on another side than at birth of";
         case ViolationKind::overlap:
             return "overlaps";
+        case ViolationKind::energy:
+            return "has gained energy from surfaces";
     }
     return "";
 }
 
 std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {
-    std::string line = fmt::format("leak: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}",
-                                   violation.particle, violation.position.x, violation.position.y, violation.position.z,
-                                   violation.time, text_of(violation.kind));
+    std::string line = fmt::format("{}: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}",
+                                   violation.kind == ViolationKind::energy ? "energy" : "leak", violation.particle,
+                                   violation.position.x, violation.position.y, violation.position.z, violation.time,
+                                   text_of(violation.kind));
     if (violation.collider) line += fmt::format(" collider \"{}\"", colliders[*violation.collider].name);
     if (violation.triangle) line += fmt::format(", triangle {}", *violation.triangle);
     return line;
@@ -100,7 +103,7 @@ std::vector<std::string> violation_lines(std::span<const Violation> violations, 
     for (const Violation& violation : violations.first(std::min(violations.size(), kMostListedViolations))) {
         lines.push_back(line_of(violation, colliders));
     }
-    if (count > lines.size()) lines.push_back(fmt::format("leak: and {} more", count - lines.size()));
+    if (count > lines.size()) lines.push_back(fmt::format("violations: and {} more", count - lines.size()));
     return lines;
 }
 

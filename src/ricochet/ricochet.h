@@ -8,6 +8,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/byte_stream.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/motion_part.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/segment.h"

@@ -70,17 +70,18 @@ struct SimulationStatistics {
     std::uint64_t asleep = 0;              ///< of the resting ones those that cost nothing
     std::uint64_t started_inside = 0;      ///< particles born on a surface or, as spheres, overlapping one
     std::uint64_t started_in_overlap = 0;  ///< of them the spheres
-    std::uint64_t stayed = 0;          ///< impacts after which no certified position nearer to the surface was found
-    std::uint64_t lost_impulses = 0;   ///< impulses too large for the per-triangle totals
-    std::uint64_t violations = 0;      ///< what options.verify found wrong
-    std::uint64_t trials = 0;          ///< states that a response tested for collision or penetration; 0 for exact
-    std::uint64_t penetrations = 0;    ///< particle-steps in which a particle was seen behind a surface
-    double penetration_sum = 0.0;      ///< m, sum of their depths, before anything put them right
-    double penetration_deepest = 0.0;  ///< m
-    std::uint64_t springs_broken = 0;  ///< stretched beyond their limit
-    std::uint64_t springs_lost = 0;    ///< removed because a particle at an end was gone
-    std::uint64_t unsolved_steps = 0;  ///< steps whose implicit equations were not solved to the tolerance
-    std::uint64_t frozen = 0;          ///< particles stopped because their state was not finite or beyond 1e75
+    std::uint64_t stayed = 0;             ///< impacts after which no certified position nearer to the surface was found
+    std::uint64_t lost_impulses = 0;      ///< impulses too large for the per-triangle totals
+    std::uint64_t violations = 0;         ///< what options.verify found wrong with positions and ways
+    std::uint64_t energy_violations = 0;  ///< and with energies
+    std::uint64_t trials = 0;             ///< states that a response tested for collision or penetration; 0 for exact
+    std::uint64_t penetrations = 0;       ///< particle-steps in which a particle was seen behind a surface
+    double penetration_sum = 0.0;         ///< m, sum of their depths, before anything put them right
+    double penetration_deepest = 0.0;     ///< m
+    std::uint64_t springs_broken = 0;     ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;       ///< removed because a particle at an end was gone
+    std::uint64_t unsolved_steps = 0;     ///< steps whose implicit equations were not solved to the tolerance
+    std::uint64_t frozen = 0;             ///< particles stopped because their state was not finite or beyond 1e75
 };
 
 /// Per-triangle totals of one mesh collider, since the start.
@@ -193,7 +194,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& warnings() const;
 
     /// What options.verify found wrong, in the order of steps and particles; the first kMostViolations of them. All are
-    /// counted in statistics().violations.
+    /// counted in statistics().violations and energy_violations.
     [[nodiscard]] const std::vector<Violation>& violations() const;
     static constexpr std::size_t kMostViolations = 1000;
     /// All that options.verify found wrong in the last step, in the same order.

@@ -26,7 +26,7 @@ TEST(ViolationReport, ListsTwentyAndCountsTheRest) {
     const std::vector<Violation> violations(25);
     const auto lines = violation_lines(violations, 5000, kColliders);
     ASSERT_EQ(lines.size(), 21U);
-    EXPECT_EQ(lines.back(), "leak: and 4980 more");
+    EXPECT_EQ(lines.back(), "violations: and 4980 more");
     EXPECT_EQ(violation_lines({violations.data(), 20}, 20, kColliders).size(), 20U);
     EXPECT_TRUE(violation_lines({}, 0, kColliders).empty());
 }

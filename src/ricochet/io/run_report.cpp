@@ -171,7 +171,10 @@ RunSummary summarize(const Simulation& simulation) {
     summary.simulated_time = simulation.time();
     summary.particles_alive = simulation.particles().size();
     summary.statistics = simulation.statistics();
-    if (simulation.options().verify) summary.leaks = simulation.statistics().violations;
+    if (simulation.options().verify) {
+        summary.leaks = simulation.statistics().violations;
+        summary.energy_violations = simulation.statistics().energy_violations;
+    }
     summary.kinetic_energy = simulation.kinetic_energy();
     summary.potential_energy = simulation.potential_energy();
     summary.state_hash = simulation.state_hash();
@@ -198,7 +201,9 @@ std::string summary_text(const RunSummary& summary) {
     json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;
     add_statistics(json, summary.statistics);
-    json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);  // known only to a run that verifies itself
+    // Known only to a run that verifies itself.
+    json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);
+    json["energy_violations"] = summary.energy_violations ? Json(*summary.energy_violations) : Json(nullptr);
     json["kinetic_energy"] = summary.kinetic_energy;
     json["potential_energy"] = summary.potential_energy ? Json(*summary.potential_energy) : Json(nullptr);
     json["state_hash"] = fmt::format("{:016x}", summary.state_hash);

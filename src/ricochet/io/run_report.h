@@ -65,9 +65,10 @@ struct RunSummary {
     std::optional<std::string> diverged;  ///< why the run stopped, where its numbers became nonsense
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
-    std::optional<std::uint64_t> leaks;      ///< violations that a verified run found; nothing without --verify
-    double kinetic_energy = 0.0;             ///< J
-    std::optional<double> potential_energy;  ///< J; nothing where a force has no potential
+    std::optional<std::uint64_t> leaks;              ///< violations that a verified run found; nothing without --verify
+    std::optional<std::uint64_t> energy_violations;  ///< the same of energies
+    double kinetic_energy = 0.0;                     ///< J
+    std::optional<double> potential_energy;          ///< J; nothing where a force has no potential
     std::uint64_t state_hash = 0;
     std::uint64_t peak_memory_bytes = 0;
     std::vector<ColliderSummary> colliders;

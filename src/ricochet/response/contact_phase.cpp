@@ -307,7 +307,7 @@ ContactPhase::Stop ContactPhase::advance(const Vec3& forces, bool has_forces, do
             return {std::nullopt, false, true};
         }
         const bool is_arc = interval.turn > kMostStraightTurn && !interval.is_stiff;
-        if (!is_arc) return follow(interval, forces);
+        if (!is_arc) return follow(interval, forces, has_forces);
     }
     return follow_arc(forces, has_forces, pressure, duration);
 }
@@ -322,9 +322,10 @@ ContactInterval ContactPhase::plan(const Vec3& pull, double pressure, double dur
 }
 
 /// Follows one interval on flat surfaces.
-ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const Vec3& forces) {
+ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const Vec3& forces, bool has_forces) {
     const auto [path, leaves_surface] = path_along(interval);
     if (path.duration <= 0.0) return {std::nullopt, true, false};
+    step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 turned = interval.motion.velocity - state_.velocity;
     if (std::exchange(crosses_seam_, false)) {
@@ -340,6 +341,7 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const V
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
+    step_.log().note_contact(forces, has_forces);
     if (stop.contact && goes_on_along(*stop.contact)) stop.contact.reset();
     add_held(stop.contact);
     return stop;
@@ -407,6 +409,7 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
         path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, on);
         stop.left_surface = is_off;
     }
+    step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
     stop.contact = step_.follow(path, held_);
@@ -414,6 +417,7 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     const Motion motion = stop.contact ? arc.at(stop.contact->time).motion : end.motion;
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
+    step_.log().note_contact(forces, has_forces);
     const Vec3 forces_after = has_forces ? rules_.forces.acceleration(state_) : Vec3{};
     manifold_.load(arc.plan());
     manifold_.record_push(state_.velocity - velocity_before - (0.5 * elapsed) * (forces + forces_after), elapsed,
@@ -557,7 +561,9 @@ double ContactPhase::pressing_on(const ContactSurface& surface, const Vec3& forc
 void ContactPhase::wait(double duration, const Vec3& forces) {
     manifold_.record_push(-state_.velocity - duration * forces, duration, impact_);
     state_.velocity = Vec3{};
+    step_.log().note_impact();
     step_.wait(duration);
+    step_.log().note_contact({}, false);  // what stays where it is gains nothing by forces
 }
 
 /// Rests for what is left of the step. held: until the forces change.

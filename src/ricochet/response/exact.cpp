@@ -52,6 +52,7 @@ MoveOutcome ParticleMover::run() {
             break;
         }
     }
+    step_.log().note_impact();
     return outcome;
 }
 
@@ -61,8 +62,11 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     flight = is_first ? first_flight(rules_, particle_, remaining)
                       : resume_flight(rules_.settings.integrator, rules_.forces, particle_.state, flight, remaining);
     const auto look_ahead = look_ahead_of(flight);
-    return step_.follow(flight, look_ahead ? &*look_ahead : nullptr,
-                        is_first ? particle_.candidates : ContactCandidates{});
+    step_.log().note_impact();
+    const auto contact = step_.follow(flight, look_ahead ? &*look_ahead : nullptr,
+                                      is_first ? particle_.candidates : ContactCandidates{});
+    step_.log().note_flight();
+    return contact;
 }
 
 /// Answers an impact. Returns the next contact when the particle slides into one.
@@ -71,6 +75,8 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
     step_.impact().reflect(contact.all());
+    // A kicked particle that lands does so anew, without a rebound.
+    if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
     return contact_phase_.begin(flight, contact, arriving);
 }

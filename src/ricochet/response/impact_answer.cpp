@@ -181,6 +181,7 @@ Motion ImpactAnswer::random_reflection(const ContactSurface& surface, const Mate
         outcome_.end = MoveEnd::absorbed;
         motion = {};
     } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
+        scratch_.heated = scratch_.heated || material.wall_temperature.has_value();
         motion.velocity =
             material.wall_temperature
                 ? thermal_velocity(surface.normal,

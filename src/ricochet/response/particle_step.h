@@ -8,6 +8,7 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/response/impact_answer.h"
+#include "ricochet/response/motion_log.h"
 
 namespace ricochet {
 
@@ -21,6 +22,7 @@ public:
           scratch_(scratch),
           geometry_(rules.world, scratch.contacts.plane_cache),
           impact_(rules, particle, scratch, outcome_),
+          log_(rules, particle, scratch),
           start_(particle.state.position),
           first_segment_(scratch.segments.size()),
           remaining_(duration) {}
@@ -50,6 +52,7 @@ public:
     [[nodiscard]] ForceInput& state() { return particle_.state; }
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
     [[nodiscard]] ImpactAnswer& impact() { return impact_; }
+    [[nodiscard]] MotionLog& log() { return log_; }
     [[nodiscard]] MoveOutcome& outcome() { return outcome_; }
     [[nodiscard]] double remaining() const { return remaining_; }  ///< s
     /// Where the step began: off the surface that the particle was put on, if it was.
@@ -76,6 +79,7 @@ private:
     SurfaceGeometry geometry_;
     MoveOutcome outcome_;
     ImpactAnswer impact_;
+    MotionLog log_;
     Vec3 start_;
     std::size_t first_segment_;  // of this step among those recorded
     double remaining_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/core/motion_part.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/dynamics/flight.h"
@@ -35,9 +36,12 @@ struct MoveScratch {
     std::vector<ContactRecord> records;  ///< filled when record_contacts
     std::vector<Segment> segments;       ///< filled when record_segments
     std::vector<FlownPiece> flown;       ///< filled when record_flown, by the exact response
+    std::vector<MotionPart> motions;     ///< filled when record_motions, by the exact response
     bool record_contacts = false;
     bool record_segments = false;
     bool record_flown = false;
+    bool record_motions = false;
+    bool heated = false;  ///< a wall of its own temperature has answered the impact that is not recorded yet
 };
 
 /// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.

@@ -86,12 +86,16 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const bool as_planned = particle.planned != nullptr && life.begin == step.begin && life.end == step.end;
     const double duration = as_planned ? particle.planned->path.duration : life.end - life.begin;
     scratch.flown.clear();
+    scratch.motions.clear();
+    const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
     const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
     if (outcome.bounces > 0 && goes_on && !scratch.flown.empty()) parts_.coupled.record_departure(i, scratch.flown);
     if (parts_.check != nullptr) {
-        parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations);
+        const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
+        parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations,
+                            {before, after, scratch.motions});
     }
     for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
         scratch.records[k].radius = particle.state.whole_radius;
@@ -209,7 +213,7 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.hits.clear();
     scratch.records.clear();
     scratch.record_contacts = parts_.recorder.collects_contacts();
-    scratch.record_segments = parts_.check != nullptr;
+    scratch.record_segments = scratch.record_motions = parts_.check != nullptr;
 }
 
 void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) {

@@ -97,7 +97,10 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
 
 void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {
     const std::vector<Violation> found = in_order_of_particles(blocks, &BlockRecord::violations);
-    statistics_.violations += found.size();
+    const auto of_energy = static_cast<std::uint64_t>(
+        std::count_if(found.begin(), found.end(), [](const Violation& v) { return v.kind == ViolationKind::energy; }));
+    statistics_.energy_violations += of_energy;
+    statistics_.violations += found.size() - of_energy;
     last_violations_.insert(last_violations_.end(), found.begin(), found.end());
     const std::size_t kept = std::min(found.size(), Simulation::kMostViolations - violations_.size());
     violations_.insert(violations_.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept));
@@ -154,9 +157,10 @@ void RunCheck::watch_spawned(const Particles& particles) {
 }
 
 void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
-                     std::span<const Segment> segments, std::vector<Violation>& violations) {
-    const VerifiedStep step{particles.id[i], particles.position[i], moved.position, particles.radius[i], time,
-                            segments};
+                     std::span<const Segment> segments, std::vector<Violation>& violations,
+                     const RecordedParts& motion) {
+    const VerifiedStep step{particles.id[i], particles.position[i], moved.position, particles.radius[i], time, segments,
+                            motion};
     verifier_.check(step, watched_[i], violations);
 }
 

@@ -165,7 +165,7 @@ public:
     /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
     /// checked from several threads at once.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
-               std::span<const Segment> segments, std::vector<Violation>& violations);
+               std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
     /// Begins to watch all particles from where they are.
     void restart(const Particles& particles);
     /// Keeps what Particles::compact() keeps.

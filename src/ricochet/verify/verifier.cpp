@@ -10,6 +10,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/verify/checked_shape.h"
+#include "ricochet/verify/energy.h"
 #include "ricochet/verify/triangle_tests.h"
 #include "ricochet/verify/triangle_tree.h"
 
@@ -74,6 +75,7 @@ struct Verifier::Impl {
     void check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const;
     void check_sides(const Judged& judged, VerifiedParticle& particle) const;
     void check_distance(const Judged& judged, VerifiedParticle& particle) const;
+    static void check_energy(const Judged& judged);
     [[nodiscard]] std::size_t side_count() const { return planes.size() + shapes.size() + bodies.size(); }
     [[nodiscard]] std::vector<Side> sides_of(const Vec3& p) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p) const;
@@ -232,6 +234,21 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     particle.has_been_free = !first;
 }
 
+/// What surfaces at rest do gives no energy, part by part; and nothing is left out.
+void Verifier::Impl::check_energy(const Judged& judged) {
+    const VerifiedStep& step = judged.step;
+    if (step.motion.parts.empty()) return;
+    const auto report = [&](const RecordedMotion& motion, double time) {
+        judged.report(ViolationKind::energy, motion.position, time, std::nullopt);
+    };
+    const RecordedMotion* at = &step.motion.before;
+    for (const MotionPart& part : step.motion.parts) {
+        if (part.begin != *at || verify::gains_energy(part)) report(part.begin, part.time);
+        at = &part.end;
+    }
+    if (step.motion.after != *at) report(step.motion.after, step.time);
+}
+
 Verifier::Verifier(const std::vector<VerifiedSurface>& surfaces) : impl_(std::make_shared<const Impl>(surfaces)) {}
 Verifier::~Verifier() = default;
 Verifier::Verifier(const Verifier&) = default;
@@ -254,10 +271,12 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius) const {
 }
 
 void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const {
-    if (step.segments.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position))
-        return;
-    if (!particle.sides.empty()) require_same_length(particle.sides.size(), impl_->side_count(), "sides of a particle");
     const Impl::Judged judged{step, violations};
+    if (step.segments.empty() && same_bits(step.from, particle.position) && same_bits(step.to, particle.position)) {
+        Impl::check_energy(judged);
+        return;
+    }
+    if (!particle.sides.empty()) require_same_length(particle.sides.size(), impl_->side_count(), "sides of a particle");
     impl_->check_chain(judged, particle.position);
     bool starts_on_surface = particle.is_on_surface;
     for (const Segment& segment : step.segments) {
@@ -266,6 +285,7 @@ void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::
     }
     impl_->check_sides(judged, particle);
     impl_->check_distance(judged, particle);
+    Impl::check_energy(judged);
     particle.position = step.to;
     particle.is_on_surface = starts_on_surface;
 }

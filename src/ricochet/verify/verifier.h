@@ -1,6 +1,7 @@
 /// \file
 /// Checks what particles did, independently of the code that moved them: every segment that was travelled against the
-/// surfaces near it, and after every step the side of every closed surface and the distance of spheres.
+/// surfaces near it, after every step the side of every closed surface and the distance of spheres, and of every impact
+/// and interval of contact that is recorded that no energy comes from surfaces at rest.
 ///
 /// Independent: this folder includes none of the sweep's predicates, trees or distance code (a test checks that).
 /// Its signs come from whole numbers of any length, its parity from counted crossings, its distances from a hundred
@@ -15,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "ricochet/core/motion_part.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
@@ -33,15 +35,16 @@ enum class ViolationKind : std::uint8_t {
     gap,         ///< the segments do not join the position at which the particle was last seen to its position now
     wrong_side,  ///< the particle is on another side of a closed surface than at birth
     overlap,     ///< a sphere is nearer to a surface than its radius, by more than 1e-12 of its radius and coordinates
+    energy,      ///< it has gained energy from surfaces, or the recorded parts of its motion do not join
 };
 
 /// One violation. Each is reported once: what follows from it later is measured from the new state.
 struct Violation {
     ViolationKind kind = ViolationKind::crossing;
-    std::uint64_t particle = 0;             ///< id
-    Vec3 position;                          ///< m: of the crossing (rounded), else of the particle's centre
-    double time = 0.0;                      ///< s: a crossing's flight began then; for the others the step's end
-    std::optional<std::uint32_t> collider;  ///< index; nothing for a gap
+    std::uint64_t particle = 0;  ///< id
+    Vec3 position;               ///< m: of the crossing (rounded), else of the particle's centre
+    double time = 0.0;  ///< s: a crossing's flight, or what gained energy, began then; for the others the step's end
+    std::optional<std::uint32_t> collider;  ///< index; nothing for a gap and for energy
     std::optional<std::uint32_t> triangle;  ///< of the collider's mesh; nothing for planes, shapes and sides
 };
 
@@ -71,6 +74,13 @@ struct VerifiedParticle {
     bool has_been_free = true;
 };
 
+/// How a particle's motion changed in a step, where that is recorded.
+struct RecordedParts {
+    RecordedMotion before;                ///< at its begin
+    RecordedMotion after;                 ///< at its end
+    std::span<const MotionPart> parts{};  ///< in the order of time; none where they are not recorded
+};
+
 /// What a particle did in a step.
 struct VerifiedStep {
     std::uint64_t particle = 0;         ///< id
@@ -79,6 +89,7 @@ struct VerifiedStep {
     double radius = 0.0;                ///< m
     double time = 0.0;                  ///< s, at the end of the step
     std::span<const Segment> segments;  ///< in the order of time
+    RecordedParts motion{};
 };
 
 /// Immutable; safe from any number of threads. Copies share what they hold.
@@ -95,8 +106,9 @@ public:
     [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
 
     /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then
-    /// sides, then overlaps, each in the order of colliders and triangles. Updates what is remembered. Throws
-    /// InputError for a particle that another verifier has watched, with another number of sides.
+    /// sides, then overlaps, each in the order of colliders and triangles, then energies in the order of the parts.
+    /// Updates what is remembered. Throws InputError for a particle that another verifier has watched, with another
+    /// number of sides.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
 
 private:

@@ -1,0 +1,58 @@
+/// \file
+/// Private to the exact response: the parts of a step, recorded one after the other.
+#pragma once
+
+#include <utility>
+
+#include "ricochet/core/motion_part.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// Records what has become of a particle since the last call, where that is asked for (MoveScratch::record_motions).
+/// What it is given must outlive it.
+class MotionLog {
+public:
+    MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch)
+        : rules_(rules), particle_(particle), scratch_(scratch) {
+        if (scratch.record_motions) last_ = motion(), time_ = particle.state.time;
+    }
+
+    /// It has flown.
+    void note_flight() {
+        if (scratch_.record_motions) add(MotionPart::Kind::flight, {}, true);
+    }
+    /// It has met surfaces, or has been let go by them, or nothing has happened; without time.
+    void note_impact() {
+        if (!scratch_.record_motions) return;
+        const bool is_heated = std::exchange(scratch_.heated, false);
+        if (motion() == last_) return;
+        add(is_heated ? MotionPart::Kind::heat : MotionPart::Kind::impact, {}, true);
+    }
+    /// Surfaces have held it. force: over the mass at the begin, m/s^2; acts: false where forces have been in the
+    /// velocity from the step's start on.
+    void note_contact(const Vec3& force, bool acts) {
+        if (!scratch_.record_motions) return;
+        const Vec3 now = acts ? rules_.forces.acceleration(particle_.state) : Vec3{};
+        add(MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
+            !acts || rules_.forces.is_uniform_for(particle_.state));
+    }
+
+private:
+    [[nodiscard]] RecordedMotion motion() const {
+        return {particle_.state.position, particle_.state.velocity, particle_.spin};
+    }
+    void add(MotionPart::Kind kind, const std::array<Vec3, 2>& forces, bool steady) {
+        const RecordedMotion begin = std::exchange(last_, motion());
+        const double time = std::exchange(time_, particle_.state.time);
+        scratch_.motions.push_back({kind, time, time_ - time, particle_.state.radius, begin, last_, forces, steady});
+    }
+
+    const ResponseRules& rules_;
+    const MovingParticle& particle_;
+    MoveScratch& scratch_;
+    RecordedMotion last_;
+    double time_ = 0.0;  // s
+};
+
+}  // namespace ricochet

@@ -1,0 +1,54 @@
+#include "ricochet/verify/energy.h"
+
+#include <algorithm>
+
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet::verify {
+namespace {
+
+/// More digits than doubles have (where the machine has such numbers), so that what is judged is their rounding alone.
+using Long = long double;
+
+Long product(const Vec3& a, const Vec3& b) {
+    return static_cast<Long>(a.x) * b.x + static_cast<Long>(a.y) * b.y + static_cast<Long>(a.z) * b.z;
+}
+
+/// Kinetic energy over the mass, m^2/s^2.
+Long kinetic(const RecordedMotion& motion, double radius) {
+    const Long inertia = static_cast<Long>(radius) * radius * 2 / 5;
+    return (product(motion.velocity, motion.velocity) + inertia * product(motion.spin, motion.spin)) / 2;
+}
+
+/// The work of a force over the way between both ends, over the mass.
+Long work(const Vec3& force, const MotionPart& part) {
+    return product(force, part.end.position) - product(force, part.begin.position);
+}
+
+/// The largest length of a way between both ends: of what is nowhere faster than both ends, and all that the forces may
+/// add.
+double longest_way(const MotionPart& part, double largest_force) {
+    const double speed = std::max(length(part.begin.velocity), length(part.end.velocity));
+    return part.duration * (speed + part.duration * largest_force);
+}
+
+}  // namespace
+
+bool gains_energy(const MotionPart& part) {
+    if (part.kind == MotionPart::Kind::flight || part.kind == MotionPart::Kind::heat) return false;
+    const Long before = kinetic(part.begin, part.radius);
+    const Long after = kinetic(part.end, part.radius);
+    const auto& [first, last] = part.forces;
+    const double largest_force = std::max(length(first), length(last));
+    Long most = work(first, part);
+    if (!part.forces_are_steady) {
+        most =
+            (most + work(last, part)) / 2 + static_cast<Long>(length(last - first)) * longest_way(part, largest_force);
+    }
+    const double offset = std::max(contact_offset(part.begin.position), contact_offset(part.end.position));
+    const double rounding =
+        kEnergyGain * static_cast<double>(std::max(before, after)) + kEnergyOffsets * largest_force * offset;
+    return !(after - before - most <= rounding);
+}
+
+}  // namespace ricochet::verify

@@ -80,8 +80,12 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     impl().add_weights_of_sleepers(1.0);
     const std::size_t first = impl().world.first_surface_of(i);
     for (std::size_t k = 0; k < impl().world.surface_count_of(i); ++k) {
-        result.hits.push_back(impl().recorder.totals().hits(first + k));
-        result.impulse.push_back(impl().recorder.totals().impulse(first + k));
+        // The parts of a shape are one.
+        const std::size_t at = impl().world.name_of(static_cast<SurfaceId>(first + k)).triangle;
+        result.hits.resize(at + 1);
+        result.impulse.resize(at + 1);
+        result.hits[at] += impl().recorder.totals().hits(first + k);
+        result.impulse[at] += impl().recorder.totals().impulse(first + k);
     }
     impl().add_weights_of_sleepers(-1.0);
     return result;

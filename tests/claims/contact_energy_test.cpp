@@ -40,8 +40,14 @@ struct Room {
 };
 
 std::vector<Room> rooms() {
+    const Placement along_x{{}, {0, 1, 0}, 90.0};
     const Placement uneven{{}, {0, 0, 1}, 0.0, {0.77, 1.06, 1.2}};
-    return {{"ball", BallShape{1.0, {}}}, {"ellipsoid", BallShape{1.0, uneven}}};
+    Placement uneven_along_x = along_x;
+    uneven_along_x.scale = {0.77, 1.06, 1.2};
+    return {{"ball", BallShape{1.0, {}}},
+            {"ellipsoid", BallShape{1.0, uneven}},
+            {"cylinder", CylinderShape{1.0, 3.0, along_x}},
+            {"elliptic cylinder", CylinderShape{1.0, 3.0, uneven_along_x}}};
 }
 
 ContactScene tumbling(const Room& room, const Material& material, double radius, const Vec3& spin, double time_step) {
@@ -79,6 +85,32 @@ TEST(ContactOnACurve, GainsNoEnergyFromResistanceToRolling) {
         Material material{"", 0.3, 1.4};
         material.rolling_friction = rolling;
         expect_no_gain(material);
+    }
+}
+
+// Along the rim of a cylinder, where side and cap hold together: pressed into it by gravity, at 1 m/s.
+TEST(TheRimOfACylinder, HoldsSpheresWithoutGainOrLossOfTime) {
+    for (const auto& [friction, spin] :
+         {std::pair{0.0, Vec3{}}, std::pair{0.2, Vec3{}}, std::pair{1.4, Vec3{3, 4, 5}}}) {
+        for (const double radius : {0.01, 0.1}) {
+            for (const double step : {0.002, 0.02}) {
+                ContactScene scene;
+                scene.colliders = {{"drum", CylinderShape{1.0, 2.0, {{}, {1, 0, 0}, 30.0}}, 0}};
+                scene.materials = {{"", 0.2, friction}};
+                // Lowest point of the lower cap's rim; along it.
+                const double a = radians(30.0);
+                const Vec3 across{0, std::cos(a), std::sin(a)};
+                const Vec3 axis{0, -std::sin(a), std::cos(a)};
+                const double in = 1.0 - radius - 1e-9;
+                scene.particle = particle_of(-in * across - in * axis, {1, 0, 0}, radius, spin);
+                scene.time_step = step;
+                scene.duration = 2.0;
+                EXPECT_LE(largest_gain(scene), kRounding) << friction << ", " << radius << ", " << step;
+                const Vec3 end = end_of(scene).position;
+                EXPECT_LE(std::max(std::fabs(dot(end, axis)), std::hypot(end.x, dot(end, across))),
+                          1.0 - radius + 1e-12 * (1.0 + radius));
+            }
+        }
     }
 }
 

@@ -102,7 +102,7 @@ void CollisionWorld::add_shape(const AnalyticShape& shape) {
     ranges_.push_back({surface, static_cast<std::uint32_t>(triangles_.size()), 0,
                        static_cast<std::uint32_t>(shapes_.size()), Kind::shape});
     shapes_.push_back({shape, surface});
-    ++surface_count_;
+    surface_count_ += shape.part_count();
 }
 
 // The boxes of a class are enlarged by its largest radius and the chord margin; radii up to half the chord margin share
@@ -230,7 +230,8 @@ std::uint32_t CollisionWorld::collider_among_many(SurfaceId surface) const {
 
 SurfaceName CollisionWorld::name_of(SurfaceId surface) const {
     const std::uint32_t collider = collider_of(surface);
-    return {collider, surface - ranges_[collider].first_surface};
+    const Range& range = ranges_[collider];
+    return {collider, range.kind == Kind::mesh ? surface - range.first_surface : 0};
 }
 
 SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
@@ -257,8 +258,10 @@ CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p
         return {distance < 0.0 ? -plane.normal : plane.normal, std::fabs(distance), true};
     }
     if (range.kind == Kind::shape) {
-        const ShapePoint closest = shapes_[range.index].shape.closest_point(p);
-        return {closest.distance < 0.0 ? -closest.normal : closest.normal, std::fabs(closest.distance), false};
+        const ShapeSurface& shape = shapes_[range.index];
+        const ShapePoint closest = shape.shape.closest_point_of(shape.part_of(surface), p);
+        return {closest.distance < 0.0 ? -closest.normal : closest.normal, std::fabs(closest.distance),
+                closest.part != ShapePart::side && !closest.on_rim, closest.on_rim};
     }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return nearest(TrianglePlane(a, b, c), p);
@@ -272,7 +275,7 @@ CollisionWorld::Nearest CollisionWorld::nearest(const TrianglePlane& triangle, c
         const Vec3& normal = triangle.unit_normal();
         return {height < 0.0 ? -normal : normal, std::fabs(height), true};
     }
-    return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false};
+    return {distance > 0.0 ? closest.offset / distance : triangle.unit_normal(), distance, false, true};
 }
 
 SurfacePosition CollisionWorld::closest_point_on(SurfaceId surface, const Vec3& p) const {
@@ -289,7 +292,10 @@ SurfacePosition CollisionWorld::closest_point_on(SurfaceId surface, const Vec3& 
 Vec3 CollisionWorld::unit_normal_of(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind == Kind::plane) return planes_[range.index].plane.normal;
-    if (range.kind == Kind::shape) return shapes_[range.index].shape.closest_point(p).normal;
+    if (range.kind == Kind::shape) {
+        const ShapeSurface& shape = shapes_[range.index];
+        return shape.shape.closest_point_beyond(shape.part_of(surface), p).normal;
+    }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return unit_normal(a, b, c);
 }
@@ -297,7 +303,10 @@ Vec3 CollisionWorld::unit_normal_of(SurfaceId surface, const Vec3& p) const {
 double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) const {
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind == Kind::plane) return signed_distance(p, planes_[range.index].plane);
-    if (range.kind == Kind::shape) return shapes_[range.index].shape.closest_point(p).distance;
+    if (range.kind == Kind::shape) {
+        const ShapeSurface& shape = shapes_[range.index];
+        return shape.shape.closest_point_beyond(shape.part_of(surface), p).distance;
+    }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return signed_distance(p, a, b, c);
 }
@@ -305,6 +314,12 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 double CollisionWorld::size_of(SurfaceId surface) const {
     const Range& range = ranges_[collider_of(surface)];
     return range.kind == Kind::shape ? shapes_[range.index].shape.bounds().diagonal() : bounds_.diagonal();
+}
+
+int CollisionWorld::rim_of(SurfaceId surface, const Vec3& p) const {
+    const AnalyticShape& shape = shapes_[ranges_[collider_of(surface)].index].shape;
+    const auto height = [&](ShapePart cap) { return shape.closest_point_beyond(cap, p).distance; };
+    return height(ShapePart::top) > height(ShapePart::bottom) ? 2 : 1;
 }
 
 int CollisionWorld::side_of_surface(SurfaceId surface, const Vec3& p) const {
@@ -317,7 +332,11 @@ int CollisionWorld::side_of_surface(SurfaceId surface, const Vec3& p) const {
 
 double CollisionWorld::time_over(SurfaceId surface, const Path& path, double slack) const {
     const Range& range = ranges_[collider_of(surface)];
-    if (range.kind != Kind::mesh) return path.duration;
+    if (range.kind == Kind::plane) return path.duration;
+    if (range.kind == Kind::shape) {
+        const ShapeSurface& shape = shapes_[range.index];
+        return shape.shape.time_over(shape.part_of(surface), path, slack);
+    }
     const auto [a, b, c] = corners_of_triangle(range.first_triangle + (surface - range.first_surface));
     return triangle_exit_time(path, a, b, c, unit_normal(a, b, c), slack);
 }

@@ -41,10 +41,18 @@ public:
     };
     [[nodiscard]] std::span<const PlaneSurface> planes() const { return planes_; }
 
-    /// The balls and cylinders, with their surface numbers.
+    /// The balls and cylinders, with the surface numbers of their parts.
     struct ShapeSurface {
         AnalyticShape shape;
-        SurfaceId surface;
+        SurfaceId surface;  ///< of its side
+
+        [[nodiscard]] SurfaceId surface_of(ShapePart part) const { return surface + static_cast<SurfaceId>(part); }
+        [[nodiscard]] bool owns(SurfaceId other) const {
+            return other >= surface && other < surface + shape.part_count();
+        }
+        [[nodiscard]] ShapePart part_of(SurfaceId own) const { return static_cast<ShapePart>(own - surface); }
+        /// The part that is nearest to p.
+        [[nodiscard]] SurfaceId nearest_to(const Vec3& p) const { return surface_of(shape.closest_point(p).part); }
     };
     [[nodiscard]] std::span<const ShapeSurface> shapes() const { return shapes_; }
 
@@ -90,6 +98,7 @@ public:
         Vec3 normal;            ///< unit, from the surface to p (the surface's own normal where p lies on it)
         double distance = 0.0;  ///< m, >= 0
         bool flat = true;       ///< a plane or the inside of a triangle; false: a rim, a corner or a curved surface
+        bool rim = false;       ///< an edge or corner of a triangle, or where a cylinder's cap and side meet
     };
     [[nodiscard]] Nearest nearest(SurfaceId surface, const Vec3& p) const;
     /// The same of a triangle.
@@ -98,19 +107,28 @@ public:
     /// The point of a surface nearest to p.
     [[nodiscard]] SurfacePosition closest_point_on(SurfaceId surface, const Vec3& p) const;
 
-    /// Unit normal of a surface at p: the plane's own, the triangle's by the counter-clockwise rule, a shape's outward
-    /// one.
+    /// Unit normal of a surface at p, which goes on beyond its rim: the plane's own, the triangle's by the
+    /// counter-clockwise rule, the outward one of a shape's part.
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const Vec3& p) const;
-    /// Signed distance from a plane, a triangle's plane or a shape, m; accurate also next to it.
+    /// Signed distance from a plane, a triangle's plane or a shape's part that goes on beyond its rim, m; accurate also
+    /// next to it.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
     /// A length that tells how large a shape with a formula is: the diagonal of its box, m; that of all colliders' box
     /// for planes and triangles.
     [[nodiscard]] double size_of(SurfaceId surface) const;
-    /// True for planes and triangles.
-    [[nodiscard]] bool is_flat(SurfaceId surface) const { return ranges_[collider_of(surface)].kind != Kind::shape; }
+    /// True for planes, triangles and the caps of cylinders.
+    [[nodiscard]] bool is_flat(SurfaceId surface) const {
+        const Range& range = ranges_[collider_of(surface)];
+        return range.kind != Kind::shape || surface != range.first_surface;
+    }
+    /// True for the parts of balls and cylinders.
+    [[nodiscard]] bool is_shape(SurfaceId surface) const { return ranges_[collider_of(surface)].kind == Kind::shape; }
+    /// Which rim of a shape's part is nearest to p, where one is: 1 at the bottom, 2 at the top.
+    [[nodiscard]] int rim_of(SurfaceId surface, const Vec3& p) const;
     /// Exact side of a surface's plane: +1 where its normal points to, -1 behind, 0 in the plane.
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p) const;
-    /// Time that a path along a surface stays over it, see triangle_exit_time(); the whole duration for a plane.
+    /// Time that a path along a surface stays over it, see triangle_exit_time(); the whole duration for a
+    /// plane and a shape's side.
     [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const;
     /// Exact: does the closed segment [p, q] intersect the surface?
     [[nodiscard]] bool segment_intersects(SurfaceId surface, const Vec3& p, const Vec3& q) const;
@@ -119,7 +137,7 @@ public:
 
     /// World-space mesh of a collider with all its triangles, degenerate ones included; nothing for planes.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
-    /// Triangles of a collider; 1 for a plane.
+    /// Triangles of a collider; 1 for a plane and a ball, 3 for a cylinder.
     [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;
     /// First surface of a collider.
     [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return ranges_[collider].first_surface; }

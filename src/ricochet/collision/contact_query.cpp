@@ -26,7 +26,9 @@ bool NearSurfaces::plane_blocks(const CollisionWorld::PlaneSurface& plane, const
 
 bool NearSurfaces::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
     if (!shape.shape.segment_is_clear(p, q)) return true;
-    if (margins_.radius == 0.0 || is_overlapped(shape.surface)) return false;
+    const auto& overlapped = scratch_->overlapped;
+    const bool is_held = std::any_of(overlapped.begin(), overlapped.end(), [&](SurfaceId s) { return shape.owns(s); });
+    if (margins_.radius == 0.0 || is_held) return false;
     return shape.shape.distance_to_segment(p, q) < margins_.radius - margins_.tolerance;
 }
 
@@ -56,7 +58,7 @@ std::optional<SurfaceId> NearSurfaces::blocker(const Vec3& p, const Vec3& q) con
         if (plane_blocks(world().planes()[k], p, q)) consider(world().planes()[k].surface);
     }
     for (const std::uint32_t k : scratch_->shapes) {
-        if (shape_blocks(world().shapes()[k], p, q)) consider(world().shapes()[k].surface);
+        if (shape_blocks(world().shapes()[k], p, q)) consider(world().shapes()[k].nearest_to(q));
     }
     for (const std::uint32_t triangle : scratch_->triangles) {
         if (triangle_blocks(triangle, p, q)) consider(world().surface_of_triangle(triangle));
@@ -64,10 +66,11 @@ std::optional<SurfaceId> NearSurfaces::blocker(const Vec3& p, const Vec3& q) con
     return smallest;
 }
 
-std::vector<SurfaceId> NearSurfaces::surfaces() const {
+/// Of shapes the part that is nearest to p.
+std::vector<SurfaceId> NearSurfaces::surfaces(const Vec3& p) const {
     std::vector<SurfaceId> list;
     for (const std::uint32_t k : scratch_->planes) list.push_back(world().planes()[k].surface);
-    for (const std::uint32_t k : scratch_->shapes) list.push_back(world().shapes()[k].surface);
+    for (const std::uint32_t k : scratch_->shapes) list.push_back(world().shapes()[k].nearest_to(p));
     for (const std::uint32_t triangle : scratch_->triangles) list.push_back(world().surface_of_triangle(triangle));
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -75,13 +78,13 @@ std::vector<SurfaceId> NearSurfaces::surfaces() const {
 }
 
 std::vector<SurfaceId> NearSurfaces::surfaces_at(const Vec3& p) const {
-    std::vector<SurfaceId> list = surfaces();
+    std::vector<SurfaceId> list = surfaces(p);
     std::erase_if(list, [&](SurfaceId surface) { return !world().point_on(surface, p); });
     return list;
 }
 
 bool NearSurfaces::is_free_after(const Vec3& p, const Vec3& q) const {
-    const std::vector<SurfaceId> list = surfaces();
+    const std::vector<SurfaceId> list = surfaces(p);
     return std::all_of(list.begin(), list.end(), [&](SurfaceId surface) {
         if (!world().segment_intersects(surface, p, q)) return true;
         return world().point_on(surface, p) && world().side_of_surface(surface, q) != 0;

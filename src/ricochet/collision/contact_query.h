@@ -47,7 +47,7 @@ public:
     [[nodiscard]] double slack() const { return margins_.slack; }
 
 private:
-    [[nodiscard]] std::vector<SurfaceId> surfaces() const;
+    [[nodiscard]] std::vector<SurfaceId> surfaces(const Vec3& p) const;
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
     [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const;

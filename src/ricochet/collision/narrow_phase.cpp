@@ -83,12 +83,20 @@ void NarrowPhase::test_planes() {
 void NarrowPhase::test_shapes() {
     const auto shapes = world_.shapes();
     for (std::uint32_t k = 0; k < shapes.size(); ++k) {
-        const auto& [shape, surface] = shapes[k];
-        if (shape.can_cull(path_, margins_.radius + margins_.slack)) continue;
+        const CollisionWorld::ShapeSurface& shape = shapes[k];
+        if (shape.shape.can_cull(path_, margins_.radius + margins_.slack)) continue;
         scratch_.shapes.push_back(k);
-        if (sphere_) add_overlap(surface, std::fabs(shape.closest_point(path_.c[0]).distance));
-        const auto contact = shape.first_contact(path_, margins_.radius);
-        if (contact) add_hit({contact->time, surface, shape.side(path_.c[0]), false, contact->normal});
+        if (sphere_) add_overlap(shape.surface, std::fabs(shape.shape.closest_point(path_.c[0]).distance));
+        HeldParts held;
+        for (const SurfaceId surface : held_) {
+            if (shape.owns(surface)) held.add(shape.part_of(surface));
+        }
+        const ShapeContacts found = shape.shape.contacts(path_, margins_.radius, held);
+        const int side = found.count > 0 ? shape.shape.side(path_.c[0]) : 0;
+        for (const ShapeContact& contact : found.all()) {
+            const bool is_flat = contact.part != ShapePart::side && !contact.on_rim;
+            add_hit({contact.time, shape.surface_of(contact.part), side, is_flat, contact.normal});
+        }
     }
 }
 

@@ -36,7 +36,8 @@ void Obstacles::for_each_blocker(const Vec3& to, Found&& found) const {
         if (blocks(plane.surface, to) && !found(plane.surface)) return;
     }
     for (const auto& shape : world_.shapes()) {
-        if (blocks(shape.surface, to) && !found(shape.surface)) return;
+        const SurfaceId surface = shape.nearest_to(to);
+        if (blocks(surface, to) && !found(surface)) return;
     }
     if (world_.triangles().empty()) return;
     bvh_.query_segment(from_, to, [&](std::uint32_t triangle) {

@@ -15,7 +15,7 @@ void visit_distances(const CollisionWorld& world, const Vec3& center, double wit
         within = consider(plane.surface, std::fabs(signed_distance(center, plane.plane)));
     }
     for (const auto& shape : world.shapes()) {
-        within = consider(shape.surface, std::fabs(shape.shape.closest_point(center).distance));
+        within = consider(shape.nearest_to(center), std::fabs(shape.shape.closest_point(center).distance));
     }
     if (world.triangles().empty()) return;
     world.bvh_for(0.0).query_point(center, within, [&](std::uint32_t triangle) {

@@ -127,7 +127,7 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
         const Vec3 safe = flush_tiny(position + step);
         if (length(safe - on_path) > near.slack()) break;
         const CertifiedPath followed = follow_path(near, path, contact.time, safe, chain);
-        if (!followed.blocker) return {safe, false};
+        if (!followed.blocker) return {safe, false, std::nullopt, contact.time};
         const Vec3 normal = facing_surface(near, *followed.blocker, followed.reached).normal;
         if (normal != Vec3{} && normals.add(normal)) continue;
         offset *= kContactOffsetWidening;
@@ -135,8 +135,8 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
     }
     PathFollower follower(near, path, chain);
     (void)follower.follow_to(contact.time, position, kCertificateDepth);
-    const Vec3& reached = follower.followed().reached;
-    return {reached, reached == path.c[0]};
+    const CertifiedPath& followed = follower.followed();
+    return {followed.reached, followed.reached == path.c[0], followed.blocker, followed.time};
 }
 
 std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {

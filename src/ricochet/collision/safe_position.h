@@ -28,7 +28,9 @@ struct CertifiedPath {
 /// A certified position next to a contact.
 struct SafePosition {
     Vec3 position;
-    bool stayed = false;  ///< no certified position nearer than the path's start was found
+    bool stayed = false;               ///< no certified position nearer than the path's start was found
+    std::optional<SurfaceId> blocker;  ///< where the path is blocked before the contact: by what
+    double time = 0.0;                 ///< and then when, s
 };
 
 /// A position off the surfaces of the contact along their normals by contact_offset(), by more when that fails, and

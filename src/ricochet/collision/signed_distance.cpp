@@ -162,16 +162,16 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_plane(std::uint32_t index
 }
 
 std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index, const Vec3& p, double within) const {
-    const auto& [shape, surface] = world_.shapes()[index];
-    if (is_farther(shape.bounds(), p, within * within)) return std::nullopt;
-    const ShapePoint nearest = shape.closest_point(p);
+    const CollisionWorld::ShapeSurface& shape = world_.shapes()[index];
+    if (is_farther(shape.shape.bounds(), p, within * within)) return std::nullopt;
+    const ShapePoint nearest = shape.shape.closest_point(p);
     SurfacePoint found;
     found.point = nearest.point;
     found.direction = nearest.distance < 0.0 ? -nearest.normal : nearest.normal;
     found.distance = std::fabs(nearest.distance);
-    found.side = shape.side(p);
-    found.surface = surface;
-    found.collider = world_.name_of(surface).collider;
+    found.side = shape.shape.side(p);
+    found.surface = shape.surface_of(nearest.part);
+    found.collider = world_.name_of(found.surface).collider;
     return if_within(found, within);
 }
 

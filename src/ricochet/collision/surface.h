@@ -8,8 +8,8 @@
 
 namespace ricochet {
 
-/// Number of a surface (a plane, a ball, a cylinder or one triangle of a mesh) among those of all colliders. Ascending
-/// in (collider, triangle): the order that breaks ties.
+/// Number of a surface (a plane, a ball, the side or a cap of a cylinder, or one triangle of a mesh) among those of all
+/// colliders. Ascending in (collider, triangle): the order that breaks ties.
 using SurfaceId = std::uint32_t;
 
 /// Which collider, and which triangle of it (0 for planes, balls and cylinders), a surface is.

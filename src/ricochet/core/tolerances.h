@@ -310,11 +310,11 @@ inline constexpr double kSameDirection = 1e-9;
 inline constexpr double kEnergyRounding = 0x1p-44;
 
 /// Kinetic energy that an impact or an interval of contact may gain over what forces have done work, in parts of the
-/// larger of the kinetic energies before and after, and in contact offsets at the end times the force. Reason: some
-/// roundings of the velocity; and what is held at a contact offset from surfaces, or parked beside the next, is moved
-/// by as much without losing speed. Smaller: a verified run reports rounding. Larger: small gains pass.
-inline constexpr double kEnergyGain = 4e-16;
-inline constexpr double kEnergyOffsets = 2.0;
+/// larger of the kinetic energies before and after, and in contact offsets times the force. Reason: eight roundings of
+/// 2^-53; and what is held touches within kTouchingOffsets, at both ends. Smaller: a verified run reports rounding.
+/// Larger: small gains pass, and arcs let through as much as the second before they limit the energy.
+inline constexpr double kEnergyGain = 0x1p-50;
+inline constexpr double kEnergyOffsets = 2.0 * kTouchingOffsets;
 
 /// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred
 /// times the rounding of the solved equations. Smaller: particles at rest creep at 1e-16 of gravity. Larger: what

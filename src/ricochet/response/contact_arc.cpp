@@ -15,9 +15,9 @@ constexpr double kCurvatureStep = 1e-4;
 /// Corrections of the position and of the energy; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 
-/// The same of a shape with a formula: by the difference of its normals along the motion.
-Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface, const Vec3& normal,
-                       const Vec3& position, const Vec3& velocity) {
+/// Derivative of a shape's normal: by the difference of its normals along the motion. A side goes on beyond its rim.
+Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                       const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
     if (speed == 0.0) return {};
     const double size = geometry.world().size_of(surface);
@@ -25,11 +25,13 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
     const Vec3 heading = velocity / speed;
     // A tangent soon comes out on the other side of a surface that bends towards it.
     const auto normal_at = [&](double distance) {
-        const Vec3 there = geometry.nearest(surface, position + distance * heading).normal;
-        return dot(there, normal) < 0.0 ? -there : there;
+        const Vec3 beside = position + distance * heading;
+        const Vec3 there =
+            nearest.rim ? geometry.nearest(surface, beside).normal : geometry.unit_normal_of(surface, beside);
+        return dot(there, nearest.normal) < 0.0 ? -there : there;
     };
-    const Vec3 ahead = normal_at(step) - normal;
-    const Vec3 behind = normal - normal_at(-step);
+    const Vec3 ahead = normal_at(step) - nearest.normal;
+    const Vec3 behind = nearest.normal - normal_at(-step);
     // Next to a rim one of the two reaches over it.
     const double difference = length(ahead - behind);
     if (difference > 0.5 * std::max(length(ahead), length(behind))) {
@@ -42,9 +44,8 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
 Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                  const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const CollisionWorld& world = geometry.world();
-    if (!world.is_flat(surface))
-        return shape_normal_rate(geometry, radius, surface, nearest.normal, position, velocity);
-    if (nearest.flat || radius == 0.0) return {};
+    if (nearest.flat || (nearest.rim && radius == 0.0)) return {};
+    if (world.is_shape(surface)) return shape_normal_rate(geometry, radius, surface, nearest, position, velocity);
     Vec3 across = velocity - dot(velocity, nearest.normal) * nearest.normal;
     const auto triangle = world.triangle_of(surface);
     const int corners = touched_feature(geometry, surface, position);
@@ -60,7 +61,8 @@ Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surfa
 
 int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position) {
     const CollisionWorld& world = geometry.world();
-    if (!world.is_flat(surface) || geometry.nearest(surface, position).flat) return 0;
+    if (!geometry.nearest(surface, position).rim) return 0;
+    if (world.is_shape(surface)) return geometry.world().rim_of(surface, position);
     const Vec3 weights = world.closest_point_on(surface, position).barycentric;
     int feature = 0;
     for (int k = 0; k < 3; ++k) feature |= (weights[k] > 0.0 ? 1 : 0) << k;
@@ -81,15 +83,54 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     for (std::size_t k = 0; k < manifold.size(); ++k) {
         surfaces_[k] = manifold[k].surface;
         is_flat_[k] = manifold[k].flat;
+        is_on_rim_[k] = !manifold[k].flat && geometry.nearest(surfaces_[k], particle.position).rim;
     }
     plan_ = plan_at({particle.position, {particle.velocity, start.spin}}, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
-    keeps_energy_ = (!start.has_forces || forces.is_uniform_for(particle)) && !dissipates();
+    has_uniform_forces_ = !start.has_forces || forces.is_uniform_for(particle);
+    keeps_energy_ = has_uniform_forces_ && !dissipates();
+    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now);
 }
 
 ContactArc::State ContactArc::at(double t) const {
+    State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
+    put_on_surfaces(state);
+    if (keeps_energy_) restore_energy(state, t);
+    if (has_uniform_forces_) limit_energy(state);
+    return state;
+}
+
+/// The implicit midpoint rule for what friction and resistance do, with the surfaces as they are in the middle: slip
+/// that soon ends, or has just begun, turns faster than the stages of an explicit method follow.
+ContactArc::State ContactArc::by_midpoint_rule(double t) const {
+    constexpr int kMostParts = 8;
+    State state = start();
+    double elapsed = 0.0;
+    for (int part = 1; part <= kMostParts && elapsed < t; ++part) {
+        const double left = t - elapsed;
+        const ContactInterval rough = plan_at(state, elapsed, left);
+        const double half = 0.5 * rough.duration;
+        const State middle{
+            state.position + half * (state.motion.velocity + (0.5 * half) * rough.acceleration),
+            {state.motion.velocity + half * rough.acceleration, state.motion.spin + half * rough.spin_acceleration}};
+        const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
+        const ContactInterval plan =
+            plan_interval_by_middle(state.motion, particle_.radius, forces(middle, elapsed + half),
+                                    holding(state).all(), holding(middle).all(), grip, left);
+        const double duration = part == kMostParts ? left : plan.duration;
+        const Vec3& v = state.motion.velocity;
+        state.position += duration * (v + (0.5 * duration) * plan.acceleration);
+        state.motion = {v + duration * plan.acceleration, state.motion.spin + duration * plan.spin_acceleration};
+        elapsed = plan.duration < left ? elapsed + duration : t;
+        state.motion = along_surfaces(state.motion, particle_.radius, holding(state).all(), plan.stuck);
+    }
+    return state;
+}
+
+/// The classical Runge-Kutta method.
+ContactArc::State ContactArc::by_stages(double t) const {
     const State begin = start();
     const auto moved = [&](const Rate& r, double s) {
         return State{begin.position + s * r.velocity,
@@ -102,14 +143,11 @@ ContactArc::State ContactArc::at(double t) const {
     const auto mean = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
         return (a + 2.0 * (b + c) + d) / 6.0;
     };
-    State state = moved(
+    return moved(
         {mean(first.velocity, second.velocity, third.velocity, fourth.velocity),
          mean(first.acceleration, second.acceleration, third.acceleration, fourth.acceleration),
          mean(first.spin_acceleration, second.spin_acceleration, third.spin_acceleration, fourth.spin_acceleration)},
         t);
-    put_on_surfaces(state);
-    if (keeps_energy_) restore_energy(state, t);
-    return state;
 }
 
 bool ContactArc::is_held(const State& state, double t) const {
@@ -139,11 +177,11 @@ double ContactArc::longest() const {
 }
 
 /// A surface as it is seen from the side of the start: within an arc a point may come behind it by the arc's own error.
-/// A face goes on beyond its rim.
+/// Whatever it is on the face or the side of, goes on beyond its rim.
 CollisionWorld::Nearest ContactArc::nearest(std::size_t k, const Vec3& position) const {
     CollisionWorld::Nearest nearest{geometry_.unit_normal_of(surfaces_[k], position),
-                                    geometry_.signed_distance_from(surfaces_[k], position), true};
-    if (!is_flat_[k]) nearest = geometry_.nearest(surfaces_[k], position);
+                                    geometry_.signed_distance_from(surfaces_[k], position), is_flat_[k], false};
+    if (is_on_rim_[k]) nearest = geometry_.nearest(surfaces_[k], position);
     if (dot(nearest.normal, materials_.surfaces[k].normal) < 0.0) {
         nearest.normal = -nearest.normal;
         nearest.distance = -nearest.distance;
@@ -157,7 +195,7 @@ ContactArc::Holding ContactArc::holding(const State& state) const {
     for (std::size_t k = 0; k < result.count; ++k) {
         HoldingSurface& surface = result.surfaces[k];
         const CollisionWorld::Nearest touched = nearest(k, state.position);
-        const bool is_beside_rim = particle_.radius == 0.0 && !touched.flat && geometry_.world().is_flat(surfaces_[k]);
+        const bool is_beside_rim = particle_.radius == 0.0 && touched.rim;
         if (!is_beside_rim) surface.normal = touched.normal;
         const Vec3 turn =
             normal_rate(geometry_, particle_.radius, surfaces_[k], touched, state.position, state.motion.velocity);
@@ -224,13 +262,36 @@ bool ContactArc::dissipates() const {
     return false;
 }
 
+/// Something that resists is about to begin.
+bool ContactArc::begins_to_slip(const ContactInterval& now) const {
+    const double slow = kSlowSlip * (length(now.motion.velocity) + particle_.radius * length(now.motion.spin));
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        if (!holds_[k] || materials_.surfaces[k].friction == 0.0 || stuck_[k].to_slip) continue;
+        const Vec3 slip = slip_velocity(now.motion, particle_.radius, materials_.surfaces[k].normal);
+        if (length(slip) <= slow) return true;
+    }
+    return false;
+}
+
+/// Twice the kinetic energy over the mass.
+double ContactArc::twice_kinetic(const Motion& motion) const {
+    return length_squared(motion.velocity) + 0.4 * particle_.radius * particle_.radius * length_squared(motion.spin);
+}
+
+/// Friction takes energy away, whatever the error of the method. What the positions are rounded by says nothing.
+void ContactArc::limit_energy(State& state) const {
+    const Vec3 a = forces(state, 0.0);
+    const double moving = twice_kinetic(state.motion);
+    const double most = twice_kinetic(plan_.motion) + 2.0 * dot(a, state.position - particle_.position);
+    if (moving <= most + kEnergyOffsets * length(a) * contact_offset(state.position)) return;
+    const double part = most > 0.0 ? std::sqrt(most / moving) : 0.0;
+    state.motion.velocity *= part;
+    state.motion.spin *= part;
+}
+
 /// To the nearest state of the energy at the start; along the path where it moves slowly, in speed where it does not.
 void ContactArc::restore_energy(State& state, double t) const {
     const Vec3 a = forces(state, 0.0);
-    const double inertia = 0.4 * particle_.radius * particle_.radius;
-    const auto twice_kinetic = [&](const Motion& m) {
-        return length_squared(m.velocity) + inertia * length_squared(m.spin);
-    };
     for (int k = 0; k < kCorrections; ++k) {
         Vec3 along = a;
         const Holding there = holding(state);

@@ -30,7 +30,7 @@ struct ArcStart {
     double duration = 0.0;       ///< s, that it may last at most
 };
 
-/// One arc, at most kMaxArcAngle long. Everything it is given must outlive it.
+/// One arc, at most kMaxArcAngle long. Everything it is given but the particle must outlive it.
 class ContactArc {
 public:
     struct State {
@@ -43,8 +43,8 @@ public:
 
     /// What it starts with, as if the surfaces were flat: whether it rests, and the forces.
     [[nodiscard]] const ContactInterval& plan() const { return plan_; }
-    /// The state after t seconds, by the classical Runge-Kutta method: on the surfaces that hold, along them, and with
-    /// the energy that it has to have.
+    /// The state after t seconds, by the classical Runge-Kutta method, or the midpoint rule: on the surfaces that hold,
+    /// along them, and with the energy that it has to have.
     [[nodiscard]] State at(double t) const;
     /// True when some surface holds it there.
     [[nodiscard]] bool is_held(const State& state, double t) const;
@@ -78,20 +78,28 @@ private:
                                           const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
     void put_on_surfaces(State& state) const;
+    [[nodiscard]] State by_stages(double t) const;
+    [[nodiscard]] State by_midpoint_rule(double t) const;
+    [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
+    [[nodiscard]] double twice_kinetic(const Motion& motion) const;
     void restore_energy(State& state, double t) const;
+    void limit_energy(State& state) const;
     [[nodiscard]] bool dissipates() const;
 
     const SurfaceGeometry& geometry_;
     const ForceField& forces_;
-    const ForceInput& particle_;
+    ForceInput particle_;  // at the start, wherever it has got to since
     const Holding& materials_;
     ArcStart start_;
     std::array<SurfaceId, kMostHolding> surfaces_{};
     std::array<bool, kMostHolding> is_flat_{};
+    std::array<bool, kMostHolding> is_on_rim_{};
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
+    bool has_uniform_forces_ = false;
     bool keeps_energy_ = false;
+    bool friction_turns_fast_ = false;
 };
 
 }  // namespace ricochet

@@ -106,11 +106,11 @@ std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const 
     const CollisionWorld& world = geometry_.world();
     const CollisionWorld::Nearest nearest = geometry_.nearest(surface, p);
     const bool is_point = particle_.radius == 0.0;
-    const bool is_beside_rim = is_point && !nearest.flat && world.is_flat(surface);
+    const bool is_beside_rim = is_point && nearest.rim;
     const double above = nearest.distance - particle_.radius;
     if (above > (is_beside_rim ? rule.beyond_rim : rule.above) || above < -rule.overlap) return std::nullopt;
     if (dot(particle_.velocity, nearest.normal) > rule.departure) return std::nullopt;
-    if (!is_point || nearest.flat) return ContactSurface{surface, nearest.normal, nearest.flat};
+    if (!is_beside_rim) return ContactSurface{surface, nearest.normal, nearest.flat};
     // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
     const double distance = geometry_.signed_distance_from(surface, p);
     if (rule.beyond_rim > rule.above && std::fabs(distance) > rule.above) return std::nullopt;

@@ -15,6 +15,9 @@ namespace {
 /// Contact intervals after one impact before the particle is set free again; only curved sliding needs more than a few.
 constexpr int kMostIntervals = 64;
 
+/// Arcs up to a contact that is found on one. Each brings the cubic nearer to the arc by its fourth power.
+constexpr int kMostCloserLooks = 12;
+
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
 }  // namespace
@@ -362,26 +365,31 @@ ContactPhase::ContactPath ContactPhase::path_along(const ContactInterval& interv
     }
     const bool leaves = on < interval.duration;
     if (leaves) path = parabola_path(state_.position, v, a, on);
-    if (path.duration > 0.0) keep_offset(path);
+    if (path.duration > 0.0) keep_offset(path, interval);
     return {path, leaves};
 }
 
-/// Puts the end of a path along flat surfaces at the contact offset above all their planes, also where the end lies a
-/// little beyond a rim.
-void ContactPhase::keep_offset(Path& path) const {
+/// Puts the end of a path along flat surfaces at the contact offset above the planes of those that hold it, and not
+/// nearer to the others, also where the end lies a little beyond a rim.
+void ContactPhase::keep_offset(Path& path, const ContactInterval& interval) const {
     const SurfaceGeometry& geometry = step_.geometry();
+    std::array<Vec3, kMostHolding> normals;
     std::array<double, kMostHolding> lifts{};
+    std::size_t count = 0;
     double largest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
         const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
-        lifts[k] = contact_offset(path.end) - height;
-        largest = std::max(largest, std::fabs(lifts[k]));
+        const double lift = contact_offset(path.end) - height;
+        if (interval.push[k] == Vec3{} && lift < 0.0) continue;
+        normals[count] = surface.normal;
+        lifts[count++] = lift;
+        largest = std::max(largest, std::fabs(lift));
     }
     // Next to the origin a height above a large triangle can be all rounding.
     if (largest > 0.5 * kCandidateSlack * max_abs(path.end)) return;
-    path.end = flush_tiny(path.end + shift_by(manifold_.normals(), {lifts.data(), manifold_.size()}));
+    path.end = flush_tiny(path.end + shift_by({normals.data(), count}, {lifts.data(), count}));
 }
 
 /// Follows one arc.
@@ -412,7 +420,17 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
-    stop.contact = step_.follow(path, held_);
+    // The cubic is no more than near the arc: where it comes to a contact, the arc up to there is looked at closely.
+    int closer_looks = 0;
+    stop.contact = step_.follow(path, held_, [&](double time, const Path& tried) -> std::optional<Path> {
+        const ContactArc::State there = arc.at(time);
+        const double off = length(there.position - tried.position(time));
+        if (!(off > kTouchingOffsets * contact_offset(there.position)) || ++closer_looks > kMostCloserLooks) return {};
+        stop.left_surface = false;
+        end = there;
+        turning_point = there.position;
+        return hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, time);
+    });
     const double elapsed = before - step_.remaining();
     const Motion motion = stop.contact ? arc.at(stop.contact->time).motion : end.motion;
     state_.velocity = motion.velocity;

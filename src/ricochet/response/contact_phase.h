@@ -65,7 +65,7 @@ private:
     [[nodiscard]] ContactInterval plan(const Vec3& pull, double pressure, double duration);
     [[nodiscard]] Stop follow(const ContactInterval& interval, const Vec3& forces, bool has_forces);
     [[nodiscard]] ContactPath path_along(const ContactInterval& interval) const;
-    void keep_offset(Path& path) const;
+    void keep_offset(Path& path, const ContactInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration);
     [[nodiscard]] double arc_duration(const ContactArc& arc, bool& leaves) const;
     [[nodiscard]] double time_on_pieces(const ContactArc& arc, const Path& path) const;

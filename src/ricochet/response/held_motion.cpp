@@ -65,12 +65,20 @@ bool& is_stuck(Stuck& stuck, Resistance::Kind kind) {
     return kind == Resistance::Kind::turning ? stuck.to_turning : stuck.to_spinning;
 }
 
-/// One plan: the forces on a motion, and how long they stay.
+/// A vector turned as one unit vector is turned into another, by the shortest way.
+Vec3 turned_with(const Vec3& v, const Vec3& from, const Vec3& to) {
+    if (from == to) return v;
+    const Vec3 sum = from + to;
+    return v - (dot(sum, v) / (1.0 + dot(from, to))) * sum + (2.0 * dot(from, v)) * to;
+}
+
+/// One plan: the forces on a motion, and how long they stay. seen: the surfaces that the motion is along; those that
+/// hold it may have turned since.
 class Plan {
 public:
-    Plan(const Motion& motion, double radius, const Vec3& a, std::span<const HoldingSurface> surfaces, const Grip& grip,
-         double duration, const StuckSurfaces& stuck)
-        : motion_(motion), radius_(radius), a_(a), surfaces_(surfaces), grip_(grip), duration_(duration) {
+    Plan(const Motion& motion, double radius, const Vec3& a, std::span<const HoldingSurface> seen,
+         std::span<const HoldingSurface> surfaces, const Grip& grip, double duration, const StuckSurfaces& stuck)
+        : motion_(motion), radius_(radius), a_(a), seen_(seen), surfaces_(surfaces), grip_(grip), duration_(duration) {
         find_resistances(stuck);
         solve();
     }
@@ -88,6 +96,15 @@ public:
         stop(interval);
         interval.is_stiff = is_stiff(interval.duration);
         return interval;
+    }
+
+    /// Something sticks that has not quite stopped: what holds it must not do work on that.
+    [[nodiscard]] bool drags(const ContactInterval& interval) const {
+        return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
+            StuckSurfaces stuck = interval.stuck;
+            return r.speed == 0.0 && r.rate != Vec3{} && is_stuck(stuck[r.surface], r.kind) &&
+                   length(r.rate) > kStopRounding * (length(motion_.velocity) + radius_ * length(motion_.spin));
+        });
     }
 
 private:
@@ -108,11 +125,13 @@ private:
         };
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
             const HoldingSurface& surface = surfaces_[k];
-            if (surface.friction > 0.0) add(k, Kind::slip, slip_velocity(motion_, radius_, surface.normal));
+            const Vec3& n = seen_[k].normal;
+            const auto carried = [&](const Vec3& rate) { return turned_with(rate, n, surface.normal); };
+            if (surface.friction > 0.0) add(k, Kind::slip, carried(slip_velocity(motion_, radius_, n)));
             if (!is_sphere()) continue;
-            const Vec3 spinning = dot(motion_.spin, surface.normal) * surface.normal;
-            if (surface.rolling_friction > 0.0) add(k, Kind::turning, radius_ * (motion_.spin - spinning));
-            if (surface.spinning_friction > 0.0) add(k, Kind::spinning, radius_ * spinning);
+            const Vec3 spinning = dot(motion_.spin, n) * n;
+            if (surface.rolling_friction > 0.0) add(k, Kind::turning, carried(radius_ * (motion_.spin - spinning)));
+            if (surface.spinning_friction > 0.0) add(k, Kind::spinning, carried(radius_ * spinning));
         }
     }
 
@@ -287,6 +306,7 @@ private:
     Motion motion_;
     double radius_;
     Vec3 a_;
+    std::span<const HoldingSurface> seen_;
     std::span<const HoldingSurface> surfaces_;
     const Grip& grip_;
     double duration_;
@@ -316,11 +336,18 @@ ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a
     surfaces = surfaces.first(std::min(surfaces.size(), kMostHolding));
     Motion start = along_surfaces(motion, radius, surfaces, {});
     for (int k = 1;; ++k) {
-        const ContactInterval interval = Plan(start, radius, a, surfaces, grip, duration, stuck).interval();
-        if (k == kMostPlans || interval.at_rest || !ends_at_once(interval, radius, grip.negligible_path))
-            return interval;
+        Plan plan(start, radius, a, surfaces, surfaces, grip, duration, stuck);
+        const ContactInterval interval = plan.interval();
+        const bool goes_on = ends_at_once(interval, radius, grip.negligible_path) || plan.drags(interval);
+        if (k == kMostPlans || interval.at_rest || !goes_on) return interval;
         start = along_surfaces(start, radius, surfaces, interval.stuck);
     }
+}
+
+ContactInterval plan_interval_by_middle(const Motion& motion, double radius, const Vec3& a,
+                                        std::span<const HoldingSurface> before, std::span<const HoldingSurface> middle,
+                                        const Grip& grip, double duration) {
+    return Plan(motion, radius, a, before, middle, grip, duration, {}).interval();
 }
 
 Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity, double radius,

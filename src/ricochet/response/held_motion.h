@@ -68,6 +68,13 @@ inline constexpr double kShortestIntervals = 32.0;
                                             std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
                                             const StuckSurfaces& stuck = {});
 
+/// The same where the surfaces turn: with their normals as they are in the middle of the interval, for a motion along
+/// `before`, the same surfaces as they are at its start. What slips and turns there is carried over to the middle.
+[[nodiscard]] ContactInterval plan_interval_by_middle(const Motion& motion, double radius, const Vec3& a,
+                                                      std::span<const HoldingSurface> before,
+                                                      std::span<const HoldingSurface> middle, const Grip& grip,
+                                                      double duration);
+
 /// The motion after `elapsed` seconds of an interval. velocity: what the path gave there.
 [[nodiscard]] Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity,
                                      double radius, std::span<const HoldingSurface> surfaces);

@@ -34,15 +34,6 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight) {
     return travelled.found.contact;
 }
 
-std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> held) {
-    if (!can_follow(path)) return std::nullopt;
-    const Vec3 departure = state().velocity;
-    const Travel travelled = travel({path, state().radius, nullptr, {}, held});
-    state().velocity = path.velocity(travelled.elapsed);
-    record_flown(path, travelled.elapsed, departure, false);
-    return travelled.found.contact;
-}
-
 bool ParticleStep::can_follow(const Path& path) {
     if (can_be_followed(path)) return true;
     outcome_.end = MoveEnd::frozen;
@@ -52,7 +43,11 @@ bool ParticleStep::can_follow(const Path& path) {
 
 /// The first contact of a path, and the certified segments to the safe position there or to the path's end.
 ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
-    Travel travel{find_first_contact(geometry_, query, scratch_.contacts)};
+    return travel(query, find_first_contact(geometry_, query, scratch_.contacts));
+}
+
+ParticleStep::Travel ParticleStep::travel(const ContactQuery& query, const ContactQueryResult& found) {
+    Travel travel{found};
     const Path& path = query.path;
     const NearSurfaces& near = travel.found.near;
     std::optional<Contact>& contact = travel.found.contact;
@@ -64,9 +59,7 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
         return travel;
     }
     if (contact) {
-        const SafePosition safe = find_safe_position(near, path, *contact, scratch_.contacts.chain);
-        outcome_.stayed += safe.stayed ? 1 : 0;
-        state().position = safe.position;
+        stop_at_contact(query, travel);
     } else {
         const CertifiedPath followed = follow_freely(near, query);
         state().position = followed.reached;
@@ -76,6 +69,17 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
     travel.elapsed = contact ? contact->time : path.duration;
     pass(travel.elapsed);
     return travel;
+}
+
+/// What blocks the way to the contact is met before.
+void ParticleStep::stop_at_contact(const ContactQuery& query, Travel& travel) {
+    std::optional<Contact>& contact = travel.found.contact;
+    const NearSurfaces& near = travel.found.near;
+    const SafePosition safe = find_safe_position(near, query.path, *contact, scratch_.contacts.chain);
+    outcome_.stayed += safe.stayed ? 1 : 0;
+    state().position = safe.position;
+    if (query.held.empty() || !safe.blocker || safe.time >= contact->time) return;
+    contact = contact_with_blocker(near, query.path, {safe.position, safe.time, safe.blocker});
 }
 
 /// Along a surface that bends away every chord of the path is blocked, and its control polygon is free.

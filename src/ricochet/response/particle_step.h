@@ -36,7 +36,13 @@ public:
     /// The same in contact with surfaces.
     std::optional<Contact> follow(const Flight& flight);
     /// The same for a path whose velocity is the particle's, along surfaces that hold it where there are any.
-    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held = {});
+    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held = {}) {
+        return follow(path, held, [](double, const Path&) { return std::optional<Path>(); });
+    }
+    /// The same for a path that is only an approximation: shorter(time, path) says which path to try next where one has
+    /// come to a contact at a time, or nothing where the path is close enough there.
+    template <class Shorter>
+    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held, const Shorter& shorter);
     /// Calls found(surface) for all surfaces near the particle.
     template <class Found>
     void visit_near(const Found& found);
@@ -67,6 +73,8 @@ private:
 
     [[nodiscard]] bool can_follow(const Path& path);
     [[nodiscard]] Travel travel(const ContactQuery& query);
+    [[nodiscard]] Travel travel(const ContactQuery& query, const ContactQueryResult& found);
+    void stop_at_contact(const ContactQuery& query, Travel& travel);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
     void record_chain();
@@ -85,13 +93,35 @@ private:
     double remaining_;
 };
 
+template <class Shorter>
+std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> held, const Shorter& shorter) {
+    if (!can_follow(path)) return std::nullopt;
+    const Vec3 departure = state().velocity;
+    Path followed = path;
+    const ContactQuery query{followed, state().radius, nullptr, {}, held};
+    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+    while (found.contact) {
+        const std::optional<Path> next = shorter(found.contact->time, followed);
+        if (!next) break;
+        followed = *next;
+        found = find_first_contact(geometry_, query, scratch_.contacts);
+    }
+    const Travel travelled = travel(query, found);
+    state().velocity = followed.velocity(travelled.elapsed);
+    record_flown(followed, travelled.elapsed, departure, false);
+    return travelled.found.contact;
+}
+
 template <class Found>
 void ParticleStep::visit_near(const Found& found) {
     const Path here = line_path(state().position, Vec3{}, 0.0);
     (void)find_first_contact(geometry_, {here, state().radius}, scratch_.contacts);
     const CollisionWorld& world = geometry_.world();
     for (const std::uint32_t k : scratch_.contacts.planes) found(world.planes()[k].surface);
-    for (const std::uint32_t k : scratch_.contacts.shapes) found(world.shapes()[k].surface);
+    for (const std::uint32_t k : scratch_.contacts.shapes) {
+        const CollisionWorld::ShapeSurface& shape = world.shapes()[k];
+        for (SurfaceId part = 0; part < shape.shape.part_count(); ++part) found(shape.surface + part);
+    }
     for (const std::uint32_t triangle : scratch_.contacts.triangles) found(world.surface_of_triangle(triangle));
 }
 

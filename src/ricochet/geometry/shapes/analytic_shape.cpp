@@ -133,17 +133,44 @@ int AnalyticShape::side(const Vec3& p) const {
     return rough != 0 ? rough : shape_.side_of_start(segment<DoubleDouble>(p, p));
 }
 
-ShapePoint AnalyticShape::closest_point(const Vec3& p) const {
-    const LocalPoint near = shape_.closest_point(frame_.precise_local_point(p));
+ShapePoint AnalyticShape::in_world(const LocalPoint& near, const Vec3& p) const {
     const Vec3 normal = frame_.world_normal(near.normal);
     const bool is_near = std::fabs(near.distance) < length(near.point);
-    return {is_near ? p - near.distance * normal : frame_.world_point(near.point), normal, near.distance};
+    return {is_near ? p - near.distance * normal : frame_.world_point(near.point), normal, near.distance, near.part,
+            near.on_rim};
+}
+
+ShapePoint AnalyticShape::closest_point(const Vec3& p) const {
+    return in_world(shape_.closest_point(frame_.precise_local_point(p)), p);
+}
+
+ShapePoint AnalyticShape::closest_point_of(ShapePart part, const Vec3& p) const {
+    return in_world(shape_.closest_point_of(part, frame_.precise_local_point(p)), p);
+}
+
+ShapePoint AnalyticShape::closest_point_beyond(ShapePart part, const Vec3& p) const {
+    return in_world(shape_.closest_point_beyond(part, frame_.precise_local_point(p)), p);
+}
+
+double AnalyticShape::time_over(ShapePart part, const Path& path, double slack) const {
+    return part == ShapePart::side ? path.duration : shape_.time_over_cap(frame_.local_path(path), slack);
+}
+
+ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const HeldParts& held) const {
+    ShapeContacts result;
+    for (const LocalContact& contact : contacts_of(shape_, frame_.local_path(path), radius, held).all()) {
+        result.contacts[result.count++] = {contact.time, frame_.world_normal(contact.normal),
+                                           frame_.world_point(contact.point), contact.part, contact.on_rim};
+    }
+    return result;
 }
 
 std::optional<ShapeContact> AnalyticShape::first_contact(const Path& path, double radius) const {
-    const auto contact = ricochet::first_contact(shape_, frame_.local_path(path), radius);
-    if (!contact) return std::nullopt;
-    return ShapeContact{contact->time, frame_.world_normal(contact->normal), frame_.world_point(contact->point)};
+    const ShapeContacts found = contacts(path, radius);
+    const auto all = found.all();
+    const auto first = std::min_element(all.begin(), all.end(),
+                                        [](const ShapeContact& a, const ShapeContact& b) { return a.time < b.time; });
+    return first == all.end() ? std::nullopt : std::optional(*first);
 }
 
 bool AnalyticShape::segment_is_clear(const Vec3& p, const Vec3& q) const {

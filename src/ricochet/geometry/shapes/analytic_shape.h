@@ -7,7 +7,10 @@
 /// this shape, in double-double; it differs from the image under the rounded map by a few 2^-53 of its size.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/transform.h"
@@ -51,6 +54,15 @@ struct ShapeContact {
     double time = 0.0;  ///< s along the path
     Vec3 normal;        ///< unit, from the surface to the centre's side
     Vec3 point;         ///< on the surface
+    ShapePart part = ShapePart::side;
+    bool on_rim = false;
+};
+
+/// The first contact with each part of a shape.
+struct ShapeContacts {
+    std::array<ShapeContact, 3> contacts{};
+    std::size_t count = 0;
+    [[nodiscard]] std::span<const ShapeContact> all() const { return {contacts.data(), count}; }
 };
 
 /// The closest point of a shape's surface.
@@ -58,6 +70,8 @@ struct ShapePoint {
     Vec3 point;
     Vec3 normal;            ///< unit, outward
     double distance = 0.0;  ///< signed, m: positive outside
+    ShapePart part = ShapePart::side;
+    bool on_rim = false;  ///< where a cap and the side meet
 };
 
 /// A two-sided surface around a convex body. Immutable; safe from any number of threads.
@@ -77,15 +91,26 @@ public:
     /// itself, also next to the surface and far from the origin (see Ellipsoid::closest_point); the point and its
     /// normal have that error and the rounding of the coordinates.
     [[nodiscard]] ShapePoint closest_point(const Vec3& p) const;
+    /// The same of one part, with its rim; and of one that goes on beyond it: an endless cylinder, a plane. From inside
+    /// a cylinder touches as these do: several at a time.
+    [[nodiscard]] ShapePoint closest_point_of(ShapePart part, const Vec3& p) const;
+    [[nodiscard]] ShapePoint closest_point_beyond(ShapePart part, const Vec3& p) const;
+    /// How many parts it has: the side, and two caps.
+    [[nodiscard]] std::size_t part_count() const { return shape_.parts().size(); }
+    /// Time that a path along a part stays within `slack` m of it; the whole duration for sides.
+    [[nodiscard]] double time_over(ShapePart part, const Path& path, double slack) const;
 
-    /// First time at which the distance between the path and the surface shrinks to `radius` (m, >= 0), from either
-    /// side. A sphere that starts in overlap is stopped only when approaching: at the first time at which the distance
-    /// shrinks (faster than kMinApproach of the speed) while it is at most the radius. A point that starts on the
-    /// surface is turned back from the side it heads for, at time 0.
+    /// For each part the first time at which the distance between the path and it shrinks to `radius` (m, >= 0), from
+    /// either side; from outside, where only one can be met, the first of all. Held parts are left out; from outside
+    /// nothing else can be met either then. A sphere that starts in overlap is stopped only when approaching: at the
+    /// first time at which the distance shrinks (faster than kMinApproach of the speed) while it is at most the radius.
+    /// A point that starts on the surface is turned back from the side it heads for, at time 0.
     ///
     /// Points, spheres against spheres, and spheres inside circular cylinders: roots of polynomials in double-double,
     /// right to about an ulp. Other cases: conservative advancement on the true distance, right to that distance's
     /// error over the normal speed, and to an ulp. Only grazes that dip in by less than those errors can be missed.
+    [[nodiscard]] ShapeContacts contacts(const Path& path, double radius, const HeldParts& held = {}) const;
+    /// The first of them.
     [[nodiscard]] std::optional<ShapeContact> first_contact(const Path& path, double radius) const;
 
     /// True when the closed segment [p, q] certainly does not intersect the surface. Errs on the side of false, by some
@@ -106,6 +131,7 @@ public:
 private:
     AnalyticShape(const AffineMap& world_from_local, const LocalShape& shape);
 
+    [[nodiscard]] ShapePoint in_world(const LocalPoint& near, const Vec3& p) const;
     template <class Scalar>
     [[nodiscard]] LocalSegment<Scalar> segment(const Vec3& p, const Vec3& q) const;
 

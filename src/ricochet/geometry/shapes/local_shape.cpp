@@ -332,6 +332,22 @@ template int LocalShape::side_of_start(const LocalSegment<DoubleDouble>&) const;
 template bool LocalShape::is_clear(const LocalSegment<double>&) const;
 template bool LocalShape::is_clear(const LocalSegment<DoubleDouble>&) const;
 
+namespace {
+
+/// Which way a cap faces along z.
+double up_of(ShapePart cap) { return cap == ShapePart::top ? 1.0 : -1.0; }
+
+ShapePart cap_on(double up) { return up > 0.0 ? ShapePart::top : ShapePart::bottom; }
+
+/// The rim of a cap, seen from a point that is so far beyond the side and over the cap.
+LocalPoint rim_point(const LocalPoint& lateral, ShapePart part, double up, double height, double half_height) {
+    const double distance = std::sqrt(lateral.distance * lateral.distance + height * height);
+    const Vec3 normal = (lateral.distance / distance) * lateral.normal + Vec3{0.0, 0.0, up * (height / distance)};
+    return {{lateral.point.x, lateral.point.y, up * half_height}, normal, distance, part, true};
+}
+
+}  // namespace
+
 LocalPoint LocalShape::closest_point(const PreciseVec3& y) const {
     LocalPoint lateral = ellipsoid_.closest_point(y);
     if (!is_capped_) return lateral;
@@ -339,10 +355,32 @@ LocalPoint LocalShape::closest_point(const PreciseVec3& y) const {
     const double height = (up * y.z + -half_height_).hi;
     const bool is_outside_side = lateral.distance > 0.0;
     if (height <= 0.0 && (is_outside_side || lateral.distance >= height)) return lateral;
-    if (!is_outside_side) return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, height};
-    const double distance = std::sqrt(lateral.distance * lateral.distance + height * height);
-    const Vec3 normal = (lateral.distance / distance) * lateral.normal + Vec3{0.0, 0.0, up * (height / distance)};
-    return {{lateral.point.x, lateral.point.y, up * half_height_}, normal, distance};
+    if (!is_outside_side) return closest_point_beyond(cap_on(up), y);
+    return rim_point(lateral, ShapePart::side, up, height, half_height_);
+}
+
+LocalPoint LocalShape::closest_point_of(ShapePart part, const PreciseVec3& y) const {
+    const LocalPoint lateral = ellipsoid_.closest_point(y);
+    if (!is_capped_) return lateral;
+    if (part == ShapePart::side) {
+        const double up = y.z.hi < 0.0 ? -1.0 : 1.0;
+        const double height = (up * y.z + -half_height_).hi;
+        return height <= 0.0 ? lateral : rim_point(lateral, part, up, height, half_height_);
+    }
+    const LocalPoint over_cap = closest_point_beyond(part, y);
+    if (lateral.distance <= 0.0) return over_cap;
+    return rim_point(lateral, part, up_of(part), over_cap.distance, half_height_);
+}
+
+LocalPoint LocalShape::closest_point_beyond(ShapePart part, const PreciseVec3& y) const {
+    if (part == ShapePart::side) return ellipsoid_.closest_point(y);
+    const double up = up_of(part);
+    return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, (up * y.z + -half_height_).hi, part, false};
+}
+
+std::span<const ShapePart> LocalShape::parts() const {
+    static constexpr std::array kAll{ShapePart::side, ShapePart::top, ShapePart::bottom};
+    return std::span(kAll).first(is_capped_ ? 3 : 1);
 }
 
 double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) const {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "ricochet/core/double_double.h"
 #include "ricochet/core/vec3.h"
@@ -26,11 +28,16 @@ struct LocalPath {
     [[nodiscard]] Vec3 jerk() const;
 };
 
+/// The smooth parts of a shape's surface. A ball is all side.
+enum class ShapePart : std::uint8_t { side, top, bottom };
+
 /// The point of a surface closest to a given one, in the shape's frame.
 struct LocalPoint {
     Vec3 point;             ///< on the surface
     Vec3 normal;            ///< unit, outward
     double distance = 0.0;  ///< signed, m: positive outside
+    ShapePart part = ShapePart::side;
+    bool on_rim = false;  ///< where a cap and the side meet
 };
 
 /// An ellipsoid about the origin along the coordinate axes, or with two axes an endless elliptic cylinder along z:
@@ -126,6 +133,14 @@ public:
     [[nodiscard]] bool is_clear(const LocalSegment<Scalar>& segment) const;
 
     [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
+    /// The same of one part, with its rim.
+    [[nodiscard]] LocalPoint closest_point_of(ShapePart part, const PreciseVec3& y) const;
+    /// The same of one part that goes on beyond its rim: an endless cylinder, a plane.
+    [[nodiscard]] LocalPoint closest_point_beyond(ShapePart part, const PreciseVec3& y) const;
+    /// Time that a path stays over a cap, or beside it by at most `slack` m, s.
+    [[nodiscard]] double time_over_cap(const LocalPath& path, double slack) const;
+    /// side, and top and bottom where there are caps.
+    [[nodiscard]] std::span<const ShapePart> parts() const;
     /// A lower bound, tight to rounding, of the distance of a segment that is_clear() from the surface.
     [[nodiscard]] double distance_of(const PreciseVec3& from, const PreciseVec3& to) const;
 
@@ -161,9 +176,27 @@ struct LocalContact {
     double time = 0.0;  ///< s
     Vec3 normal;        ///< unit, from the surface to the side the path comes from
     Vec3 point;         ///< on the surface
+    ShapePart part = ShapePart::side;
+    bool on_rim = false;
 };
 
-/// See AnalyticShape::first_contact.
-[[nodiscard]] std::optional<LocalContact> first_contact(const LocalShape& shape, const LocalPath& path, double radius);
+/// The first contact with each part of a shape.
+struct LocalContacts {
+    std::array<LocalContact, 3> contacts{};
+    std::size_t count = 0;
+    [[nodiscard]] std::span<const LocalContact> all() const { return {contacts.data(), count}; }
+};
+
+/// Parts of a shape that take no part in contacts, since they hold the particle.
+struct HeldParts {
+    std::array<bool, 3> is_held{};
+    [[nodiscard]] bool any() const { return is_held[0] || is_held[1] || is_held[2]; }
+    [[nodiscard]] bool operator[](ShapePart part) const { return is_held[static_cast<std::size_t>(part)]; }
+    void add(ShapePart part) { is_held[static_cast<std::size_t>(part)] = true; }
+};
+
+/// See AnalyticShape::contacts.
+[[nodiscard]] LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
+                                        const HeldParts& held);
 
 }  // namespace ricochet

@@ -36,8 +36,9 @@ constexpr int kMaxAdvancementSteps = 200;
 /// kMaxAdvancementSteps steps the last safe time is the answer; half a dozen are usual, and 30 for a graze.
 class ConservativeAdvancement {
 public:
-    /// side: +1 outside, -1 inside.
-    ConservativeAdvancement(const LocalShape& shape, const LocalPath& path, double radius, int side);
+    /// Of a body from outside, or of one of its parts from inside, where the others do not end it.
+    ConservativeAdvancement(const LocalShape& shape, const LocalPath& path, double radius,
+                            std::optional<ShapePart> from_inside);
 
     /// True when the ball touches or overlaps the surface at the path's start, to rounding.
     [[nodiscard]] bool starts_in_overlap() const { return is_touching(separation_at(0.0)); }
@@ -76,20 +77,23 @@ private:
     const LocalShape& shape_;
     const LocalPath& path_;
     double radius_;
-    int side_;
-    double tolerance_;  ///< m: what distances err by
+    std::optional<ShapePart> part_;  // from inside
+    int side_;                       // +1 outside, -1 inside
+    double tolerance_;               // m: what distances err by
 };
 
 ConservativeAdvancement::ConservativeAdvancement(const LocalShape& shape, const LocalPath& path, double radius,
-                                                 int side)
+                                                 std::optional<ShapePart> from_inside)
     : shape_(shape),
       path_(path),
       radius_(radius),
-      side_(side),
+      part_(from_inside),
+      side_(from_inside ? -1 : 1),
       tolerance_(kTouching * shape.ellipsoid().distance_error(radius, Vec3{})) {}
 
 ConservativeAdvancement::Separation ConservativeAdvancement::separation_at(double s) const {
-    const LocalPoint near = shape_.closest_point(path_.position(s));
+    const PreciseVec3 position = path_.position(s);
+    const LocalPoint near = part_ ? shape_.closest_point_beyond(*part_, position) : shape_.closest_point(position);
     return {s, side_ * near.distance - radius_, side_ * dot(near.normal, path_.velocity(s)), near.normal};
 }
 
@@ -238,18 +242,17 @@ Polynomial height_over_cap(const LocalShape& shape, const LocalPath& path, doubl
     return p;
 }
 
-/// First time at which a path from inside leaves the shape made smaller by `inset`, which is 0 unless it is round.
-double first_exit(const LocalShape& shape, const LocalPath& path, double inset, double from) {
+/// First time at which a path from inside comes within `inset` of a part, which is 0 unless the part is round or flat.
+double first_exit(const LocalShape& shape, const LocalPath& path, ShapePart part, double inset, double from) {
+    if (part != ShapePart::side) {
+        const double up = part == ShapePart::top ? 1.0 : -1.0;
+        const Polynomial below = height_over_cap(shape, path, up, DoubleDouble(inset), -1.0);
+        return first_time(down_crossings(below, from, path.duration));
+    }
     const Ellipsoid& ellipsoid = shape.ellipsoid();
     const Polynomial clearance = inset > 0.0 ? ellipsoid.value_along(path, -1, two_diff(ellipsoid.smallest(), inset))
                                              : ellipsoid.value_along(path, -1);
-    double time = first_time(down_crossings(clearance, from, path.duration));
-    if (!shape.is_capped()) return time;
-    for (const double up : {1.0, -1.0}) {
-        const Polynomial below = height_over_cap(shape, path, up, DoubleDouble(inset), -1.0);
-        time = std::min(time, first_time(down_crossings(below, from, path.duration)));
-    }
-    return time;
+    return first_time(down_crossings(clearance, from, path.duration));
 }
 
 /// First time at which a point from outside enters a cylinder: through the side while between the caps, or through a
@@ -300,63 +303,96 @@ int heading(const LocalShape& shape, const LocalPath& path) {
     return first_sign(shape.ellipsoid().value_along(path, +1));
 }
 
+LocalContact contact_with(const LocalPoint& near, double time, int side) {
+    return {time, side < 0 ? -near.normal : near.normal, near.point, near.part, near.on_rim};
+}
+
 LocalContact contact_at(const LocalShape& shape, const LocalPath& path, double time, int side) {
-    const LocalPoint near = shape.closest_point(path.position(time));
-    return {time, side < 0 ? -near.normal : near.normal, near.point};
+    return contact_with(shape.closest_point(path.position(time)), time, side);
 }
 
-std::optional<LocalContact> first_contact_of_point(const LocalShape& shape, const LocalPath& path) {
-    const int side = shape.side_of_start(start_of(path));
-    // A point that starts on the surface is turned back from the side it heads for, as with planes.
-    if (side == 0) return contact_at(shape, path, 0.0, -heading(shape, path));
-    double time = kNever;
-    if (side < 0) {
-        time = first_exit(shape, path, 0.0, 0.0);
-    } else if (shape.is_capped()) {
-        time = first_entry_of_cylinder(shape, path);
-    } else {
-        time = first_time(down_crossings(shape.ellipsoid().value_along(path, +1), 0.0, path.duration));
-    }
-    if (time == kNever) return std::nullopt;
-    return contact_at(shape, path, time, side);
+LocalContact contact_with_part(const LocalShape& shape, const LocalPath& path, ShapePart part, double time) {
+    return contact_with(shape.closest_point_beyond(part, path.position(time)), time, -1);
 }
 
-/// A sphere from outside is a point against the sphere that is larger by the radius; a sphere, or a circular cylinder,
-/// from inside is one against the shape that is smaller by it.
-bool has_closed_form(const LocalShape& shape, double radius, int side) {
-    if (!shape.ellipsoid().is_round()) return false;
-    if (side > 0) return !shape.is_capped();
-    return radius < shape.ellipsoid().smallest() && (!shape.is_capped() || radius < shape.half_height());
+double first_entry(const LocalShape& shape, const LocalPath& path) {
+    if (shape.is_capped()) return first_entry_of_cylinder(shape, path);
+    return first_time(down_crossings(shape.ellipsoid().value_along(path, +1), 0.0, path.duration));
 }
 
-double contact_in_closed_form(const LocalShape& shape, const LocalPath& path, double radius, int side, double from) {
-    if (side < 0) return first_exit(shape, path, radius, from);
-    const Polynomial clearance = shape.ellipsoid().value_along(path, +1, two_sum(shape.ellipsoid().smallest(), radius));
+/// A sphere from outside is a point against the sphere that is larger by the radius; a sphere in a sphere, or in a
+/// circular cylinder, is one against the surface that is smaller by it.
+double contact_from_outside(const LocalShape& shape, const LocalPath& path, double radius,
+                            const ConservativeAdvancement& advancement, double from) {
+    const Ellipsoid& ellipsoid = shape.ellipsoid();
+    if (!ellipsoid.is_round() || shape.is_capped()) return advancement.first_contact(from).value_or(kNever);
+    const Polynomial clearance = ellipsoid.value_along(path, +1, two_sum(ellipsoid.smallest(), radius));
     return first_time(down_crossings(clearance, from, path.duration));
 }
 
-std::optional<LocalContact> first_contact_of_ball(const LocalShape& shape, const LocalPath& path, double radius) {
+double contact_from_inside(const LocalShape& shape, const LocalPath& path, ShapePart part, double radius,
+                           const ConservativeAdvancement& advancement, double from) {
+    const bool has_closed_form =
+        part != ShapePart::side || (shape.ellipsoid().is_round() && radius < shape.ellipsoid().smallest());
+    return has_closed_form ? first_exit(shape, path, part, radius, from)
+                           : advancement.first_contact(from).value_or(kNever);
+}
+
+/// First contact of a sphere; contact_after(from): the first after a time at which it is separated.
+template <class ContactAfter>
+double contact_of_ball(const ConservativeAdvancement& advancement, double duration, const ContactAfter& contact_after) {
+    if (!advancement.starts_in_overlap()) return contact_after(0.0);
+    const ConservativeAdvancement::Overlap overlap = advancement.follow_overlap();
+    if (overlap.is_stopped) return overlap.time;
+    return overlap.time < duration ? contact_after(overlap.time) : kNever;
+}
+
+double contact_of_ball_outside(const LocalShape& shape, const LocalPath& path, double radius) {
+    const ConservativeAdvancement advancement(shape, path, radius, std::nullopt);
+    return contact_of_ball(advancement, path.duration,
+                           [&](double from) { return contact_from_outside(shape, path, radius, advancement, from); });
+}
+
+double contact_of_ball_inside(const LocalShape& shape, const LocalPath& path, ShapePart part, double radius) {
+    const ConservativeAdvancement advancement(shape, path, radius, part);
+    return contact_of_ball(advancement, path.duration, [&](double from) {
+        return contact_from_inside(shape, path, part, radius, advancement, from);
+    });
+}
+
+int side_of_start(const LocalShape& shape, const LocalPath& path, double radius) {
+    if (radius == 0.0) return shape.side_of_start(start_of(path));
     const double distance = shape.closest_point(path.position(0.0)).distance;
-    int side = static_cast<int>(distance > 0.0) - static_cast<int>(distance < 0.0);
-    if (side == 0) side = heading(shape, path) < 0 ? -1 : 1;
-    const ConservativeAdvancement advancement(shape, path, radius, side);
-    double from = 0.0;
-    if (advancement.starts_in_overlap()) {
-        const ConservativeAdvancement::Overlap overlap = advancement.follow_overlap();
-        if (overlap.is_stopped) return contact_at(shape, path, overlap.time, side);
-        from = overlap.time;
-        if (from >= path.duration) return std::nullopt;
-    }
-    const double time = has_closed_form(shape, radius, side) ? contact_in_closed_form(shape, path, radius, side, from)
-                                                             : advancement.first_contact(from).value_or(kNever);
-    if (time == kNever) return std::nullopt;
-    return contact_at(shape, path, time, side);
+    const int side = static_cast<int>(distance > 0.0) - static_cast<int>(distance < 0.0);
+    if (side != 0) return side;
+    return heading(shape, path) < 0 ? -1 : 1;
 }
 
 }  // namespace
 
-std::optional<LocalContact> first_contact(const LocalShape& shape, const LocalPath& path, double radius) {
-    return radius > 0.0 ? first_contact_of_ball(shape, path, radius) : first_contact_of_point(shape, path);
+double LocalShape::time_over_cap(const LocalPath& path, double slack) const {
+    const Ellipsoid widened({ellipsoid_.half_axis(0) + slack, ellipsoid_.half_axis(1) + slack, 1.0}, 2);
+    return std::min(path.duration, first_time(down_crossings(widened.value_along(path, -1), 0.0, path.duration)));
+}
+
+LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius, const HeldParts& held) {
+    LocalContacts found;
+    const int side = side_of_start(shape, path, radius);
+    if (side < 0) {
+        for (const ShapePart part : shape.parts()) {
+            if (held[part]) continue;
+            const double time = radius > 0.0 ? contact_of_ball_inside(shape, path, part, radius)
+                                             : first_exit(shape, path, part, 0.0, 0.0);
+            if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
+        }
+    } else if (!held.any()) {
+        // A point that starts on the surface is turned back from the side it heads for, as with planes.
+        double time = 0.0;
+        if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);
+        const int seen_from = side > 0 ? 1 : -heading(shape, path);
+        if (time != kNever) found.contacts[found.count++] = contact_at(shape, path, time, seen_from);
+    }
+    return found;
 }
 
 }  // namespace ricochet

@@ -42,6 +42,7 @@ bool may_verify(const std::string& header) {
     static const std::set<std::string> plain = {
         "core/box3.h",
         "core/error.h",
+        "core/motion_part.h",
         "core/segment.h",
         "core/tolerances.h",
         "core/transform.h",

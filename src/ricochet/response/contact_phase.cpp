@@ -65,6 +65,8 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
         const double fastest =
             is_kicked(flight) ? std::numeric_limits<double>::infinity() : rules_.settings.resting_speed;
         support = support_of(forces_now(flight), fastest);
+        // Its force has acted already: what pulls it off here does not, and a surface that bends towards its way holds.
+        if (!support && is_kicked(flight)) support = support_of(Vec3{}, fastest);
     }
     const bool is_slow = support && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;

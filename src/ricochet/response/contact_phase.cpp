@@ -58,7 +58,8 @@ std::optional<Contact> ContactPhase::resume() {
 std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& contact, const Motion& arriving) {
     const bool is_stuck = std::exchange(remaining_at_contact_, step_.remaining()) == step_.remaining();
     std::optional<ContactSurface> support;
-    if (rebounds_slowly(flight, contact, arriving)) {
+    const bool can_last = rebounds_slowly(flight, contact, arriving);
+    if (can_last) {
         manifold_.replace(contact.all(), TouchRule::at(state_.position));
         gather();
         // What the step's own kick put into the velocity is not the speed of a departure.
@@ -70,7 +71,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     }
     const bool is_slow = support && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
-    if (!support) return std::nullopt;
+    if (!support) return can_last ? drift(flight) : std::nullopt;
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
         particle_.spin = Vec3{};
@@ -197,6 +198,25 @@ void ContactPhase::land(const Motion& arriving, double friction) {
     state_.velocity = project_off(state_.velocity, manifold_.normals());
     manifold_.load(before - state_.velocity);
     manifold_.record_push(state_.velocity - before, 1.0, impact_);
+}
+
+/// Where flights are straight until the forces act at their end, they lead back at once onto a surface that bends
+/// towards them and that the forces pull off: it goes along the surface instead, and the forces act at the end of that.
+std::optional<Contact> ContactPhase::drift(const Flight& flight) {
+    if (rules_.settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
+    const auto support = support_of(Vec3{}, rules_.settings.resting_speed);
+    if (!support) return std::nullopt;
+    const Vec3 forces = forces_now(flight);
+    const Vec3 velocity = state_.velocity;
+    const double before = step_.remaining();
+    const double rebound = std::max(0.0, dot(velocity, support->normal));
+    state_.velocity = project_off(velocity - rebound * support->normal, manifold_.normals());
+    impact_.push(support->surface, state_.velocity - velocity, false);
+    const auto contact = follow_surface(true);
+    step_.log().note_impact();
+    state_.velocity += (before - step_.remaining()) * forces;
+    step_.log().note_flight();
+    return contact;
 }
 
 /// The rest of the bounce cascade, summed.

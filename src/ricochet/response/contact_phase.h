@@ -57,6 +57,7 @@ private:
     [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     void land(const Motion& arriving, double friction);
+    std::optional<Contact> drift(const Flight& flight);
     [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
     void settle(const Vec3& forces);
     [[nodiscard]] Stop spend_cascade(const ContactSurface& support, double left);

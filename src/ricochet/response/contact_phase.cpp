@@ -102,7 +102,6 @@ void ContactPhase::record_weight() {
 /// on.
 bool ContactPhase::rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const {
     if (step_.remaining() <= 0.0) return false;
-    const double resting_speed = rules_.settings.resting_speed;
     const Vec3 forces = forces_now(flight);
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact_.material_of(surface.surface);
@@ -110,9 +109,19 @@ bool ContactPhase::rebounds_slowly(const Flight& flight, const Contact& contact,
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * flight.kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        const bool can_rest = material.can_hold(resting_speed);
-        return !(approach > 0.0 && rebound >= (can_rest ? resting_speed : 0.0));
+        return !(approach > 0.0 && rebound >= slow_rebound(surface, forces, is_kicked(flight)));
     });
+}
+
+/// The speed of rebounds, m/s, below which bounces on a surface are contact. Bounces without losses never end, but are
+/// none where they rise no higher than what is touched. kicked: a kick's bounces stay as they are.
+double ContactPhase::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked) const {
+    const Material& material = impact_.material_of(surface.surface);
+    const double resting_speed = rules_.settings.resting_speed;
+    if (material.can_hold(resting_speed)) return resting_speed;
+    if (kicked || material.is_random()) return 0.0;
+    const double pressing = std::max(0.0, pressing_on(surface, forces, state_.velocity));
+    return std::min(resting_speed, std::sqrt(2.0 * pressing * kTouchingOffsets * contact_offset(state_.position)));
 }
 
 /// The surface of the manifold that holds it hardest when the rebounds are over; nothing when it flies on.
@@ -139,8 +148,7 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     const ContactManifold::Holding holding = manifold_.holding(impact_);
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
-        const bool can_rest = impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed);
-        if (!can_rest || dot(state_.velocity, surface.normal) > fastest) continue;
+        if (!(dot(state_.velocity, surface.normal) <= fastest_departure(surface, forces, fastest))) continue;
         normals[count] = surface.normal;
         surfaces[count] = holding.surfaces[k];
         if (!surface.flat)
@@ -158,6 +166,13 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     const ContactInterval interval = plan_interval(motion, state_.radius, forces, together, Grip{}, 0.0, stuck);
     for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
     return pushes;
+}
+
+/// The same for one surface.
+double ContactPhase::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest) const {
+    if (impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed)) return fastest;
+    const double slow = slow_rebound(surface, forces, fastest > rules_.settings.resting_speed);
+    return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 
 /// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
@@ -229,8 +244,9 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     settle(forces);
     impact_.push(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * rules_.settings.resting_speed;
-    if (!(pressing > 0.0) || rattles) return {};
-    return spend_cascade(support, cascade_duration(rebound, pressing, slow_restitution(support.surface)));
+    const double restitution = slow_restitution(support.surface);
+    if (!(pressing > 0.0) || rattles || restitution == 1.0) return {};
+    return spend_cascade(support, cascade_duration(rebound, pressing, restitution));
 }
 
 /// Other surfaces of the manifold that will hold it are landed on as well: rattling between them would not end.

@@ -52,6 +52,8 @@ private:
     };
 
     [[nodiscard]] bool rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const;
+    [[nodiscard]] double slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked) const;
+    [[nodiscard]] double fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest) const;
     [[nodiscard]] std::optional<ContactSurface> support_of(const Vec3& forces, double fastest) const;
     [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest) const;
     [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;

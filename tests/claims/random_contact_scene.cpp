@@ -180,6 +180,14 @@ private:
     CollisionQueries bodies_;
 };
 
+/// True when bounces on one of the colliders never die out. A point that starts at rest 1e-12 m above such a surface
+/// rightly hits it every microsecond and so spends the bounces of every step.
+bool bounces_for_ever(const SimulationSetup& setup) {
+    return std::any_of(setup.colliders.begin(), setup.colliders.end(), [&](const ColliderDescription& collider) {
+        return !setup.materials[collider.material].can_hold(setup.options.resting_speed);
+    });
+}
+
 void add_particles(std::uint64_t seed, SimulationSetup& setup) {
     const FreeSpace space(setup.colliders);
     const Vec3 center = center_of(setup.colliders[0].shape);
@@ -198,7 +206,8 @@ void add_particles(std::uint64_t seed, SimulationSetup& setup) {
         const Vec3 direction = draws.direction();
         const double distance = std::max(particle.radius, 1e-12);
         if (!space.is_free(particle.position, distance)) continue;
-        if (touches) particle.position = space.touching(particle.position, direction, distance);
+        const bool falls_from_nearby = particle.radius == 0.0 && particle.velocity == Vec3{} && bounces_for_ever(setup);
+        if (touches && !falls_from_nearby) particle.position = space.touching(particle.position, direction, distance);
         setup.particles.push_back(particle);
     }
 }

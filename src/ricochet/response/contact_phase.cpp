@@ -240,8 +240,7 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     const Vec3 forces = rules_.forces.acceleration(state_);
     const double pressing = pressing_on(support, forces, state_.velocity);
     const Vec3 before = state_.velocity;
-    state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
-    settle(forces);
+    if (!settle(forces)) state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
     impact_.push(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * rules_.settings.resting_speed;
     const double restitution = slow_restitution(support.surface);
@@ -249,8 +248,9 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     return spend_cascade(support, cascade_duration(rebound, pressing, restitution));
 }
 
-/// Other surfaces of the manifold that will hold it are landed on as well: rattling between them would not end.
-void ContactPhase::settle(const Vec3& forces) {
+/// Where several surfaces of the manifold will hold it, it lands on all: rattling between them would not end. False when
+/// one does. As it leaves the impact: without one of the rebounds it slips another way, and others would hold.
+bool ContactPhase::settle(const Vec3& forces) {
     const auto pushes = pushes_together(forces, rules_.settings.resting_speed);
     const ContactManifold::Holding holding = manifold_.holding(impact_);
     std::array<HoldingSurface, kMostHolding> surfaces;
@@ -258,12 +258,13 @@ void ContactPhase::settle(const Vec3& forces) {
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         if (pushes[k] != Vec3{}) surfaces[count++] = holding.surfaces[k];
     }
-    if (count < 2) return;
+    if (count < 2) return false;
     const std::span<const HoldingSurface> together(surfaces.data(), count);
     const Motion motion =
         along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
     state_.velocity = project_off(motion.velocity, manifold_.normals());
     particle_.spin = motion.spin;
+    return true;
 }
 
 /// Lets the time of a cascade pass, s; on average it presses with (1 + e) / 2 of the full force. What the step's end

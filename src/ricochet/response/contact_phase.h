@@ -61,7 +61,7 @@ private:
     void land(const Motion& arriving, double friction);
     std::optional<Contact> drift(const Flight& flight);
     [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
-    void settle(const Vec3& forces);
+    [[nodiscard]] bool settle(const Vec3& forces);
     [[nodiscard]] Stop spend_cascade(const ContactSurface& support, double left);
     std::optional<Contact> follow_surface(bool kicked);
     [[nodiscard]] Stop advance(const Vec3& forces, bool has_forces, double pressure, double duration);

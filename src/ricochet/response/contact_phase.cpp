@@ -103,23 +103,31 @@ void ContactPhase::record_weight() {
 bool ContactPhase::rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const {
     if (step_.remaining() <= 0.0) return false;
     const Vec3 forces = forces_now(flight);
+    const bool dies_out = std::any_of(contact.all().begin(), contact.all().end(),
+                                      [&](const ContactSurface& surface) { return has_losses(surface); });
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact_.material_of(surface.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * flight.kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        return !(approach > 0.0 && rebound >= slow_rebound(surface, forces, is_kicked(flight)));
+        return !(approach > 0.0 && rebound >= slow_rebound(surface, forces, is_kicked(flight), dies_out));
     });
 }
 
-/// The speed of rebounds, m/s, below which bounces on a surface are contact. Bounces without losses never end, but are
-/// none where they rise no higher than what is touched. kicked: a kick's bounces stay as they are.
-double ContactPhase::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked) const {
-    const Material& material = impact_.material_of(surface.surface);
+/// True when bounces on the surface die out.
+bool ContactPhase::has_losses(const ContactSurface& surface) const {
+    return impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed);
+}
+
+/// The speed of rebounds, m/s, below which bounces on a surface are contact. Without losses they die out between it and
+/// another surface that has some (`dies_out`); alone they never end, but are none where they rise no higher than what
+/// is touched. kicked: a kick's bounces stay as they are.
+double ContactPhase::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked, bool dies_out) const {
     const double resting_speed = rules_.settings.resting_speed;
-    if (material.can_hold(resting_speed)) return resting_speed;
-    if (kicked || material.is_random()) return 0.0;
+    if (has_losses(surface)) return resting_speed;
+    if (kicked || impact_.material_of(surface.surface).is_random()) return 0.0;
+    if (dies_out) return resting_speed;
     const double pressing = std::max(0.0, pressing_on(surface, forces, state_.velocity));
     return std::min(resting_speed, std::sqrt(2.0 * pressing * kTouchingOffsets * contact_offset(state_.position)));
 }
@@ -140,6 +148,18 @@ std::optional<ContactSurface> ContactPhase::support_of(const Vec3& forces, doubl
 /// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
 /// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
 std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces, double fastest) const {
+    bool has_lossless = false;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) has_lossless = has_lossless || !has_losses(manifold_[k]);
+    const auto pushes = pushes_together(forces, fastest, true);
+    if (!has_lossless) return pushes;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (has_losses(manifold_[k]) && pushes[k] != Vec3{}) return pushes;
+    }
+    return pushes_together(forces, fastest, false);
+}
+
+/// The same. die_out: bounces on surfaces without losses do, between them and others.
+std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces, double fastest, bool die_out) const {
     std::array<Vec3, kMostHolding> pushes{};
     std::array<HoldingSurface, kMostHolding> surfaces;
     std::array<Vec3, kMostHolding> normals;
@@ -148,7 +168,7 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     const ContactManifold::Holding holding = manifold_.holding(impact_);
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
-        if (!(dot(state_.velocity, surface.normal) <= fastest_departure(surface, forces, fastest))) continue;
+        if (!(dot(state_.velocity, surface.normal) <= fastest_departure(surface, forces, fastest, die_out))) continue;
         normals[count] = surface.normal;
         surfaces[count] = holding.surfaces[k];
         if (!surface.flat)
@@ -168,10 +188,11 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     return pushes;
 }
 
-/// The same for one surface.
-double ContactPhase::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest) const {
-    if (impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed)) return fastest;
-    const double slow = slow_rebound(surface, forces, fastest > rules_.settings.resting_speed);
+/// The speed, m/s, up to which it may leave a surface that will hold it.
+double ContactPhase::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
+                                       bool die_out) const {
+    if (has_losses(surface)) return fastest;
+    const double slow = slow_rebound(surface, forces, fastest > rules_.settings.resting_speed, die_out);
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 

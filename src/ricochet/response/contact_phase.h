@@ -52,10 +52,15 @@ private:
     };
 
     [[nodiscard]] bool rebounds_slowly(const Flight& flight, const Contact& contact, const Motion& arriving) const;
-    [[nodiscard]] double slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked) const;
-    [[nodiscard]] double fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest) const;
+    [[nodiscard]] bool has_losses(const ContactSurface& surface) const;
+    [[nodiscard]] double slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
+                                      bool dies_out) const;
+    [[nodiscard]] double fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
+                                           bool die_out) const;
     [[nodiscard]] std::optional<ContactSurface> support_of(const Vec3& forces, double fastest) const;
     [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest) const;
+    [[nodiscard]] std::array<Vec3, kMostHolding> pushes_together(const Vec3& forces, double fastest,
+                                                                 bool die_out) const;
     [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     void land(const Motion& arriving, double friction);

@@ -183,7 +183,8 @@ std::array<Vec3, kMostHolding> ContactPhase::pushes_together(const Vec3& forces,
     const std::span<const HoldingSurface> together(surfaces.data(), count);
     const StuckSurfaces stuck = sticking(together);
     const Motion motion = along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, stuck);
-    const ContactInterval interval = plan_interval(motion, state_.radius, forces, together, Grip{}, 0.0, stuck);
+    const ContactInterval interval =
+        plan_interval(motion, state_.radius, forces, together, grip(1.0), step_.remaining(), stuck);
     for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
     return pushes;
 }
@@ -377,11 +378,14 @@ ContactPhase::Stop ContactPhase::advance(const Vec3& forces, bool has_forces, do
 
 /// Plans an interval against all that is surface.
 ContactInterval ContactPhase::plan(const Vec3& pull, double pressure, double duration) {
-    const Grip grip{pressure, shortest_interval_, kTouchingOffsets * contact_offset(state_.position)};
     const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull,
-                                                   manifold_.holding(impact_).all(), grip, duration);
+                                                   manifold_.holding(impact_).all(), grip(pressure), duration);
     manifold_.load(interval);
     return interval;
+}
+
+Grip ContactPhase::grip(double pressure) const {
+    return {pressure, shortest_interval_, kTouchingOffsets * contact_offset(state_.position)};
 }
 
 /// Follows one interval on flat surfaces.

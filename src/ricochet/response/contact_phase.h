@@ -71,6 +71,7 @@ private:
     std::optional<Contact> follow_surface(bool kicked);
     [[nodiscard]] Stop advance(const Vec3& forces, bool has_forces, double pressure, double duration);
     [[nodiscard]] ContactInterval plan(const Vec3& pull, double pressure, double duration);
+    [[nodiscard]] Grip grip(double pressure) const;
     [[nodiscard]] Stop follow(const ContactInterval& interval, const Vec3& forces, bool has_forces);
     [[nodiscard]] ContactPath path_along(const ContactInterval& interval) const;
     void keep_offset(Path& path, const ContactInterval& interval) const;

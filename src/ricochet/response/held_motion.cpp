@@ -300,6 +300,8 @@ private:
             const bool is_soon_over =
                 left < kMostHeadingTurn * r.speed && left * interval.duration <= grip_.negligible_path;
             sticks = left <= kStopRounding * r.speed || is_soon_over;
+            // Whatever else moves on: what slips no further than that only hides who holds it afterwards.
+            if (sticks && r.speed * interval.duration <= grip_.negligible_path) interval.ends_at_once = true;
         }
     }
 
@@ -318,14 +320,6 @@ private:
     double weight_ = 0.0;  // 1/s, of the present rates in those that friction is against; 0: their directions count
 };
 
-bool ends_at_once(const ContactInterval& interval, double radius, double negligible_path) {
-    const bool sticks = std::any_of(interval.stuck.begin(), interval.stuck.end(), [](const Stuck& stuck) {
-        return stuck.to_slip || stuck.to_turning || stuck.to_spinning;
-    });
-    const double speed = length(interval.motion.velocity) + radius * length(interval.motion.spin);
-    return sticks && speed > 0.0 && speed * interval.duration <= negligible_path;
-}
-
 }  // namespace
 
 bool leaves(const Vec3& velocity, const Vec3& n) { return dot(velocity, n) > kLeavingRounding * length(velocity); }
@@ -338,7 +332,7 @@ ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a
     for (int k = 1;; ++k) {
         Plan plan(start, radius, a, surfaces, surfaces, grip, duration, stuck);
         const ContactInterval interval = plan.interval();
-        const bool goes_on = ends_at_once(interval, radius, grip.negligible_path) || plan.drags(interval);
+        const bool goes_on = interval.ends_at_once || plan.drags(interval);
         if (k == kMostPlans || interval.at_rest || !goes_on) return interval;
         start = along_surfaces(start, radius, surfaces, interval.stuck);
     }

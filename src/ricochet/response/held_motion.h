@@ -44,6 +44,7 @@ struct ContactInterval {
     bool is_stiff = false;   ///< friction could end a slip, if it were against it, before the interval ends
     std::array<Vec3, kMostHolding> push{};  ///< force over the mass with which each surface holds it, m/s^2
     StuckSurfaces stuck{};                  ///< from the end on
+    bool ends_at_once = false;              ///< a slip or turning ends within Grip::negligible_path
 };
 
 /// How surfaces grip while a particle is pressed on.

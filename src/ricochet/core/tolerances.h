@@ -310,10 +310,10 @@ inline constexpr double kSameDirection = 1e-9;
 inline constexpr double kEnergyRounding = 0x1p-44;
 
 /// Kinetic energy that an impact or an interval of contact may gain over what forces have done work, in parts of the
-/// larger of the kinetic energies before and after, and in contact offsets times the force. Reason: eight roundings of
-/// 2^-53; and what is held touches within kTouchingOffsets, at both ends. Smaller: a verified run reports rounding.
+/// larger of the kinetic energies before and after, and in contact offsets times the force. Reason: sixteen roundings
+/// of 2^-53; and what is held touches within kTouchingOffsets, at both ends. Smaller: a verified run reports rounding.
 /// Larger: small gains pass, and arcs let through as much as the second before they limit the energy.
-inline constexpr double kEnergyGain = 0x1p-50;
+inline constexpr double kEnergyGain = 0x1p-49;
 inline constexpr double kEnergyOffsets = 2.0 * kTouchingOffsets;
 
 /// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred

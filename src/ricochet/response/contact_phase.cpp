@@ -7,6 +7,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/response/impact_problem.h"
 
 namespace ricochet {
 
@@ -79,7 +80,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
         return std::nullopt;
     }
     if (is_kicked(flight)) {
-        land(arriving, impact_.material_of(support->surface).friction);
+        land(arriving);
         return follow_surface(true);
     }
     const Stop stop = finish_cascade(*support);
@@ -222,17 +223,21 @@ std::optional<ContactSurface> ContactPhase::hardest_pressed(const Vec3& forces) 
     return support;
 }
 
-/// Landing without a rebound: the approach is lost, friction answers the impulse.
-void ContactPhase::land(const Motion& arriving, double friction) {
+/// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.
+void ContactPhase::land(const Motion& arriving) {
     const Vec3 before = state_.velocity;  // with the rebound, whose impulse is recorded already
-    state_.velocity = arriving.velocity;
-    particle_.spin = arriving.spin;
-    for (const Vec3& normal : manifold_.normals()) {
-        const Motion after = bounce({state_.velocity, particle_.spin}, state_.radius, normal, 0.0, friction);
-        state_.velocity = after.velocity;
-        particle_.spin = after.spin;
+    std::array<ImpactSurface, kMostHolding> surfaces;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        surfaces[k] = {surface.normal, 0.0, impact_.material_of(surface.surface).friction};
     }
-    state_.velocity = project_off(state_.velocity, manifold_.normals());
+    Motion after = solve_impact(arriving, state_.radius, std::span(surfaces).first(manifold_.size())).after;
+    const auto speed = [&](const Motion& motion) {
+        return length(motion.velocity) + state_.radius * length(motion.spin);
+    };
+    if (speed(after) <= kStopRounding * speed(arriving)) after = {};
+    state_.velocity = project_off(after.velocity, manifold_.normals());
+    particle_.spin = after.spin;
     manifold_.load(before - state_.velocity);
     manifold_.record_push(state_.velocity - before, 1.0, impact_);
 }
@@ -270,8 +275,8 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     return spend_cascade(support, cascade_duration(rebound, pressing, restitution));
 }
 
-/// Where several surfaces of the manifold will hold it, it lands on all: rattling between them would not end. False when
-/// one does. As it leaves the impact: without one of the rebounds it slips another way, and others would hold.
+/// Where several surfaces of the manifold will hold it, it lands on all: rattling between them would not end. False
+/// when one does. As it leaves the impact: without one of the rebounds it slips another way, and others would hold.
 bool ContactPhase::settle(const Vec3& forces) {
     const auto pushes = pushes_together(forces, rules_.settings.resting_speed);
     const ContactManifold::Holding holding = manifold_.holding(impact_);

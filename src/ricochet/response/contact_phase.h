@@ -63,7 +63,7 @@ private:
                                                                  bool die_out) const;
     [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
-    void land(const Motion& arriving, double friction);
+    void land(const Motion& arriving);
     std::optional<Contact> drift(const Flight& flight);
     [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
     [[nodiscard]] bool settle(const Vec3& forces);

@@ -41,6 +41,7 @@ public:
     }
     [[nodiscard]] bool is_uniform() const override { return force_->is_uniform(); }
     [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
+    [[nodiscard]] bool is_conservative() const override { return force_->is_conservative(); }
 
 private:
     std::shared_ptr<const Force> force_;

@@ -37,6 +37,7 @@ public:
         return input.mass * sum;
     }
     [[nodiscard]] bool is_steady() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return true; }
 
 private:
     std::vector<Attractor> attractors_;
@@ -82,6 +83,7 @@ public:
         return scale * power(s, next) / next;
     }
     [[nodiscard]] bool is_steady() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return true; }
 
 private:
     // Softened, in units of the reference.
@@ -129,6 +131,7 @@ public:
         return 0.5 * settings_.stiffness * stretch * stretch;
     }
     [[nodiscard]] bool is_steady() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return settings_.damping == 0.0; }
 
 private:
     [[nodiscard]] bool holds(std::uint64_t id) const {
@@ -164,6 +167,7 @@ public:
     }
     [[nodiscard]] bool is_uniform() const override { return settings_.charge == 0.0 || settings_.magnetic == Vec3{}; }
     [[nodiscard]] bool is_steady() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return true; }
 
 private:
     // Only here is it known whose charge it is.
@@ -194,6 +198,7 @@ public:
         return displaced_mass(input) * dot(gravity_, input.position);
     }
     [[nodiscard]] bool is_uniform() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return true; }
 
 private:
     [[nodiscard]] double displaced_mass(const ForceInput& input) const {

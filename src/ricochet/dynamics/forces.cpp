@@ -20,6 +20,7 @@ public:
         return -input.mass * dot(acceleration_, input.position);
     }
     [[nodiscard]] bool is_uniform() const override { return true; }
+    [[nodiscard]] bool is_conservative() const override { return true; }
     [[nodiscard]] std::optional<Vec3> common_acceleration() const override { return acceleration_; }
 
 private:
@@ -41,6 +42,7 @@ public:
     }
     [[nodiscard]] bool is_uniform() const override { return traits_.is_uniform; }
     [[nodiscard]] bool is_steady() const override { return traits_.is_uniform || traits_.is_steady; }
+    [[nodiscard]] bool is_conservative() const override { return traits_.is_conservative && traits_.potential; }
 
 private:
     std::function<Vec3(const ForceInput&)> call_;
@@ -62,6 +64,7 @@ public:
         return holds(input.id) ? force_->potential_energy(input) : 0.0;
     }
     [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
+    [[nodiscard]] bool is_conservative() const override { return force_->is_conservative(); }
 
 private:
     [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
@@ -111,7 +114,9 @@ std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<For
 ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
     : forces_(without_null(std::move(forces))),
       uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
-      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })) {
+      steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })),
+      conservative_(
+          std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_conservative(); })) {
     for (const auto& force : forces_) {
         const std::optional<Vec3> acceleration = force->common_acceleration();
         common_ = common_ && acceleration ? std::optional(*common_ + *acceleration) : std::nullopt;

@@ -56,6 +56,8 @@ public:
     [[nodiscard]] virtual std::optional<Vec3> common_acceleration() const { return std::nullopt; }
     /// True when the acceleration does not depend on time: a particle at rest then stays at rest (it may sleep).
     [[nodiscard]] virtual bool is_steady() const { return is_uniform(); }
+    /// True when all its work is what its potential energy falls by: lasting contact keeps the sum then.
+    [[nodiscard]] virtual bool is_conservative() const { return false; }
 };
 
 /// Uniform gravity: the given acceleration, m/s^2.
@@ -64,8 +66,9 @@ public:
 /// What is known of a callable force. Pure like the force itself.
 struct CallableTraits {
     std::function<double(const ForceInput&)> potential = {};  ///< J; empty: it has none
-    bool is_uniform = false;  ///< its acceleration depends on neither position, velocity nor time
-    bool is_steady = false;   ///< its acceleration does not depend on time
+    bool is_uniform = false;       ///< its acceleration depends on neither position, velocity nor time
+    bool is_steady = false;        ///< its acceleration does not depend on time
+    bool is_conservative = false;  ///< all its work is what its potential falls by; only with a potential
 };
 /// Any callable as a force: returns the force in newton. It must be pure.
 [[nodiscard]] std::unique_ptr<Force> make_force(std::function<Vec3(const ForceInput&)> force,
@@ -98,11 +101,16 @@ public:
     [[nodiscard]] const std::optional<Vec3>& common_acceleration() const { return common_; }
     /// True when no force depends on time.
     [[nodiscard]] bool is_steady() const { return steady_; }
+    /// True when the work on one particle, with what others do to it, is what its potential energy falls by.
+    [[nodiscard]] bool is_conservative_for(const ForceInput& input) const {
+        return conservative_ && input.coupling == nullptr;
+    }
 
 private:
     std::vector<std::unique_ptr<Force>> forces_;
     bool uniform_ = true;
     bool steady_ = true;
+    bool conservative_ = true;
     std::optional<Vec3> common_ = Vec3{};
 };
 

@@ -89,8 +89,8 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
-    has_uniform_forces_ = !start.has_forces || forces.is_uniform_for(particle);
-    keeps_energy_ = has_uniform_forces_ && !dissipates();
+    knows_work_ = !start.has_forces || forces.is_uniform_for(particle) || forces.is_conservative_for(particle);
+    keeps_energy_ = knows_work_ && !dissipates();
     friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now);
 }
 
@@ -98,7 +98,7 @@ ContactArc::State ContactArc::at(double t) const {
     State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
-    if (has_uniform_forces_) limit_energy(state);
+    if (knows_work_) limit_energy(state);
     return state;
 }
 
@@ -150,6 +150,23 @@ ContactArc::State ContactArc::by_stages(double t) const {
         t);
 }
 
+/// By the difference between the method and the midpoint rule, which is of second order.
+bool ContactArc::is_within_tolerance(double t) const {
+    const State begin = start();
+    if (!(particle_.time + 0.5 * t > particle_.time)) return true;
+    const Rate first = rate(begin, 0.0);
+    const double half = 0.5 * t;
+    const State middle{
+        begin.position + half * first.velocity,
+        {begin.motion.velocity + half * first.acceleration, begin.motion.spin + half * first.spin_acceleration}};
+    const Rate second = rate(middle, half);
+    const State end = by_stages(t);
+    const double velocity = length(begin.motion.velocity + t * second.acceleration - end.motion.velocity);
+    const double turning = length(begin.motion.spin + t * second.spin_acceleration - end.motion.spin);
+    return velocity + particle_.radius * turning <= start_.tolerance->velocity &&
+           length(begin.position + t * second.velocity - end.position) <= start_.tolerance->position;
+}
+
 bool ContactArc::is_held(const State& state, double t) const {
     const ContactInterval plan = plan_at(state, t, 0.0);
     return std::any_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push != Vec3{}; });
@@ -169,6 +186,7 @@ double ContactArc::longest() const {
         turning = std::max(
             turning, length(normal_rate(geometry_, particle_.radius, surfaces_[k], touched, begin.position, heading)));
     }
+    while (start_.tolerance && !forces_.is_uniform_for(particle_) && !is_within_tolerance(duration)) duration *= 0.5;
     if (turning == 0.0) return duration;
     const double distance = kMaxArcAngle / turning;
     if (speed > 0.0) duration = std::min(duration, distance / speed);
@@ -278,11 +296,22 @@ double ContactArc::twice_kinetic(const Motion& motion) const {
     return length_squared(motion.velocity) + 0.4 * particle_.radius * particle_.radius * length_squared(motion.spin);
 }
 
+/// That of the forces since the start, over the mass.
+double ContactArc::work_until(const State& state) const {
+    if (!start_.has_forces) return 0.0;
+    if (forces_.is_uniform_for(particle_)) return dot(forces(state, 0.0), state.position - particle_.position);
+    ForceInput there = particle_;
+    there.position = state.position;
+    there.velocity = state.motion.velocity;
+    const double before = forces_.potential_energy(particle_).value_or(0.0);
+    return (before - forces_.potential_energy(there).value_or(0.0)) / particle_.mass;
+}
+
 /// Friction takes energy away, whatever the error of the method. What the positions are rounded by says nothing.
 void ContactArc::limit_energy(State& state) const {
     const Vec3 a = forces(state, 0.0);
     const double moving = twice_kinetic(state.motion);
-    const double most = twice_kinetic(plan_.motion) + 2.0 * dot(a, state.position - particle_.position);
+    const double most = twice_kinetic(plan_.motion) + 2.0 * work_until(state);
     if (moving <= most + kEnergyOffsets * length(a) * contact_offset(state.position)) return;
     const double part = most > 0.0 ? std::sqrt(most / moving) : 0.0;
     state.motion.velocity *= part;
@@ -299,8 +328,7 @@ void ContactArc::restore_energy(State& state, double t) const {
             if (holds_[i]) along -= dot(along, there.surfaces[i].normal) * there.surfaces[i].normal;
         }
         const double moving = twice_kinetic(state.motion);
-        const double missing =
-            0.5 * (twice_kinetic(plan_.motion) - moving) + dot(a, state.position - particle_.position);
+        const double missing = 0.5 * (twice_kinetic(plan_.motion) - moving) + work_until(state);
         const double slope = t * t * length_squared(along) + moving;
         if (!(slope > 0.0)) return;
         const double part = missing / slope;

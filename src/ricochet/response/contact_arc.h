@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct ArcStart {
     double shortest = 0.0;       ///< s, as Grip::shortest
     double negligible_path = 0;  ///< m, as Grip::negligible_path
     double duration = 0.0;       ///< s, that it may last at most
+    std::optional<ErrorTolerance> tolerance{};  ///< of a method that chooses its own steps
 };
 
 /// One arc, at most kMaxArcAngle long. Everything it is given but the particle must outlive it.
@@ -79,9 +81,11 @@ private:
     [[nodiscard]] Rate rate(const State& state, double t) const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
+    [[nodiscard]] bool is_within_tolerance(double t) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
     [[nodiscard]] double twice_kinetic(const Motion& motion) const;
+    [[nodiscard]] double work_until(const State& state) const;
     void restore_energy(State& state, double t) const;
     void limit_energy(State& state) const;
     [[nodiscard]] bool dissipates() const;
@@ -97,7 +101,7 @@ private:
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
-    bool has_uniform_forces_ = false;
+    bool knows_work_ = false;
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
 };

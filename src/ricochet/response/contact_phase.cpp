@@ -19,6 +19,12 @@ constexpr int kMostIntervals = 64;
 /// Arcs up to a contact that is found on one. Each brings the cubic nearer to the arc by its fourth power.
 constexpr int kMostCloserLooks = 12;
 
+/// Methods of second order and more; the others hold forces over a step.
+bool follows_varying_forces(IntegratorKind kind) {
+    return kind == IntegratorKind::midpoint || kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::rk4 ||
+           kind == IntegratorKind::dormand_prince;
+}
+
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
 }  // namespace
@@ -33,6 +39,7 @@ ContactPhase::ContactPhase(ParticleStep& step)
       began_(particle_.contact),
       began_still_(state_.velocity == Vec3{}),
       began_spin_(particle_.spin),
+      forces_vary_(!rules_.forces.is_uniform_for(state_) && follows_varying_forces(rules_.settings.integrator.kind)),
       shortest_interval_(step.remaining() / kShortestIntervals) {}
 
 std::optional<Contact> ContactPhase::resume() {
@@ -375,7 +382,8 @@ ContactPhase::Stop ContactPhase::advance(const Vec3& forces, bool has_forces, do
             particle_.spin = interval.motion.spin;
             return {std::nullopt, false, true};
         }
-        const bool is_arc = interval.turn > kMostStraightTurn && !interval.is_stiff;
+        const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
+        const bool is_arc = turns || (has_forces && forces_vary_);
         if (!is_arc) return follow(interval, forces, has_forces);
     }
     return follow_arc(forces, has_forces, pressure, duration);
@@ -403,8 +411,7 @@ ContactPhase::Stop ContactPhase::follow(const ContactInterval& interval, const V
     if (std::exchange(crosses_seam_, false)) {
         find_held();
     } else {
-        held_.clear();
-        for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
+        hold_manifold();
     }
     Stop stop{step_.follow(path, held_), leaves_surface, false};
     const double elapsed = before - step_.remaining();
@@ -463,11 +470,15 @@ void ContactPhase::keep_offset(Path& path, const ContactInterval& interval) cons
 
 /// Follows one arc.
 ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration) {
-    find_held();
+    if (bends() || std::exchange(crosses_seam_, false)) {
+        find_held();
+    } else {
+        hold_manifold();
+    }
     const ContactManifold::Holding materials = manifold_.holding(impact_);
     const ContactArc arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
                          {particle_.spin, pressure, has_forces, shortest_interval_,
-                          kTouchingOffsets * contact_offset(state_.position), duration});
+                          kTouchingOffsets * contact_offset(state_.position), duration, tolerance()});
     if (arc.plan().at_rest) {
         particle_.spin = arc.plan().motion.spin;
         return {std::nullopt, false, true};
@@ -513,6 +524,13 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     add_held(stop.contact);
     if (!stop.is_early()) touch_held(turning_point);
     return stop;
+}
+
+/// What an arc may be wrong by, where the integrator chooses its own steps.
+std::optional<ErrorTolerance> ContactPhase::tolerance() const {
+    const Integrator& integrator = rules_.settings.integrator;
+    if (integrator.kind != IntegratorKind::dormand_prince) return std::nullopt;
+    return integrator.tolerance;
 }
 
 /// How long the arc lasts, s: until something changes, or where nothing holds it any more (`leaves`).
@@ -575,6 +593,13 @@ bool ContactPhase::is_beyond_rim(SurfaceId surface, const Vec3& position) const 
     const SurfaceGeometry& geometry = step_.geometry();
     const Vec3 height = geometry.signed_distance_from(surface, position) * geometry.unit_normal_of(surface, position);
     return geometry.nearest(surface, position - height).distance > kEdgeOffsets * contact_offset(position);
+}
+
+/// The surfaces of the manifold hold it, and no others.
+void ContactPhase::hold_manifold() {
+    held_.clear();
+    held_points_.clear();
+    for (std::size_t k = 0; k < manifold_.size(); ++k) held_.push_back(manifold_[k].surface);
 }
 
 /// All surfaces that are touched at the points of the manifold: the triangles around an edge or a vertex.

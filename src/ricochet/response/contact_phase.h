@@ -76,6 +76,7 @@ private:
     [[nodiscard]] ContactPath path_along(const ContactInterval& interval) const;
     void keep_offset(Path& path, const ContactInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration);
+    [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;
     [[nodiscard]] double arc_duration(const ContactArc& arc, bool& leaves) const;
     [[nodiscard]] double time_on_pieces(const ContactArc& arc, const Path& path) const;
     void gather();
@@ -84,6 +85,7 @@ private:
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
     [[nodiscard]] bool is_beyond_rim(SurfaceId surface, const Vec3& position) const;
+    void hold_manifold();
     void find_held();
     void touch_held(const Vec3& turning_point);
     [[nodiscard]] bool goes_on_along(const Contact& contact);
@@ -108,6 +110,7 @@ private:
     KeptContact began_;                   // what the particle touched at the start of the step
     bool began_still_;                    // its place stayed then
     Vec3 began_spin_;                     // rad/s
+    bool forces_vary_;                    // and the integrator is of second order or more
     double shortest_interval_;            // s
     int slow_contacts_ = 0;               // in a row, all slower than the resting speed or without time between them
     double remaining_at_contact_ = -1.0;  // s, at the last one

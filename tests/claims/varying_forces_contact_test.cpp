@@ -1,0 +1,151 @@
+// Does lasting contact follow forces that vary - drag, springs, the pull of a centre - to the order of the integrator,
+// and keep the energy that they have a potential for?
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "claims/contact_scene.h"
+
+namespace ricochet::testing {
+namespace {
+
+using MakeForces = std::function<std::vector<std::unique_ptr<Force>>()>;
+
+std::vector<std::unique_ptr<Force>> list_of(std::unique_ptr<Force> first, std::unique_ptr<Force> second) {
+    std::vector<std::unique_ptr<Force>> forces;
+    forces.push_back(std::move(first));
+    forces.push_back(std::move(second));
+    return forces;
+}
+
+Simulation simulation_with(const ContactScene& scene, std::vector<std::unique_ptr<Force>> forces) {
+    SimulationSetup setup;
+    setup.options.time_step = scene.time_step;
+    setup.options.duration = scene.duration;
+    setup.options.integrator = scene.integrator;
+    setup.options.verify = true;
+    setup.forces = std::move(forces);
+    setup.materials = scene.materials;
+    setup.colliders = scene.colliders;
+    setup.particles.push_back(scene.particle);
+    return Simulation(std::move(setup));
+}
+
+Particle end_with(const ContactScene& scene, std::vector<std::unique_ptr<Force>> forces) {
+    Simulation simulation = simulation_with(scene, std::move(forces));
+    while (!simulation.finished()) simulation.step();
+    expect_no_time_lost(simulation);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    return simulation.particles().at(0);
+}
+
+/// A point or a sphere, that rolls where there is friction, on the plane z = 0.
+ContactScene on_a_plane(double radius, double friction, const Vec3& place, const Vec3& velocity) {
+    ContactScene scene;
+    scene.colliders = {{"floor", PlaneShape{{}, {0, 0, 1}}, 0}};
+    scene.materials = {{"", 0.0, friction}};
+    const bool rolls = radius > 0.0 && friction > 0.0;
+    const Vec3 spin = rolls ? Vec3{-velocity.y / radius, velocity.x / radius, 0} : Vec3{};
+    scene.particle = particle_of(place + Vec3{0, 0, radius + 1e-13}, velocity, radius, spin);
+    return scene;
+}
+
+std::vector<IntegratorKind> methods_of_second_order() {
+    return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4};
+}
+
+/// Expects an error in x that falls at least by 3.8 with half the step.
+void expect_second_order(ContactScene scene, const MakeForces& forces, double expected) {
+    for (const IntegratorKind kind : methods_of_second_order()) {
+        scene.integrator = kind;
+        const auto error = [&](double step) {
+            scene.time_step = step;
+            return std::fabs(end_with(scene, forces()).position.x - expected);
+        };
+        const double coarse = error(0.1);
+        const double fine = error(0.05);
+        EXPECT_LT(coarse, 1e-3) << name_of(kind);
+        EXPECT_LT(fine, coarse / 3.8 + 1e-12) << name_of(kind);
+    }
+}
+
+TEST(LinearDrag, BrakesWhatSlidesAndWhatRollsToSecondOrder) {
+    const MakeForces forces = [] { return list_of(make_gravity({0, 0, -kStandardGravity}), make_linear_drag(1.0)); };
+    // m v' = -c v; what rolls has the inertia of 7/5 of its mass.
+    expect_second_order(on_a_plane(0.0, 0.0, {}, {3, 0, 0}), forces, 3.0 * (1.0 - std::exp(-1.0)));
+    expect_second_order(on_a_plane(0.1, 100.0, {}, {3, 0, 0}), forces, 4.2 * (1.0 - std::exp(-1.0 / 1.4)));
+}
+
+TEST(ASpringAlongAPlane, SwingsWhatSlidesAndWhatRollsToSecondOrder) {
+    for (const auto& [radius, friction, inertia] : {std::tuple{0.0, 0.0, 1.0}, std::tuple{0.1, 100.0, 1.4}}) {
+        const double height = radius;
+        const MakeForces forces = [height] {
+            AnchorSettings anchor;
+            anchor.position = {0, 0, height};
+            anchor.stiffness = 4.0;
+            return list_of(make_gravity({0, 0, -kStandardGravity}), make_anchor(anchor));
+        };
+        expect_second_order(on_a_plane(radius, friction, {1, 0, 0}, {}), forces, std::cos(std::sqrt(4.0 / inertia)));
+    }
+}
+
+TEST(LinearDrag, BrakesWhatSlidesWithinTheToleranceOfDormandAndPrince) {
+    ContactScene scene = on_a_plane(0.0, 0.0, {}, {3, 0, 0});
+    scene.time_step = 0.5;
+    scene.integrator = Integrator(IntegratorKind::dormand_prince, ErrorTolerance{1e-8, 1e-8});
+    const Particle end = end_with(scene, list_of(make_gravity({0, 0, -kStandardGravity}), make_linear_drag(20.0)));
+    EXPECT_NEAR(end.position.x, 3.0 / 20.0 * (1.0 - std::exp(-20.0)), 1e-7);
+}
+
+/// The largest change of kinetic and potential energy, relative to the kinetic energy that there ever is.
+double worst_change(const ContactScene& scene, std::vector<std::unique_ptr<Force>> forces) {
+    Simulation simulation = simulation_with(scene, std::move(forces));
+    const auto energy = [&] { return simulation.kinetic_energy() + simulation.potential_energy().value(); };
+    const double first = energy();
+    double worst = 0.0;
+    double moving = 0.0;
+    while (!simulation.finished()) {
+        simulation.step();
+        worst = std::max(worst, std::fabs(energy() - first));
+        moving = std::max(moving, simulation.kinetic_energy());
+    }
+    expect_no_time_lost(simulation);
+    return worst / moving;
+}
+
+// A hundred swings; rounding of a potential of some 1e-16 in each of 30 000 arcs.
+TEST(ForcesWithAPotential, LoseNoEnergyToWhatSlidesOrRolls) {
+    for (const auto& [radius, friction] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.1, 100.0}}) {
+        ContactScene scene = on_a_plane(radius, friction, {1, 0, 0}, {0, 0.5, 0});
+        scene.integrator = IntegratorKind::velocity_verlet;
+        scene.time_step = 0.02;
+        scene.duration = 300.0;
+        AnchorSettings anchor;
+        anchor.position = {0, 0, radius};
+        anchor.stiffness = 4.0;
+        EXPECT_LT(worst_change(scene, list_of(make_gravity({0, 0, -kStandardGravity}), make_anchor(anchor))), 1e-11)
+            << radius << ", " << friction;
+    }
+}
+
+TEST(ForcesWithAPotential, LoseNoEnergyToAMarbleThatACentreHoldsOnABall) {
+    ContactScene scene;
+    scene.colliders = {{"ball", BallShape{1.0, {}}, 0}};
+    scene.materials = {{"", 0.0, 100.0}};
+    scene.particle = particle_of({0, 0, 1.1}, {1, 0, 0}, 0.1, {0, 10, 0});
+    scene.integrator = IntegratorKind::rk4;
+    scene.time_step = 0.02;
+    scene.duration = 100.0;
+    // Off the centre, so that the marble is pulled along its way.
+    EXPECT_LT(worst_change(scene, list_of(make_point_gravity({{{0.2, 0, 0.1}, 9.81, 0.0}}), make_gravity({}))), 1e-11);
+}
+
+}  // namespace
+}  // namespace ricochet::testing

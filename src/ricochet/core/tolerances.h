@@ -52,8 +52,10 @@ inline constexpr double kRimTie = 0x1p-48;
 // Contact phases
 
 /// A surface counts as touched while the particle is within this many contact offsets of its plane, and sliding goes on
-/// until the particle is as far beyond the triangle's edge. Smaller: sliding is cut into more, shorter segments.
-/// Larger: a particle slides on air beyond a convex edge by that distance (some 1e-14 of its coordinates).
+/// until the particle is as far beyond the triangle's edge. Bounces without losses that rise no higher are contact too,
+/// and slip that ends sooner is none. Smaller: sliding is cut into more, shorter segments, and elastic bounces of
+/// rounding's size spend the bounce budget. Larger: a particle slides on air beyond a convex edge by that distance
+/// (some 1e-14 of its coordinates).
 inline constexpr double kTouchingOffsets = 8.0;
 
 /// Contact offsets by which a particle may slide beyond a triangle's edge before it leaves that triangle. Reason: at an

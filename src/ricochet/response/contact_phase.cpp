@@ -283,7 +283,8 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
 }
 
 /// Where several surfaces of the manifold will hold it, it lands on all: rattling between them would not end. False
-/// when one does. As it leaves the impact: without one of the rebounds it slips another way, and others would hold.
+/// when one does. To be asked as it leaves the impact: without one of the rebounds it slips another way, and others
+/// would hold.
 bool ContactPhase::settle(const Vec3& forces) {
     const auto pushes = pushes_together(forces, rules_.settings.resting_speed);
     const ContactManifold::Holding holding = manifold_.holding(impact_);

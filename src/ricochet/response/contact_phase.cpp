@@ -25,6 +25,9 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
+/// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong.
+constexpr int kMostTurningPoints = 3;
+
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
 }  // namespace
@@ -488,15 +491,20 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     Stop stop;
     const double whole = arc_duration(arc, stop.left_surface);
     if (!(whole > 0.0)) return {std::nullopt, true, false};
-    ContactArc::State end = arc.at(whole);
-    Path path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, whole);
+    ContactArc::State end;
+    const auto path_until = [&](double time) {
+        end = arc.at(time);
+        return hermite_path(arc.start().position, arc.start().motion.velocity, end.position, end.motion.velocity, time);
+    };
+    Path path = path_until(whole);
     Vec3 turning_point = path.end;
-    if (const double on = time_on_pieces(arc, path); on < whole) {
+    // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
+    for (int k = 0; k < kMostTurningPoints && (k == 0 || overlaps_held(path.end)); ++k) {
+        const double on = time_on_pieces(arc, path);
+        if (!(on < path.duration)) break;
         turning_point = path.position(on);
-        const bool is_off = has_left_face(turning_point);
-        end = arc.at(on);
-        path = hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, on);
-        stop.left_surface = is_off;
+        stop.left_surface = has_left_face(turning_point);
+        path = path_until(on);
     }
     step_.log().note_impact();
     const double before = step_.remaining();
@@ -504,13 +512,12 @@ ContactPhase::Stop ContactPhase::follow_arc(const Vec3& forces, bool has_forces,
     // The cubic is no more than near the arc: where it comes to a contact, the arc up to there is looked at closely.
     int closer_looks = 0;
     stop.contact = step_.follow(path, held_, [&](double time, const Path& tried) -> std::optional<Path> {
-        const ContactArc::State there = arc.at(time);
-        const double off = length(there.position - tried.position(time));
-        if (!(off > kTouchingOffsets * contact_offset(there.position)) || ++closer_looks > kMostCloserLooks) return {};
+        const Vec3 there = arc.at(time).position;
+        const double off = length(there - tried.position(time));
+        if (!(off > kTouchingOffsets * contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
         stop.left_surface = false;
-        end = there;
-        turning_point = there.position;
-        return hermite_path(state_.position, arc.start().motion.velocity, end.position, end.motion.velocity, time);
+        turning_point = there;
+        return path_until(time);
     });
     const double elapsed = before - step_.remaining();
     const Motion motion = stop.contact ? arc.at(stop.contact->time).motion : end.motion;
@@ -579,6 +586,13 @@ double ContactPhase::time_on_pieces(const ContactArc& arc, const Path& path) con
         (has_passed(middle) ? high : low) = middle;
     }
     return high;
+}
+
+/// True where it overlaps surfaces that are touched beside those of the manifold.
+bool ContactPhase::overlaps_held(const Vec3& position) const {
+    return std::any_of(held_points_.begin(), held_points_.end(), [&](const HeldPoint& other) {
+        return step_.geometry().nearest(other.surface, position).distance < state_.radius;
+    });
 }
 
 /// True where a face of the manifold has ended.

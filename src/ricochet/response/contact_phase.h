@@ -83,6 +83,7 @@ private:
     [[nodiscard]] bool lands() const;
     void find_next_surfaces();
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
+    [[nodiscard]] bool overlaps_held(const Vec3& position) const;
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
     [[nodiscard]] bool is_beyond_rim(SurfaceId surface, const Vec3& position) const;
     void hold_manifold();

@@ -123,6 +123,7 @@ TEST(RunCommand, AVerifiedRunCountsItsLeaksAndGivesTheSameState) {
     EXPECT_EQ(result.errors, "");
     EXPECT_NE(result.output.find("0 violations"), std::string::npos) << result.output;
     EXPECT_EQ(files.summary()["leaks"], 0);
+    EXPECT_EQ(files.summary()["energy_violations"], 0);
     EXPECT_EQ(files.summary()["state_hash"], unverified["state_hash"]);
 }
 

@@ -11,15 +11,17 @@ TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
     const std::vector<Violation> violations = {{ViolationKind::crossing, 7, {1, 0.1, -2}, 0.25, 1, 99},
                                                {ViolationKind::wrong_side, 8, {0, 0, 0}, 1, 0, {}},
                                                {ViolationKind::overlap, 9, {0, 0, 0}, 1, 1, 3},
-                                               {ViolationKind::gap, 10, {0, 0, 0}, 1, {}, {}}};
+                                               {ViolationKind::gap, 10, {0, 0, 0}, 1, {}, {}},
+                                               {ViolationKind::energy, 11, {0, 0, 0}, 1, {}, {}}};
     EXPECT_EQ(
-        violation_lines(violations, 4, kColliders),
+        violation_lines(violations, 5, kColliders),
         (std::vector<std::string>{
             "leak: particle 7 at (1, 0.10000000000000001, -2) m, time 0.25 s: a segment crosses collider \"tube\", "
             "triangle 99",
             "leak: particle 8 at (0, 0, 0) m, time 1 s: is on another side than at birth of collider \"floor\"",
             "leak: particle 9 at (0, 0, 0) m, time 1 s: overlaps collider \"tube\", triangle 3",
-            "leak: particle 10 at (0, 0, 0) m, time 1 s: its segments do not join"}));
+            "leak: particle 10 at (0, 0, 0) m, time 1 s: its segments do not join",
+            "energy: particle 11 at (0, 0, 0) m, time 1 s: has gained energy from surfaces"}));
 }
 
 TEST(ViolationReport, ListsTwentyAndCountsTheRest) {

@@ -421,6 +421,67 @@ TEST(AnalyticShape, StopsABallOnTheEdgeOfACylinder) {
                 std::sqrt(5.0), 4e-15);
 }
 
+/// A can of radius 1 from z = -2 to z = 2.
+AnalyticShape can_of_four() {
+    Placement placement;
+    placement.scale = {1, 1, 2};
+    return AnalyticShape::cylinder(world_from_local(placement));
+}
+
+TEST(PartsOfACylinder, AreMetOneByOneFromInside) {
+    const AnalyticShape can = can_of_four();
+    EXPECT_EQ(can.part_count(), 3U);
+    for (const double radius : {0.0, 0.25}) {
+        const Path path = line_path({0, 0, 0}, {1, 0, 1}, 4.0);
+        const ShapeContacts all = can.contacts(path, radius);
+        ASSERT_EQ(all.count, 2U);
+        EXPECT_EQ(all.contacts[0].part, ShapePart::side);
+        EXPECT_NEAR(all.contacts[0].time, 1.0 - radius, 1e-15);
+        EXPECT_EQ(all.contacts[0].normal, Vec3(-1, 0, 0));
+        EXPECT_EQ(all.contacts[1].part, ShapePart::top);
+        EXPECT_NEAR(all.contacts[1].time, 2.0 - radius, 1e-15);
+        EXPECT_EQ(all.contacts[1].normal, Vec3(0, 0, -1));
+        HeldParts side;
+        side.add(ShapePart::side);
+        const ShapeContacts beside = can.contacts(path, radius, side);
+        ASSERT_EQ(beside.count, 1U);
+        EXPECT_EQ(beside.contacts[0].part, ShapePart::top);
+        HeldParts both = side;
+        both.add(ShapePart::top);
+        EXPECT_EQ(can.contacts(path, radius, both).count, 0U);
+    }
+}
+
+TEST(PartsOfACylinder, AreOneBodyFromOutside) {
+    const AnalyticShape can = can_of_four();
+    const ShapeContacts hit = can.contacts(line_path({0.5, 0, 9}, {0, 0, -1}, 9.0), 0.25);
+    ASSERT_EQ(hit.count, 1U);
+    EXPECT_EQ(hit.contacts[0].part, ShapePart::top);
+    EXPECT_FALSE(hit.contacts[0].on_rim);
+    EXPECT_TRUE(can.contacts(line_path({1.1, 0, 9}, {0, 0, -1}, 9.0), 0.25).contacts[0].on_rim);
+    HeldParts held;
+    held.add(ShapePart::bottom);
+    EXPECT_EQ(can.contacts(line_path({0.5, 0, 9}, {0, 0, -1}, 9.0), 0.25, held).count, 0U);
+}
+
+TEST(PartsOfACylinder, EndAtTheirRimsAndGoOnBeyond) {
+    const AnalyticShape can = can_of_four();
+    const Vec3 p{1.3, 0, 2.4};
+    for (const ShapePart part : {ShapePart::side, ShapePart::top}) {
+        const ShapePoint rim = can.closest_point_of(part, p);
+        EXPECT_TRUE(rim.on_rim);
+        EXPECT_NEAR(rim.distance, 0.5, 1e-15);
+        EXPECT_LE(length(rim.normal - Vec3{0.6, 0, 0.8}), 1e-15);
+    }
+    EXPECT_NEAR(can.closest_point_beyond(ShapePart::side, p).distance, 0.3, 1e-15);
+    EXPECT_NEAR(can.closest_point_beyond(ShapePart::top, p).distance, 0.4, 1e-15);
+    EXPECT_NEAR(can.closest_point_of(ShapePart::bottom, {0.2, 0, 0}).distance, -2.0, 1e-15);
+    // Over the column within the side the side ends at its rim, seen from within.
+    EXPECT_NEAR(can.closest_point_of(ShapePart::side, {0.7, 0, 2.4}).distance, 0.5, 1e-15);
+    EXPECT_NEAR(can.time_over(ShapePart::top, line_path({0, 0, 2}, {1, 0, 0}, 9.0), 0.5), 1.5, 1e-15);
+    EXPECT_EQ(can.time_over(ShapePart::side, line_path({1, 0, 0}, {0, 0, 1}, 9.0), 0.5), 9.0);
+}
+
 TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
     // The ball of radius 1/2 does not fit into the tip, whose radius of curvature is 1/5: it is held from all around
     // where the largest ball about (x, 0, 0), of radius sqrt(1 - x^2 / 24), is no larger.

@@ -42,6 +42,7 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
                             "births_refused_by_population",
                             "births_refused_by_overlap",
                             "leaks",
+                            "energy_violations",
                             "kinetic_energy",
                             "potential_energy",
                             "state_hash",
@@ -62,18 +63,23 @@ TEST(Summary, HoldsEveryKeyOfTheContract) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
     EXPECT_TRUE(json["leaks"].is_null());
+    EXPECT_TRUE(json["energy_violations"].is_null());
     EXPECT_TRUE(json["potential_energy"].is_null());
 }
 
 TEST(Summary, LeaksAreANumberOnceTheRunHasBeenVerified) {
     RunSummary summary;
     summary.leaks = 0;
+    summary.energy_violations = 3;
     EXPECT_EQ(parsed(summary)["leaks"], 0);
+    EXPECT_EQ(parsed(summary)["energy_violations"], 3);
     SimulationSetup setup;
     EXPECT_FALSE(summarize(Simulation(std::move(setup))).leaks);
     SimulationSetup verified;
     verified.options.verify = true;
-    EXPECT_EQ(summarize(Simulation(std::move(verified))).leaks, 0U);
+    const RunSummary of_verified = summarize(Simulation(std::move(verified)));
+    EXPECT_EQ(of_verified.leaks, 0U);
+    EXPECT_EQ(of_verified.energy_violations, 0U);
 }
 
 TEST(Summary, NumbersReadBackToTheSameBits) {

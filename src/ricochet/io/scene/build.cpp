@@ -126,7 +126,7 @@ Fields<SimulationKeys> rule_fields() {
     return {
         {"seed", &S::seed, kSeed, "", "Start of all random numbers: the same seed gives the same run, to the bit."},
         {"resting_speed", &S::resting_speed, kNotNegative, "m/s",
-         "A rebound slower than this becomes resting or sliding contact, where restitution is below 1 and something "
+         "A rebound slower than this becomes resting or sliding contact, where the bounces lose energy and something "
          "presses the particle on."},
         {"frame_rate", &S::frame_rate, positive_up_to(1e6), "1/s",
          "Frames a second of emitters' rates per frame; neither the output's nor the time step's."},

@@ -101,7 +101,8 @@ ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const
         return {surface, nearest.normal, nearest.flat};
     }
     const int side = near.world().side_of_surface(surface, p);
-    return {surface, static_cast<double>(side) * near.geometry().unit_normal_of(surface, p), true};
+    return {surface, static_cast<double>(side) * near.geometry().unit_normal_of(surface, p),
+            near.world().is_flat(surface)};
 }
 
 }  // namespace

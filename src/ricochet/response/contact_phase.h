@@ -76,6 +76,7 @@ private:
     [[nodiscard]] ContactPath path_along(const ContactInterval& interval) const;
     void keep_offset(Path& path, const ContactInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Vec3& forces, bool has_forces, double pressure, double duration);
+    void lift_middle(Path& path) const;
     [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;
     [[nodiscard]] double arc_duration(const ContactArc& arc, bool& leaves) const;
     [[nodiscard]] double time_on_pieces(const ContactArc& arc, const Path& path) const;

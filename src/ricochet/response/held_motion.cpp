@@ -258,9 +258,12 @@ private:
     [[nodiscard]] bool is_stiff(double duration) {
         return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
             const HoldingSurface& surface = surfaces_[r.surface];
-            const double most =
-                kSlipAcceleration * grip_.pressure * surface.friction * dot(push_[r.surface], surface.normal);
-            return r.kind == Resistance::Kind::slip && r.speed > 0.0 && most * duration > kStageLimit * r.speed;
+            const double pressing = grip_.pressure * dot(push_[r.surface], surface.normal);
+            const double most = r.kind == Kind::slip ? kSlipAcceleration * surface.friction * pressing
+                                : r.kind == Kind::turning
+                                    ? kTurning * kTurning * surface.rolling_friction * pressing
+                                    : kTurning * kTurning * surface.spinning_friction / radius_ * pressing;
+            return r.speed > 0.0 && most * duration > kStageLimit * r.speed;
         });
     }
 

@@ -311,12 +311,17 @@ inline constexpr double kSameDirection = 1e-9;
 /// friction is scaled away instead of lowering the restitution.
 inline constexpr double kEnergyRounding = 0x1p-44;
 
-/// Kinetic energy that an impact or an interval of contact may gain over what forces have done work, in parts of the
-/// larger of the kinetic energies before and after, and in contact offsets times the force. Reason: sixteen roundings
-/// of 2^-53; and what is held touches within kTouchingOffsets, at both ends. Smaller: a verified run reports rounding.
-/// Larger: small gains pass, and arcs let through as much as the second before they limit the energy.
+/// Kinetic energy that an impact or an interval of contact may gain over what forces have done work before a verified
+/// run says so, in parts of the larger of the kinetic energies before and after, and in contact offsets times the
+/// force. Reason: sixteen roundings of 2^-53; and beside a rim a particle may stand off what holds it by kEdgeOffsets.
+/// Smaller: rounding is reported. Larger: small gains pass.
 inline constexpr double kEnergyGain = 0x1p-49;
-inline constexpr double kEnergyOffsets = 2.0 * kTouchingOffsets;
+inline constexpr double kEnergyOffsets = kEdgeOffsets;
+
+/// The same that an arc with friction may gain, in contact offsets times the force, before its energy is limited.
+/// Reason: what is held touches within kTouchingOffsets, at both ends. Smaller: the first motion from rest, which has
+/// less energy than that, is lost. Larger: the error of the method gives as much.
+inline constexpr double kArcEnergyOffsets = 2.0 * kTouchingOffsets;
 
 /// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred
 /// times the rounding of the solved equations. Smaller: particles at rest creep at 1e-16 of gravity. Larger: what

@@ -91,7 +91,8 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
     knows_work_ = !start.has_forces || forces.is_uniform_for(particle) || forces.is_conservative_for(particle);
     keeps_energy_ = knows_work_ && !dissipates();
-    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now);
+    const bool may_jam = std::count(holds_.begin(), holds_.end(), true) > 1 && dissipates();
+    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now) || may_jam;
 }
 
 ContactArc::State ContactArc::at(double t) const {
@@ -280,13 +281,22 @@ bool ContactArc::dissipates() const {
     return false;
 }
 
-/// Something that resists is about to begin.
+/// Slip, rolling or spinning is about to begin somewhere against what resists it.
 bool ContactArc::begins_to_slip(const ContactInterval& now) const {
-    const double slow = kSlowSlip * (length(now.motion.velocity) + particle_.radius * length(now.motion.spin));
+    const double radius = particle_.radius;
+    const Vec3& spin = now.motion.spin;
+    const double slow = kSlowSlip * (length(now.motion.velocity) + radius * length(spin));
+    const auto begins = [&](double resistance, bool is_stuck, const Vec3& rate) {
+        return resistance > 0.0 && !is_stuck && length(rate) <= slow;
+    };
     for (std::size_t k = 0; k < materials_.count; ++k) {
-        if (!holds_[k] || materials_.surfaces[k].friction == 0.0 || stuck_[k].to_slip) continue;
-        const Vec3 slip = slip_velocity(now.motion, particle_.radius, materials_.surfaces[k].normal);
-        if (length(slip) <= slow) return true;
+        const HoldingSurface& surface = materials_.surfaces[k];
+        if (!holds_[k]) continue;
+        const Vec3 spinning = dot(spin, surface.normal) * surface.normal;
+        if (begins(surface.friction, stuck_[k].to_slip, slip_velocity(now.motion, radius, surface.normal))) return true;
+        if (radius == 0.0) continue;
+        if (begins(surface.rolling_friction, stuck_[k].to_turning, radius * (spin - spinning))) return true;
+        if (begins(surface.spinning_friction, stuck_[k].to_spinning, radius * spinning)) return true;
     }
     return false;
 }
@@ -312,7 +322,7 @@ void ContactArc::limit_energy(State& state) const {
     const Vec3 a = forces(state, 0.0);
     const double moving = twice_kinetic(state.motion);
     const double most = twice_kinetic(plan_.motion) + 2.0 * work_until(state);
-    if (moving <= most + kEnergyOffsets * length(a) * contact_offset(state.position)) return;
+    if (moving <= most + kArcEnergyOffsets * length(a) * contact_offset(state.position)) return;
     const double part = most > 0.0 ? std::sqrt(most / moving) : 0.0;
     state.motion.velocity *= part;
     state.motion.spin *= part;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
@@ -54,11 +55,6 @@ public:
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
     /// s, until it has turned by kMaxArcAngle, or something is about to stick.
     [[nodiscard]] double longest() const;
-    /// The part of a surface that is touched: 0 the inside of a triangle or a surface without parts, then edges and
-    /// vertices.
-    [[nodiscard]] int feature(SurfaceId surface, const Vec3& position) const {
-        return touched_feature(geometry_, surface, position);
-    }
 
     /// What a surface's curvature takes from the distance to it at this velocity, m/s^2.
     [[nodiscard]] static double bend_of(const SurfaceGeometry& geometry, const ForceInput& particle,

@@ -1,11 +1,12 @@
-#include "ricochet/response/held_motion.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <span>
 #include <vector>
+
+#include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/held_motion.h"
 
 namespace ricochet {
 namespace {

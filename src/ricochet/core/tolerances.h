@@ -318,10 +318,10 @@ inline constexpr double kEnergyRounding = 0x1p-44;
 inline constexpr double kEnergyGain = 0x1p-49;
 inline constexpr double kEnergyOffsets = kEdgeOffsets;
 
-/// The same that an arc with friction may gain, in contact offsets times the force, before its energy is limited.
+/// The same that an interval or arc may gain, in contact offsets times the force, before its energy is limited.
 /// Reason: what is held touches within kTouchingOffsets, at both ends. Smaller: the first motion from rest, which has
 /// less energy than that, is lost. Larger: the error of the method gives as much.
-inline constexpr double kArcEnergyOffsets = 2.0 * kTouchingOffsets;
+inline constexpr double kContactEnergyOffsets = 2.0 * kTouchingOffsets;
 
 /// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred
 /// times the rounding of the solved equations. Smaller: particles at rest creep at 1e-16 of gravity. Larger: what

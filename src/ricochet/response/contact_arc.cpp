@@ -99,7 +99,11 @@ ContactArc::State ContactArc::at(double t) const {
     State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
-    if (knows_work_) limit_energy(state);
+    if (knows_work_) {
+        const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
+        const double offset = length(forces(state, t)) * contact_offset(state.position);
+        limit_energy(state.motion, particle_.radius, most, offset);
+    }
     return state;
 }
 
@@ -168,9 +172,16 @@ bool ContactArc::is_within_tolerance(double t) const {
            length(begin.position + t * second.velocity - end.position) <= start_.tolerance->position;
 }
 
-bool ContactArc::is_held(const State& state, double t) const {
+ContactArc::Hold ContactArc::hold_on(const State& state, double t) const {
     const ContactInterval plan = plan_at(state, t, 0.0);
-    return std::any_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push != Vec3{}; });
+    if (std::all_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push == Vec3{}; })) {
+        return Hold::none;
+    }
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const bool slips = stuck_[k].to_slip && !plan.stuck[k].to_slip && plan.push[k] != Vec3{};
+        if (slips && holds_[k] && materials_.surfaces[k].friction > 0.0) return Hold::slipping;
+    }
+    return Hold::as_before;
 }
 
 double ContactArc::longest() const {
@@ -301,11 +312,6 @@ bool ContactArc::begins_to_slip(const ContactInterval& now) const {
     return false;
 }
 
-/// Twice the kinetic energy over the mass.
-double ContactArc::twice_kinetic(const Motion& motion) const {
-    return length_squared(motion.velocity) + 0.4 * particle_.radius * particle_.radius * length_squared(motion.spin);
-}
-
 /// That of the forces since the start, over the mass.
 double ContactArc::work_until(const State& state) const {
     if (!start_.has_forces) return 0.0;
@@ -317,17 +323,6 @@ double ContactArc::work_until(const State& state) const {
     return (before - forces_.potential_energy(there).value_or(0.0)) / particle_.mass;
 }
 
-/// Friction takes energy away, whatever the error of the method. What the positions are rounded by says nothing.
-void ContactArc::limit_energy(State& state) const {
-    const Vec3 a = forces(state, 0.0);
-    const double moving = twice_kinetic(state.motion);
-    const double most = twice_kinetic(plan_.motion) + 2.0 * work_until(state);
-    if (moving <= most + kArcEnergyOffsets * length(a) * contact_offset(state.position)) return;
-    const double part = most > 0.0 ? std::sqrt(most / moving) : 0.0;
-    state.motion.velocity *= part;
-    state.motion.spin *= part;
-}
-
 /// To the nearest state of the energy at the start; along the path where it moves slowly, in speed where it does not.
 void ContactArc::restore_energy(State& state, double t) const {
     const Vec3 a = forces(state, 0.0);
@@ -337,8 +332,8 @@ void ContactArc::restore_energy(State& state, double t) const {
         for (std::size_t i = 0; i < there.count; ++i) {
             if (holds_[i]) along -= dot(along, there.surfaces[i].normal) * there.surfaces[i].normal;
         }
-        const double moving = twice_kinetic(state.motion);
-        const double missing = 0.5 * (twice_kinetic(plan_.motion) - moving) + work_until(state);
+        const double moving = twice_kinetic(state.motion, particle_.radius);
+        const double missing = 0.5 * (twice_kinetic(plan_.motion, particle_.radius) - moving) + work_until(state);
         const double slope = t * t * length_squared(along) + moving;
         if (!(slope > 0.0)) return;
         const double part = missing / slope;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
@@ -48,17 +49,13 @@ public:
     /// The state after t seconds, by the classical Runge-Kutta method, or the midpoint rule: on the surfaces that hold,
     /// along them, and with the energy that it has to have.
     [[nodiscard]] State at(double t) const;
-    /// True when some surface holds it there.
-    [[nodiscard]] bool is_held(const State& state, double t) const;
+    /// How it is held there: as at the start; or something that stuck there slips; or by nothing any more.
+    enum class Hold { as_before, slipping, none };
+    [[nodiscard]] Hold hold_on(const State& state, double t) const;
     /// The particle, moving along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
     /// s, until it has turned by kMaxArcAngle, or something is about to stick.
     [[nodiscard]] double longest() const;
-    /// The part of a surface that is touched: 0 the inside of a triangle or a surface without parts, then edges and
-    /// vertices.
-    [[nodiscard]] int feature(SurfaceId surface, const Vec3& position) const {
-        return touched_feature(geometry_, surface, position);
-    }
 
     /// What a surface's curvature takes from the distance to it at this velocity, m/s^2.
     [[nodiscard]] static double bend_of(const SurfaceGeometry& geometry, const ForceInput& particle,
@@ -84,10 +81,8 @@ private:
     [[nodiscard]] bool is_within_tolerance(double t) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
-    [[nodiscard]] double twice_kinetic(const Motion& motion) const;
     [[nodiscard]] double work_until(const State& state) const;
     void restore_energy(State& state, double t) const;
-    void limit_energy(State& state) const;
     [[nodiscard]] bool dissipates() const;
 
     const SurfaceGeometry& geometry_;

@@ -136,6 +136,10 @@ ContactManifold::Holding ContactManifold::holding(const ImpactAnswer& impact) co
     return holding;
 }
 
+Grip ContactManifold::grip(double pressure, double step) const {
+    return {pressure, step / kShortestIntervals, kTouchingOffsets * contact_offset(particle_.position)};
+}
+
 void ContactManifold::record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const {
     Vec3 left = velocity_change;
     for (std::size_t k = 1; k < count_; ++k) {

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
 
@@ -42,6 +43,10 @@ public:
     /// k < size().
     [[nodiscard]] ContactSurface operator[](std::size_t k) const { return {surfaces_[k], normals_[k], flat_[k]}; }
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
+    /// True when one of the surfaces does.
+    [[nodiscard]] bool bends() const {
+        return !std::all_of(flat_.begin(), flat_.begin() + count_, [](bool flat) { return flat; });
+    }
     /// What the next step begins with.
     [[nodiscard]] KeptContact kept() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// What the last step has kept, without normals yet: touch_again() has to follow.
@@ -83,6 +88,8 @@ public:
         [[nodiscard]] std::span<const HoldingSurface> all() const { return {surfaces.data(), count}; }
     };
     [[nodiscard]] Holding holding(const ImpactAnswer& impact) const;
+    /// How they grip, in a step of this duration, s. pressure: as Grip::pressure.
+    [[nodiscard]] Grip grip(double pressure, double step) const;
     /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its part by its load, what
     /// is left on the first.
     void record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const;

@@ -21,34 +21,6 @@ constexpr double kSlipAcceleration = 3.5;
 /// Plans that end at once, one after the other, before the last counts.
 constexpr int kMostPlans = 4;
 
-void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
-    for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
-}
-
-/// Takes the parts along directions out of a motion. Method: modified Gram-Schmidt, twice.
-class Remover {
-public:
-    void add(MotionVector direction) {
-        const double whole = std::sqrt(dot(direction, direction));
-        for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(direction, -dot(direction, basis_[k]), basis_[k]);
-        }
-        const double left = std::sqrt(dot(direction, direction));
-        if (count_ == basis_.size() || !(left > kDependentDirection * whole)) return;
-        for (double& x : direction) x /= left;
-        basis_[count_++] = direction;
-    }
-    void remove_from(MotionVector& motion) const {
-        for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(motion, -dot(motion, basis_[k]), basis_[k]);
-        }
-    }
-
-private:
-    std::array<MotionVector, 6> basis_{};
-    std::size_t count_ = 0;
-};
-
 /// Something that resists, and how it is going.
 struct Resistance {
     enum class Kind { slip, turning, spinning };
@@ -159,30 +131,32 @@ private:
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }
 
+    /// What is braked against its heading, or against its rate in the middle of the interval; else against what the
+    /// forces and the surfaces' curvature would make of it.
     [[nodiscard]] CoulombResistance resistance(const Resistance& r) const {
-        const HoldingSurface& surface = surfaces_[r.surface];
-        const auto contact = static_cast<std::uint32_t>(r.surface);
-        const auto [first, second] = tangent_frame(surface.normal);
-        CoulombResistance result =
-            sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_bend);
-        if (r.kind != Kind::slip) result.rate = {};
+        CoulombResistance result = at_rest(r);
         const bool is_implicit = weight_ > 0.0 && r.speed > 0.0;
-        if (r.kind == Kind::turning) {
-            result.bound = surface.rolling_friction;
-            result.direction = {turning_direction(first), turning_direction(second)};
-        }
+        const Vec3& n = surfaces_[r.surface].normal;
+        const auto [first, second] = tangent_frame(n);
         result.is_moving = r.speed > 0.0 && !is_implicit;
-        if (result.is_moving) result.heading = {dot(r.heading, first), dot(r.heading, second)};
         std::array<double, 2> own{dot(r.rate, first), dot(r.rate, second)};
+        if (result.is_moving) result.heading = {dot(r.heading, first), dot(r.heading, second)};
         if (r.kind == Kind::spinning) {
-            result.size = 1;
-            result.bound = surface.spinning_friction / radius_;
-            result.direction[0] = turning_direction(surface.normal);
-            result.heading = {dot(r.heading, surface.normal) < 0.0 ? -1.0 : 1.0, 0.0};
-            own = {dot(r.rate, surface.normal), 0.0};
+            result.heading = {dot(r.heading, n) < 0.0 ? -1.0 : 1.0, 0.0};
+            own = {dot(r.rate, n), 0.0};
         }
         for (std::size_t d = 0; d < result.size && is_implicit; ++d) result.rate[d] += weight_ * own[d];
         return result;
+    }
+
+    [[nodiscard]] CoulombResistance at_rest(const Resistance& r) const {
+        const HoldingSurface& surface = surfaces_[r.surface];
+        const auto contact = static_cast<std::uint32_t>(r.surface);
+        if (r.kind == Kind::turning) return rolling_resistance(contact, surface.normal, surface.rolling_friction, {});
+        if (r.kind == Kind::spinning) {
+            return spinning_resistance(contact, surface.normal, surface.spinning_friction / radius_, {});
+        }
+        return sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_bend);
     }
 
     /// Its place stays: its centre does not move, and nothing changes its motion.
@@ -351,59 +325,6 @@ Motion end_of_interval(const ContactInterval& interval, double elapsed, const Ve
                        std::span<const HoldingSurface> surfaces) {
     const Motion motion{velocity, interval.motion.spin + elapsed * interval.spin_acceleration};
     return elapsed >= interval.duration ? along_surfaces(motion, radius, surfaces, interval.stuck) : motion;
-}
-
-Vec3 along_all(const Vec3& v, std::span<const Vec3> normals) {
-    Remover remover;
-    for (const Vec3& normal : normals) remover.add(normal_direction(normal));
-    MotionVector all = motion_vector(v, {});
-    remover.remove_from(all);
-    return velocity_of(all);
-}
-
-Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) {
-    std::array<Vec3, 3> basis;
-    std::array<double, 3> part{};
-    std::size_t count = 0;
-    Vec3 shift;
-    for (std::size_t k = 0; k < normals.size() && count < basis.size(); ++k) {
-        Vec3 rest = normals[k];
-        double distance = distances[k];
-        for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t j = 0; j < count; ++j) {
-                const double along = dot(rest, basis[j]);
-                rest -= along * basis[j];
-                distance -= along * part[j];
-            }
-        }
-        const double left = length(rest);
-        if (!(left > kDependentDirection)) continue;
-        basis[count] = rest / left;
-        part[count] = distance / left;
-        shift += part[count] * basis[count];
-        ++count;
-    }
-    return shift;
-}
-
-Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                      const StuckSurfaces& stuck) {
-    const bool is_sphere = radius > 0.0;
-    Remover remover;
-    for (const HoldingSurface& surface : surfaces) remover.add(normal_direction(surface.normal));
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        const Vec3& n = surfaces[k].normal;
-        for (const Vec3& t : tangent_frame(n)) {
-            if (stuck[k].to_slip) remover.add(sliding_direction(t, n, is_sphere));
-            if (stuck[k].to_turning) remover.add(turning_direction(t));
-        }
-        if (stuck[k].to_spinning) remover.add(turning_direction(n));
-    }
-    MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
-    const double before = std::sqrt(dot(all, all));
-    remover.remove_from(all);
-    if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
-    return {velocity_of(all), is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }
 
 }  // namespace ricochet

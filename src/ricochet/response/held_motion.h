@@ -4,34 +4,12 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_motion.h"
 
 namespace ricochet {
-
-/// Surfaces that hold a particle at one time, at most.
-inline constexpr std::size_t kMostHolding = 3;
-
-/// A surface that holds a particle.
-struct HoldingSurface {
-    Vec3 normal;                     ///< unit, towards the particle
-    double friction = 0.0;           ///< Coulomb coefficient
-    double rolling_friction = 0.0;   ///< see Material
-    double spinning_friction = 0.0;  ///< m, see Material
-    /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip.
-    double bend = 0.0;
-    Vec3 slip_bend{};
-};
-
-/// What does not move at a surface.
-struct Stuck {
-    bool to_slip = false;
-    bool to_turning = false;   ///< resistance to rolling holds it
-    bool to_spinning = false;  ///< resistance to spinning about the normal holds it
-};
-using StuckSurfaces = std::array<Stuck, kMostHolding>;
 
 /// One interval of contact with constant acceleration along the surfaces.
 struct ContactInterval {
@@ -79,17 +57,5 @@ inline constexpr double kShortestIntervals = 32.0;
 /// The motion after `elapsed` seconds of an interval. velocity: what the path gave there.
 [[nodiscard]] Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity,
                                      double radius, std::span<const HoldingSurface> surfaces);
-
-/// The vector nearest to v that is at right angles to all normals.
-[[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
-
-/// The shortest vector d with d . n = distance for every normal and its distance; normals that depend on those before
-/// them do not count.
-[[nodiscard]] Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances);
-
-/// The motion nearest to the given one (in energy) that is along all surfaces, and slips and turns on none where
-/// `stuck` says so.
-[[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                                    const StuckSurfaces& stuck);
 
 }  // namespace ricochet

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/sphere_contact.h"
 
 namespace ricochet {
@@ -12,11 +13,6 @@ namespace {
 
 /// Parts of the friction that are tried where the whole has no answer that is found.
 constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
-
-/// Twice the kinetic energy over the mass.
-double energy(const Motion& motion, double radius) {
-    return length_squared(motion.velocity) + 0.4 * radius * radius * length_squared(motion.spin);
-}
 
 class Impact {
 public:
@@ -59,6 +55,22 @@ private:
             problem_.add(
                 sliding_friction(static_cast<std::uint32_t>(c), surface.normal, surface.friction, radius_ > 0.0, slip));
         }
+        if (radius_ > 0.0) resist_turning();
+    }
+
+    void resist_turning() {
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            const auto contact = static_cast<std::uint32_t>(c);
+            const Vec3 turning = radius_ * before_.spin;
+            if (surface.rolling_friction > 0.0) {
+                problem_.add(rolling_resistance(contact, surface.normal, surface.rolling_friction, turning));
+            }
+            if (surface.spinning_friction > 0.0) {
+                const double bound = surface.spinning_friction / radius_;
+                problem_.add(spinning_resistance(contact, surface.normal, bound, turning));
+            }
+        }
     }
 
     /// The answer, with as much friction as there is one for.
@@ -99,19 +111,19 @@ private:
 
     /// What rounding may do to twice the energy over the mass: more where surfaces press against each other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
-        double squared_pushes = energy(before_, radius_);
+        double squared_pushes = twice_kinetic(before_, radius_);
         for (const Vec3& push : result.push) squared_pushes += length_squared(push);
         return kEnergyRounding * squared_pushes;
     }
 
     [[nodiscard]] bool gains(const ImpactResult& result) const {
-        return energy(result.after, radius_) > energy(before_, radius_) + rounding(result);
+        return twice_kinetic(result.after, radius_) > twice_kinetic(before_, radius_) + rounding(result);
     }
 
     /// Without the energy that rounding has let in; without losses with all of it.
     [[nodiscard]] ImpactResult kept(ImpactResult result) const {
-        const double is = energy(result.after, radius_);
-        const double was = energy(before_, radius_);
+        const double is = twice_kinetic(result.after, radius_);
+        const double was = twice_kinetic(before_, radius_);
         const bool loses_none = restitution_ == 1.0 && was - is <= rounding(result) &&
                                 std::all_of(surfaces_.begin(), surfaces_.end(),
                                             [](const ImpactSurface& surface) { return surface.friction == 0.0; });

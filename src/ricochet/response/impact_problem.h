@@ -16,6 +16,9 @@ struct ImpactSurface {
     Vec3 normal;               ///< unit, towards the particle
     double restitution = 1.0;  ///< 0..1, at this approach
     double friction = 0.0;     ///< Coulomb's coefficient
+    /// As those of Material; only where the particle lands without a rebound.
+    double rolling_friction = 0.0;
+    double spinning_friction = 0.0;  ///< m
 };
 
 /// What an impact does.

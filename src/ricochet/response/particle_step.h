@@ -25,6 +25,7 @@ public:
           log_(rules, particle, scratch),
           start_(particle.state.position),
           first_segment_(scratch.segments.size()),
+          duration_(duration),
           remaining_(duration) {}
     ParticleStep(const ParticleStep&) = delete;
     ParticleStep& operator=(const ParticleStep&) = delete;
@@ -60,7 +61,8 @@ public:
     [[nodiscard]] ImpactAnswer& impact() { return impact_; }
     [[nodiscard]] MotionLog& log() { return log_; }
     [[nodiscard]] MoveOutcome& outcome() { return outcome_; }
-    [[nodiscard]] double remaining() const { return remaining_; }  ///< s
+    [[nodiscard]] double duration() const { return duration_; }    ///< s, of the whole step
+    [[nodiscard]] double remaining() const { return remaining_; }  ///< s, that are left of it
     /// Where the step began: off the surface that the particle was put on, if it was.
     [[nodiscard]] const Vec3& start() const { return start_; }
 
@@ -90,6 +92,7 @@ private:
     MotionLog log_;
     Vec3 start_;
     std::size_t first_segment_;  // of this step among those recorded
+    double duration_;
     double remaining_;
 };
 

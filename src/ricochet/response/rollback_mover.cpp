@@ -251,8 +251,7 @@ void RollbackMover::plan_contact(double duration) {
         manifold_.clear();
         return;
     }
-    const Grip grip{kicked ? 0.0 : 1.0, duration / kShortestIntervals,
-                    kTouchingOffsets * contact_offset(state_.position)};
+    const Grip grip = manifold_.grip(kicked ? 0.0 : 1.0, duration);
     interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_, manifold_.holding(impact_).all(),
                               grip, duration);
     manifold_.load(*interval_);

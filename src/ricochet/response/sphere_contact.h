@@ -41,6 +41,26 @@ inline constexpr double kTurning = 1.5811388300841898;
             {}};
 }
 
+/// Resistance to rolling at a contact, along the two vectors of tangent_frame(n), up to `bound` times the normal force.
+/// turning: radius times the angular velocity that there would be without it.
+[[nodiscard]] inline CoulombResistance rolling_resistance(std::uint32_t contact, const Vec3& n, double bound,
+                                                          const Vec3& turning) {
+    const auto [first, second] = tangent_frame(n);
+    return {contact,
+            2,
+            bound,
+            {turning_direction(first), turning_direction(second)},
+            {dot(turning, first), dot(turning, second)},
+            false,
+            {}};
+}
+
+/// Resistance to spinning about the normal.
+[[nodiscard]] inline CoulombResistance spinning_resistance(std::uint32_t contact, const Vec3& n, double bound,
+                                                           const Vec3& turning) {
+    return {contact, 1, bound, {turning_direction(n), {}}, {dot(turning, n), 0.0}, false, {}};
+}
+
 /// A force that resists along tangent_frame(n).
 [[nodiscard]] inline Vec3 along_tangents(const std::array<double, 2>& force, const Vec3& n) {
     const auto [first, second] = tangent_frame(n);

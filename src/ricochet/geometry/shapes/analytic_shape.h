@@ -14,6 +14,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/transform.h"
+#include "ricochet/geometry/shapes/ellipsoid.h"
 #include "ricochet/geometry/shapes/local_shape.h"
 #include "ricochet/geometry/sweep/path.h"
 

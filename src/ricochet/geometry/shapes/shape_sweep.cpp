@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/shapes/ellipsoid.h"
 #include "ricochet/geometry/shapes/local_shape.h"
 
 namespace ricochet {

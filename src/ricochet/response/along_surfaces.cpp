@@ -1,0 +1,106 @@
+#include "ricochet/response/along_surfaces.h"
+
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/sphere_contact.h"
+
+namespace ricochet {
+namespace {
+
+void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
+    for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
+}
+
+/// Takes the parts along directions out of a motion. Method: modified Gram-Schmidt, twice.
+class Remover {
+public:
+    void add(MotionVector direction) {
+        const double whole = std::sqrt(dot(direction, direction));
+        for (int pass = 0; pass < 2; ++pass) {
+            for (std::size_t k = 0; k < count_; ++k) add_multiple(direction, -dot(direction, basis_[k]), basis_[k]);
+        }
+        const double left = std::sqrt(dot(direction, direction));
+        if (count_ == basis_.size() || !(left > kDependentDirection * whole)) return;
+        for (double& x : direction) x /= left;
+        basis_[count_++] = direction;
+    }
+    void remove_from(MotionVector& motion) const {
+        for (int pass = 0; pass < 2; ++pass) {
+            for (std::size_t k = 0; k < count_; ++k) add_multiple(motion, -dot(motion, basis_[k]), basis_[k]);
+        }
+    }
+
+private:
+    std::array<MotionVector, 6> basis_{};
+    std::size_t count_ = 0;
+};
+
+}  // namespace
+
+Vec3 along_all(const Vec3& v, std::span<const Vec3> normals) {
+    Remover remover;
+    for (const Vec3& normal : normals) remover.add(normal_direction(normal));
+    MotionVector all = motion_vector(v, {});
+    remover.remove_from(all);
+    return velocity_of(all);
+}
+
+Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) {
+    std::array<Vec3, 3> basis;
+    std::array<double, 3> part{};
+    std::size_t count = 0;
+    Vec3 shift;
+    for (std::size_t k = 0; k < normals.size() && count < basis.size(); ++k) {
+        Vec3 rest = normals[k];
+        double distance = distances[k];
+        for (int pass = 0; pass < 2; ++pass) {
+            for (std::size_t j = 0; j < count; ++j) {
+                const double along = dot(rest, basis[j]);
+                rest -= along * basis[j];
+                distance -= along * part[j];
+            }
+        }
+        const double left = length(rest);
+        if (!(left > kDependentDirection)) continue;
+        basis[count] = rest / left;
+        part[count] = distance / left;
+        shift += part[count] * basis[count];
+        ++count;
+    }
+    return shift;
+}
+
+Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
+                      const StuckSurfaces& stuck) {
+    const bool is_sphere = radius > 0.0;
+    Remover remover;
+    for (const HoldingSurface& surface : surfaces) remover.add(normal_direction(surface.normal));
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        const Vec3& n = surfaces[k].normal;
+        for (const Vec3& t : tangent_frame(n)) {
+            if (stuck[k].to_slip) remover.add(sliding_direction(t, n, is_sphere));
+            if (stuck[k].to_turning) remover.add(turning_direction(t));
+        }
+        if (stuck[k].to_spinning) remover.add(turning_direction(n));
+    }
+    MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
+    const double before = std::sqrt(dot(all, all));
+    remover.remove_from(all);
+    if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
+    return {velocity_of(all), is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
+}
+
+double twice_kinetic(const Motion& motion, double radius) {
+    return length_squared(motion.velocity) + 0.4 * radius * radius * length_squared(motion.spin);
+}
+
+void limit_energy(Motion& motion, double radius, double most, double offset) {
+    const double moving = twice_kinetic(motion, radius);
+    if (!(moving > most + kContactEnergyOffsets * offset)) return;
+    const double part = most > 0.0 ? std::sqrt(most / moving) : 0.0;
+    motion.velocity *= part;
+    motion.spin *= part;
+}
+
+}  // namespace ricochet

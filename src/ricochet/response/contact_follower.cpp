@@ -1,0 +1,241 @@
+#include "ricochet/response/contact_follower.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/response/along_surfaces.h"
+
+namespace ricochet {
+
+namespace {
+
+/// Arcs up to a contact that is found on one. Each brings the cubic nearer to the arc by its fourth power.
+constexpr int kMostCloserLooks = 12;
+
+/// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong.
+constexpr int kMostTurningPoints = 3;
+
+/// Methods of second order and more; the others hold forces over a step.
+bool follows_varying_forces(IntegratorKind kind) {
+    return kind == IntegratorKind::midpoint || kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::rk4 ||
+           kind == IntegratorKind::dormand_prince;
+}
+
+/// The first time, s, at which something is so, by halving; it is at `high`.
+template <class IsSo>
+double first_time(double high, int halvings, const IsSo& is_so) {
+    double low = 0.0;
+    for (int k = 0; k < halvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (is_so(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+/// How long the arc lasts, s: until something changes: slip begins, or nothing holds it any more (`leaves`).
+double arc_duration(const ContactArc& arc, bool& leaves) {
+    constexpr int kHalvings = 40;
+    const auto hold_at = [&](double time) { return arc.hold_on(arc.at(time), time); };
+    const auto changes = [&](double time) { return hold_at(time) != ContactArc::Hold::as_before; };
+    double duration = arc.longest();
+    if (changes(duration)) duration = first_time(duration, kHalvings, changes);
+    leaves = hold_at(duration) == ContactArc::Hold::none;
+    return duration;
+}
+
+}  // namespace
+
+ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
+    : step_(step),
+      rules_(step.rules()),
+      particle_(step.particle()),
+      state_(step.state()),
+      impact_(step.impact()),
+      manifold_(manifold),
+      held_(step, manifold),
+      forces_vary_(!rules_.forces.is_uniform_for(state_) && follows_varying_forces(rules_.settings.integrator.kind)) {}
+
+ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
+    manifold_.drop_left(kLeavingRounding);
+    if (manifold_.empty()) return {std::nullopt, true, false};
+    if (!manifold_.bends()) {
+        const ContactInterval interval = plan(pull, duration);
+        if (interval.at_rest) {
+            particle_.spin = interval.motion.spin;
+            return {std::nullopt, false, true};
+        }
+        const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
+        const bool is_arc = turns || (pull.acts && forces_vary_);
+        if (!is_arc) return follow_flat(interval, pull);
+    }
+    return follow_arc(pull, duration);
+}
+
+ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
+    const Grip grip = manifold_.grip(pull.pressure, step_.duration());
+    const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull.forces,
+                                                   manifold_.holding(impact_).all(), grip, duration);
+    manifold_.load(interval);
+    return interval;
+}
+
+/// Follows one interval on flat surfaces.
+ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interval, const Pull& pull) {
+    const FlatWay way = way_along(interval);
+    if (way.path.duration <= 0.0) return {std::nullopt, true, false};
+    step_.log().note_impact();
+    const double before = step_.remaining();
+    const Vec3 turned = interval.motion.velocity - state_.velocity;
+    const Vec3 from = state_.position;
+    const double most = twice_kinetic({state_.velocity, particle_.spin}, state_.radius);
+    held_.find();
+    Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
+    const double elapsed = before - step_.remaining();
+    manifold_.record_push(turned + elapsed * (interval.acceleration - pull.forces), elapsed, impact_);
+    Motion motion =
+        end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
+    const double work = pull.acts ? dot(pull.forces, state_.position - from) : 0.0;
+    limit_energy(motion, state_.radius, most + 2.0 * work, length(pull.forces) * contact_offset(state_.position));
+    state_.velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    step_.log().note_contact(pull.forces, pull.acts);
+    held_.meet(stop.contact);
+    return stop;
+}
+
+/// The way of an interval, up to where a surface ends; its end keeps the contact offset.
+ContactFollower::FlatWay ContactFollower::way_along(const ContactInterval& interval) const {
+    const Vec3& v = interval.motion.velocity;
+    const Vec3& a = interval.acceleration;
+    Path path = parabola_path(state_.position, v, a, interval.duration);
+    if (!is_finite(path.end)) return {path, false};
+    const double slack = kEdgeOffsets * contact_offset(state_.position);
+    double on = interval.duration;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        Path of_contact_point = path;
+        of_contact_point.c[0] -= state_.radius * manifold_[k].normal;
+        on = std::min(on, rules_.world.time_over(manifold_[k].surface, of_contact_point, slack));
+    }
+    const bool leaves = on < interval.duration;
+    if (leaves) path = parabola_path(state_.position, v, a, on);
+    if (path.duration > 0.0) keep_offset(path, interval);
+    return {path, leaves};
+}
+
+/// Puts the end of a path along flat surfaces at the contact offset above the planes of those that hold it, and not
+/// nearer to the others, also where the end lies a little beyond a rim.
+void ContactFollower::keep_offset(Path& path, const ContactInterval& interval) const {
+    const SurfaceGeometry& geometry = step_.geometry();
+    std::array<Vec3, kMostHolding> normals;
+    std::array<double, kMostHolding> lifts{};
+    std::size_t count = 0;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
+        const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
+        const double lift = contact_offset(path.end) - height;
+        if (interval.push[k] == Vec3{} && lift < 0.0) continue;
+        normals[count] = surface.normal;
+        lifts[count++] = lift;
+        largest = std::max(largest, std::fabs(lift));
+    }
+    // Next to the origin a height above a large triangle can be all rounding.
+    if (largest > 0.5 * kCandidateSlack * max_abs(path.end)) return;
+    path.end = flush_tiny(path.end + shift_by({normals.data(), count}, {lifts.data(), count}));
+}
+
+/// Follows one arc.
+ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double duration) {
+    held_.find();
+    const ContactManifold::Holding materials = manifold_.holding(impact_);
+    const Grip grip = manifold_.grip(pull.pressure, step_.duration());
+    const ContactArc arc(
+        step_.geometry(), rules_.forces, state_, manifold_, materials,
+        {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration, tolerance()});
+    if (arc.plan().at_rest) {
+        particle_.spin = arc.plan().motion.spin;
+        return {std::nullopt, false, true};
+    }
+    std::optional<ArcWay> way = way_along(arc);
+    if (!way) return {std::nullopt, true, false};
+    step_.log().note_impact();
+    const double before = step_.remaining();
+    const Vec3 velocity_before = state_.velocity;
+    std::optional<Contact> contact = move_along(*way, arc);
+    step_.log().note_contact(pull.forces, pull.acts);
+    const double elapsed = before - step_.remaining();
+    const Vec3 forces_after = pull.acts ? rules_.forces.acceleration(state_) : Vec3{};
+    const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
+    manifold_.load(arc.plan());
+    manifold_.record_push(state_.velocity - velocity_before - by_forces, elapsed, impact_);
+    held_.meet(contact);
+    Stop stop{contact, way->leaves_surface, false};
+    if (!stop.is_early()) held_.touch_again(way->turning_point);
+    return stop;
+}
+
+/// The way of an arc, up to where nothing holds it any more or another part of a surface begins; none where that is
+/// at once.
+std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactArc& arc) const {
+    if (arc.hold_on(arc.start(), 0.0) == ContactArc::Hold::none) return std::nullopt;
+    ArcWay way;
+    const double whole = arc_duration(arc, way.leaves_surface);
+    if (!(whole > 0.0)) return std::nullopt;
+    lead_until(whole, arc, way);
+    way.turning_point = way.path.end;
+    // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
+    for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(way.path.end)); ++k) {
+        const double on = time_on_pieces(way.path);
+        if (!(on < way.path.duration)) break;
+        way.turning_point = way.path.position(on);
+        way.leaves_surface = held_.has_left_face(way.turning_point);
+        lead_until(on, arc, way);
+    }
+    return way;
+}
+
+void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way) const {
+    way.end = arc.at(time);
+    way.path = hermite_path(arc.start().position, arc.start().motion.velocity, way.end.position,
+                            way.end.motion.velocity, time);
+    if (state_.radius == 0.0) held_.lift_middle(way.path);
+}
+
+/// The time on the path, s, from which another part of a surface is touched.
+double ContactFollower::time_on_pieces(const Path& path) const {
+    constexpr int kHalvings = 32;
+    const auto has_passed = [&](double time) { return held_.touches_next_part(path.position(time)); };
+    return has_passed(path.duration) ? first_time(path.duration, kHalvings, has_passed) : path.duration;
+}
+
+/// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
+std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc& arc) {
+    int closer_looks = 0;
+    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+        const Vec3 there = arc.at(time).position;
+        const double off = length(there - tried.position(time));
+        if (!(off > kTouchingOffsets * contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
+        way.leaves_surface = false;
+        way.turning_point = there;
+        lead_until(time, arc, way);
+        return way.path;
+    };
+    const std::optional<Contact> contact = step_.follow(way.path, held_.all(), closer);
+    const Motion motion = contact ? arc.at(contact->time).motion : way.end.motion;
+    state_.velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    return contact;
+}
+
+/// What an arc may be wrong by, where the integrator chooses its own steps.
+std::optional<ErrorTolerance> ContactFollower::tolerance() const {
+    const Integrator& integrator = rules_.settings.integrator;
+    if (integrator.kind != IntegratorKind::dormand_prince) return std::nullopt;
+    return integrator.tolerance;
+}
+
+}  // namespace ricochet

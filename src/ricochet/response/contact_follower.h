@@ -1,0 +1,77 @@
+/// \file
+/// Private to the exact response: the way of a particle along surfaces that hold it, one contact interval or arc at a
+/// time.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/held_motion.h"
+#include "ricochet/response/held_surfaces.h"
+#include "ricochet/response/particle_step.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// Moves a particle along the surfaces of its contact manifold, and keeps the manifold to what is touched.
+class ContactFollower {
+public:
+    /// Forces on it in an interval.
+    struct Pull {
+        Vec3 forces;            ///< over the mass, m/s^2
+        bool acts = true;       ///< false: they have been in the velocity from the step's start on
+        double pressure = 1.0;  ///< as Grip::pressure
+    };
+    /// Why an interval, or several, have ended before their time.
+    struct Stop {
+        std::optional<Contact> contact;  ///< it has come to another contact
+        bool left_surface = false;       ///< the surface has ended, or holds it no more
+        bool rests = false;              ///< nothing moves; no time has passed
+        [[nodiscard]] bool is_early() const { return contact || left_surface; }
+    };
+
+    /// At the start of the step. Both must outlive it.
+    ContactFollower(ParticleStep& step, ContactManifold& manifold);
+
+    /// One interval of at most `duration` seconds on all that is touched.
+    [[nodiscard]] Stop advance(const Pull& pull, double duration);
+    /// The interval that it would be if all that is touched were flat. It loads the manifold.
+    [[nodiscard]] ContactInterval plan(const Pull& pull, double duration);
+
+private:
+    /// What a particle follows in one contact interval on flat surfaces.
+    struct FlatWay {
+        Path path;
+        bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
+    };
+    /// What it follows on an arc.
+    struct ArcWay {
+        Path path;  ///< a cubic that is no more than near the arc between its ends
+        ContactArc::State end;
+        Vec3 turning_point;           ///< on the way, where another part of a surface begins; else its end
+        bool leaves_surface = false;  ///< nothing holds it any more at its end
+    };
+
+    [[nodiscard]] Stop follow_flat(const ContactInterval& interval, const Pull& pull);
+    [[nodiscard]] FlatWay way_along(const ContactInterval& interval) const;
+    void keep_offset(Path& path, const ContactInterval& interval) const;
+    [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
+    [[nodiscard]] std::optional<ArcWay> way_along(const ContactArc& arc) const;
+    void lead_until(double time, const ContactArc& arc, ArcWay& way) const;
+    [[nodiscard]] double time_on_pieces(const Path& path) const;
+    [[nodiscard]] std::optional<Contact> move_along(ArcWay& way, const ContactArc& arc);
+    [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;
+
+    ParticleStep& step_;
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    ImpactAnswer& impact_;
+    ContactManifold& manifold_;
+    HeldSurfaces held_;
+    bool forces_vary_;  // and the integrator is of second order or more
+};
+
+}  // namespace ricochet

@@ -1,0 +1,166 @@
+#include "ricochet/response/contact_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/held_motion.h"
+
+namespace ricochet {
+
+ContactSupport::ContactSupport(ParticleStep& step, const ContactManifold& manifold)
+    : step_(step),
+      rules_(step.rules()),
+      particle_(step.particle()),
+      state_(step.state()),
+      impact_(step.impact()),
+      manifold_(manifold) {}
+
+bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
+                                     double kick_duration) const {
+    const bool dies_out = std::any_of(contact.all().begin(), contact.all().end(),
+                                      [&](const ContactSurface& surface) { return has_losses(surface); });
+    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        const Material& material = impact_.material_of(surface.surface);
+        // What the step's own kick put into the velocity is not the speed of an impact.
+        const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
+        const double approach = -dot(arriving.velocity, surface.normal) - kicked;
+        const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
+        return !(approach > 0.0 && rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out));
+    });
+}
+
+/// True when bounces on the surface die out.
+bool ContactSupport::has_losses(const ContactSurface& surface) const {
+    return impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed);
+}
+
+/// The speed of rebounds, m/s, below which bounces on a surface are contact. Without losses they die out between it and
+/// another surface that has some (`dies_out`); alone they never end, but are none where they rise no higher than what
+/// is touched. kicked: a kick's bounces stay as they are.
+double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
+                                    bool dies_out) const {
+    const double resting_speed = rules_.settings.resting_speed;
+    if (has_losses(surface)) return resting_speed;
+    if (kicked || impact_.material_of(surface.surface).is_random()) return 0.0;
+    if (dies_out) return resting_speed;
+    const double pressing = std::max(0.0, pressing_on(surface, forces));
+    return std::min(resting_speed, std::sqrt(2.0 * pressing * kTouchingOffsets * contact_offset(state_.position)));
+}
+
+std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {
+    const Pushes pushes = pushes_together(forces, fastest);
+    std::optional<ContactSurface> support;
+    double hardest = 0.0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (!(length(pushes[k]) > hardest)) continue;
+        hardest = length(pushes[k]);
+        support = manifold_[k];
+    }
+    return support;
+}
+
+std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
+    const Pushes pushes = pushes_together(forces, rules_.settings.resting_speed);
+    const ContactManifold::Holding holding = manifold_.holding(impact_);
+    std::array<HoldingSurface, kMostHolding> surfaces;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (pushes[k] != Vec3{}) surfaces[count++] = holding.surfaces[k];
+    }
+    if (count < 2) return std::nullopt;
+    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    return along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
+}
+
+/// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
+/// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
+ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, double fastest) const {
+    bool has_lossless = false;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) has_lossless = has_lossless || !has_losses(manifold_[k]);
+    const Pushes pushes = pushes_together(forces, fastest, true);
+    if (!has_lossless) return pushes;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (has_losses(manifold_[k]) && pushes[k] != Vec3{}) return pushes;
+    }
+    return pushes_together(forces, fastest, false);
+}
+
+/// The same. die_out: bounces on surfaces without losses do, between them and others.
+ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, double fastest, bool die_out) const {
+    Pushes pushes{};
+    std::array<HoldingSurface, kMostHolding> surfaces;
+    std::array<std::size_t, kMostHolding> number{};
+    std::size_t count = 0;
+    const ContactManifold::Holding holding = manifold_.holding(impact_);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        if (!(dot(state_.velocity, surface.normal) <= fastest_departure(surface, forces, fastest, die_out))) continue;
+        surfaces[count] = holding.surfaces[k];
+        if (!surface.flat)
+            surfaces[count].bend = ContactArc::bend_of(step_.geometry(), state_, surface, state_.velocity);
+        number[count++] = k;
+    }
+    if (count == 1) {
+        const ContactSurface alone = manifold_[number[0]];
+        pushes[number[0]] = std::max(0.0, pressing_on(alone, forces)) * alone.normal;
+        return pushes;
+    }
+    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    const StuckSurfaces stuck = sticking(together);
+    const Motion motion = along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, stuck);
+    const Grip grip = manifold_.grip(1.0, step_.duration());
+    const ContactInterval interval =
+        plan_interval(motion, state_.radius, forces, together, grip, step_.remaining(), stuck);
+    for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
+    return pushes;
+}
+
+/// The speed, m/s, up to which it may leave a surface that will hold it.
+double ContactSupport::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
+                                         bool die_out) const {
+    if (has_losses(surface)) return fastest;
+    const double slow = slow_rebound(surface, forces, fastest > rules_.settings.resting_speed, die_out);
+    return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
+}
+
+/// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
+StuckSurfaces ContactSupport::sticking(std::span<const HoldingSurface> surfaces) const {
+    StuckSurfaces stuck{};
+    const double scale = length(state_.velocity) + state_.radius * length(particle_.spin);
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        const Vec3 slip = slip_velocity({state_.velocity, particle_.spin}, state_.radius, surfaces[k].normal);
+        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip) <= kSlowSlip * scale;
+    }
+    return stuck;
+}
+
+std::optional<ContactSurface> ContactSupport::hardest_pressed(const Vec3& forces) const {
+    std::optional<ContactSurface> support;
+    double hardest = 0.0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        const double pressing = pressing_on(surface, forces);
+        if (!(pressing > hardest)) continue;
+        hardest = pressing;
+        support = surface;
+    }
+    return support;
+}
+
+bool ContactSupport::is_pressed(const Vec3& forces) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (pressing_on(manifold_[k], forces) >= 0.0) return true;
+    }
+    return false;
+}
+
+double ContactSupport::pressing_on(const ContactSurface& surface, const Vec3& forces) const {
+    const double by_forces = -dot(forces, surface.normal);
+    if (surface.flat) return by_forces;
+    return by_forces - ContactArc::bend_of(step_.geometry(), state_, surface, state_.velocity);
+}
+
+}  // namespace ricochet

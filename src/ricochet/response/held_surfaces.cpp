@@ -1,0 +1,137 @@
+#include "ricochet/response/held_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_arc.h"
+
+namespace ricochet {
+
+namespace {
+
+/// Seams in one step before what continues a surface is an impact like any other.
+constexpr int kMostSeams = 64;
+
+}  // namespace
+
+HeldSurfaces::HeldSurfaces(ParticleStep& step, ContactManifold& manifold)
+    : step_(step), geometry_(step.geometry()), state_(step.state()), manifold_(manifold) {}
+
+void HeldSurfaces::find() {
+    surfaces_.clear();
+    beside_.clear();
+    if (manifold_.bends() || std::exchange(crosses_seam_, false)) find_beside();
+    for (std::size_t k = 0; k < manifold_.size(); ++k) surfaces_.push_back(manifold_[k].surface);
+    for (const Beside& other : beside_) surfaces_.push_back(other.surface);
+}
+
+void HeldSurfaces::find_beside() {
+    if (state_.radius == 0.0) return;
+    const double reach = state_.radius + kTouchingOffsets * contact_offset(state_.position);
+    step_.visit_near([&](SurfaceId surface) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+        const auto point = manifold_.point_of(nearest.normal);
+        if (nearest.distance > reach || !point || manifold_[*point].surface == surface) return;
+        beside_.push_back({surface, *point});
+    });
+}
+
+bool HeldSurfaces::touches_next_part(const Vec3& position) const {
+    const double reach = kTouchingOffsets * contact_offset(state_.position);
+    std::array<CollisionWorld::Nearest, kMostHolding> points;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const SurfaceId surface = manifold_[k].surface;
+        points[k] = geometry_.nearest(surface, position);
+        const bool is_next = manifold_[k].flat ? is_beyond_rim(surface, position)
+                                               : touched_feature(geometry_, surface, position) !=
+                                                     touched_feature(geometry_, surface, state_.position);
+        if (is_next) return true;
+    }
+    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, position);
+        const CollisionWorld::Nearest& point = points[other.point];
+        return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
+    });
+}
+
+bool HeldSurfaces::overlaps(const Vec3& position) const {
+    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+        return geometry_.nearest(other.surface, position).distance < state_.radius;
+    });
+}
+
+bool HeldSurfaces::has_left_face(const Vec3& position) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (manifold_[k].flat && is_beyond_rim(manifold_[k].surface, position)) return true;
+    }
+    return false;
+}
+
+/// True where the foot of a position on a face's plane is so far beyond the face that it holds the particle no more.
+bool HeldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
+    const Vec3 height = geometry_.signed_distance_from(surface, position) * geometry_.unit_normal_of(surface, position);
+    return geometry_.nearest(surface, position - height).distance > kEdgeOffsets * contact_offset(position);
+}
+
+void HeldSurfaces::lift_middle(Path& path) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        if (surface.flat) continue;
+        const auto normal_at = [&](const Vec3& p) { return geometry_.unit_normal_of(surface.surface, p); };
+        const double side = dot(normal_at(path.c[0]), surface.normal) < 0.0 ? -1.0 : 1.0;
+        double behind = 0.0;
+        for (const double part : {0.25, 0.5, 0.75}) {
+            const Vec3 p = path.position(part * path.duration);
+            behind = std::max(behind, contact_offset(p) - side * geometry_.signed_distance_from(surface.surface, p));
+        }
+        if (behind == 0.0) continue;
+        const Vec3 middle = path.position(0.5 * path.duration);
+        const Vec3 lift = (4.0 * (behind + contact_offset(middle)) * side / path.duration) * normal_at(middle);
+        path.c[1] += lift;
+        path.c[2] -= lift / path.duration;
+        path.degree = std::max(path.degree, 2);
+    }
+}
+
+void HeldSurfaces::meet(std::optional<Contact>& contact) {
+    if (contact && goes_on_along(*contact)) contact.reset();
+    if (contact) take_part_in(*contact);
+}
+
+bool HeldSurfaces::goes_on_along(const Contact& contact) {
+    const bool all = std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return manifold_.point_of(surface.normal).has_value();
+    });
+    if (!all || ++seams_ > kMostSeams) return false;
+    for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
+    crosses_seam_ = true;
+    return true;
+}
+
+void HeldSurfaces::take_part_in(Contact& contact) const {
+    for (std::size_t k = 0; k < manifold_.size() && contact.count < Contact::kMostSurfaces; ++k) {
+        const SurfaceId surface = manifold_[k].surface;
+        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
+                                          [&](const ContactSurface& other) { return other.surface == surface; });
+        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * contact_offset(state_.position)) continue;
+        // A point next to a rim: the direction from the rim is rounding.
+        const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
+        contact.surfaces[static_cast<std::size_t>(contact.count++)] =
+            is_beside_rim ? manifold_[k] : ContactSurface{surface, nearest.normal, nearest.flat};
+    }
+}
+
+void HeldSurfaces::touch_again(const Vec3& turning_point) {
+    const TouchRule rule = TouchRule::at(state_.position);
+    manifold_.touch_again(rule);
+    for (const SurfaceId surface : surfaces_) manifold_.touch(surface, rule);
+    for (const Beside& other : beside_) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, turning_point);
+        if (nearest.flat) manifold_.add({other.surface, nearest.normal, true});
+    }
+}
+
+}  // namespace ricochet

@@ -87,13 +87,13 @@ MotionPart slide() {
 TEST(EnergyOfContact, GrowsByTheWorkOfTheForcesAndNoMore) {
     EXPECT_FALSE(gains(slide()));
     MotionPart pushed = slide();
-    pushed.end.velocity *= 1.0 + 1e-13;
+    pushed.end.velocity *= 1.0 + 1e-11;
     EXPECT_TRUE(gains(pushed));
     MotionPart lifted = slide();
-    lifted.end.position.z += 1e-12;
+    lifted.end.position.z += 1e-11;
     EXPECT_TRUE(gains(lifted));
     lifted = slide();
-    lifted.end.position.z += 1e-15;  // a contact offset is 16 units in the last place
+    lifted.end.position.z += 1e-13;  // a contact offset is 7e-15 m here
     EXPECT_FALSE(gains(lifted));
 }
 

@@ -311,17 +311,17 @@ inline constexpr double kSameDirection = 1e-9;
 /// friction is scaled away instead of lowering the restitution.
 inline constexpr double kEnergyRounding = 0x1p-44;
 
-/// Kinetic energy that an impact or an interval of contact may gain over what forces have done work before a verified
-/// run says so, in parts of the larger of the kinetic energies before and after, and in contact offsets times the
-/// force. Reason: sixteen roundings of 2^-53; and beside a rim a particle may stand off what holds it by kEdgeOffsets.
-/// Smaller: rounding is reported. Larger: small gains pass.
-inline constexpr double kEnergyGain = 0x1p-49;
-inline constexpr double kEnergyOffsets = kEdgeOffsets;
+/// Kinetic energy that an interval or arc of contact may gain, in contact offsets times the force, before its energy is
+/// limited. Reason: beside a rim or in a narrow wedge a particle may stand off what holds it by as much, at both ends.
+/// Smaller: motion in narrow wedges, and the first motion from rest, lose what is rounding of positions. Larger: the
+/// error of the method gives as much.
+inline constexpr double kContactEnergyOffsets = kEdgeOffsets;
 
-/// The same that an interval or arc may gain, in contact offsets times the force, before its energy is limited.
-/// Reason: what is held touches within kTouchingOffsets, at both ends. Smaller: the first motion from rest, which has
-/// less energy than that, is lost. Larger: the error of the method gives as much.
-inline constexpr double kContactEnergyOffsets = 2.0 * kTouchingOffsets;
+/// The same before a verified run says so, also for impacts, and in parts of the larger of the kinetic energies before
+/// and after. Reason: twice what contact lets pass; sixteen roundings of 2^-53. Smaller: rounding is reported. Larger:
+/// small gains pass.
+inline constexpr double kEnergyOffsets = 2.0 * kContactEnergyOffsets;
+inline constexpr double kEnergyGain = 0x1p-49;
 
 /// Acceleration, as a part of what presses on, up to which what surfaces hold stays where it is. Reason: some hundred
 /// times the rounding of the solved equations. Smaller: particles at rest creep at 1e-16 of gravity. Larger: what

@@ -91,8 +91,7 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
     knows_work_ = !start.has_forces || forces.is_uniform_for(particle) || forces.is_conservative_for(particle);
     keeps_energy_ = knows_work_ && !dissipates();
-    const bool may_jam = std::count(holds_.begin(), holds_.end(), true) > 1 && dissipates();
-    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now) || may_jam;
+    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now) || may_jam();
 }
 
 ContactArc::State ContactArc::at(double t) const {
@@ -288,6 +287,19 @@ bool ContactArc::dissipates() const {
         if (surface.friction > 0.0 && !stuck_[k].to_slip) return true;
         if (surface.rolling_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_turning) return true;
         if (surface.spinning_friction > 0.0 && particle_.radius > 0.0 && !stuck_[k].to_spinning) return true;
+    }
+    return false;
+}
+
+/// It turns against resistance between several surfaces, which can brake it by as much as they press against each
+/// other: the stages of one arc would find it braked and not.
+bool ContactArc::may_jam() const {
+    if (particle_.radius == 0.0 || std::count(holds_.begin(), holds_.end(), true) < 2) return false;
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const HoldingSurface& surface = materials_.surfaces[k];
+        if (!holds_[k]) continue;
+        if (surface.rolling_friction > 0.0 && !stuck_[k].to_turning) return true;
+        if (surface.spinning_friction > 0.0 && !stuck_[k].to_spinning) return true;
     }
     return false;
 }

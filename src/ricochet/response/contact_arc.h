@@ -80,6 +80,7 @@ private:
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] bool is_within_tolerance(double t) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
+    [[nodiscard]] bool may_jam() const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
     [[nodiscard]] double work_until(const State& state) const;
     void restore_energy(State& state, double t) const;

@@ -20,9 +20,12 @@ struct HoldingSurface {
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
     double spinning_friction = 0.0;  ///< m, see Material
-    /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip.
+    /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip; and to those of radius
+    /// times angular velocity, along the surface and about its normal, since the normal turns.
     double bend = 0.0;
     Vec3 slip_bend{};
+    Vec3 turning_bend{};
+    double spinning_bend = 0.0;
 };
 
 /// What does not move at a surface.

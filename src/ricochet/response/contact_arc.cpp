@@ -229,7 +229,10 @@ ContactArc::Holding ContactArc::holding(const State& state) const {
         const Vec3 turn =
             normal_rate(geometry_, particle_.radius, surfaces_[k], touched, state.position, state.motion.velocity);
         surface.bend = dot(turn, state.motion.velocity);
-        surface.slip_bend = -particle_.radius * cross(state.motion.spin, turn);
+        const Vec3 turning = particle_.radius * state.motion.spin;
+        surface.slip_bend = -cross(turning, turn);
+        surface.turning_bend = -dot(turning, surface.normal) * turn;
+        surface.spinning_bend = dot(turning, turn);
     }
     return result;
 }

@@ -152,9 +152,12 @@ private:
     [[nodiscard]] CoulombResistance at_rest(const Resistance& r) const {
         const HoldingSurface& surface = surfaces_[r.surface];
         const auto contact = static_cast<std::uint32_t>(r.surface);
-        if (r.kind == Kind::turning) return rolling_resistance(contact, surface.normal, surface.rolling_friction, {});
+        const Vec3& n = surface.normal;
+        if (r.kind == Kind::turning) {
+            return rolling_resistance(contact, n, surface.rolling_friction, surface.turning_bend);
+        }
         if (r.kind == Kind::spinning) {
-            return spinning_resistance(contact, surface.normal, surface.spinning_friction / radius_, {});
+            return spinning_resistance(contact, n, surface.spinning_friction / radius_, surface.spinning_bend * n);
         }
         return sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_bend);
     }
@@ -169,20 +172,23 @@ private:
     [[nodiscard]] double scale() const {
         double largest = length(a_);
         for (const HoldingSurface& surface : surfaces_) {
-            largest = std::max({largest, std::fabs(surface.bend), length(surface.slip_bend)});
+            largest = std::max({largest, std::fabs(surface.bend), length(surface.slip_bend),
+                                length(surface.turning_bend), std::fabs(surface.spinning_bend)});
         }
         return largest;
     }
 
     /// What the forces change the rate of a resistance by, m/s^2.
     [[nodiscard]] Vec3 change_of(const Resistance& r) const {
-        const Vec3& n = surfaces_[r.surface].normal;
+        const HoldingSurface& surface = surfaces_[r.surface];
+        const Vec3& n = surface.normal;
+        const auto along = [&](const Vec3& v) { return v - dot(v, n) * n; };
         if (r.kind == Kind::slip) {
-            const Vec3& bend = surfaces_[r.surface].slip_bend;
-            return slip_velocity({acceleration_, spin_acceleration_}, radius_, n) + bend - dot(bend, n) * n;
+            return slip_velocity({acceleration_, spin_acceleration_}, radius_, n) + along(surface.slip_bend);
         }
-        const Vec3 spinning = dot(spin_acceleration_, n) * n;
-        return radius_ * (r.kind == Kind::turning ? spin_acceleration_ - spinning : spinning);
+        const Vec3 turning = radius_ * spin_acceleration_;
+        if (r.kind == Kind::turning) return along(turning) + along(surface.turning_bend);
+        return (dot(turning, n) + surface.spinning_bend) * n;
     }
 
     /// s, until some friction has turned by kMaxHeadingTurn; by more where that is soon.

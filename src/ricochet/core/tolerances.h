@@ -284,6 +284,12 @@ inline constexpr double kStateRounding = 0x1p-54;
 /// problems that are solved count as unsolved. Larger: energy may grow by as much.
 inline constexpr double kCoulombResidual = 0x1p-40;
 
+/// The same up to which an answer is taken before less friction is tried. Reason: where surfaces press against each
+/// other and nothing decides by how much, rounding leaves 1e-7 and more; the next smaller friction would be wrong by
+/// 1e-3. Smaller: what rolls between two surfaces slips for a moment. Larger: worse answers, of which the energy is
+/// limited.
+inline constexpr double kNearlySolved = 1e-4;
+
 /// The defect at which they are not improved any more. Reason: rounding of six products. Smaller: steps that change
 /// nothing. Larger: worse answers.
 inline constexpr double kCoulombRounding = 0x1p-50;

@@ -33,16 +33,25 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     set_up();
     double scale = 0.0;
     for (std::size_t i = 0; i < unknowns_; ++i) scale = std::max(scale, std::fabs(free_rate_[i]));
+    residual_ = 0.0;
     if (scale == 0.0) return true;
     for (std::size_t i = 0; i < unknowns_; ++i) free_rate_[i] /= scale;
     const bool apart = is_apart();
     if (apart) solve_apart();
     const bool is_stiff = apart || make_stiff(effort);
     if (is_stiff && !apart) make_rigid();
-    const double residual = find_defects({});
+    residual_ = find_defects({});
+    if (!is_stiff || !(residual_ < kHopeless)) residual_ = kHopeless;
     cut_to_bounds();
     for (std::size_t i = 0; i < unknowns_; ++i) force_[i] *= scale;
-    return is_stiff && residual <= kCoulombResidual;
+    return residual_ <= kCoulombResidual;
+}
+
+void CoulombProblem::solve_with_most(Effort effort, double friction) {
+    constexpr std::array kParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
+    for (const double part : kParts) {
+        if (solve(effort, part * friction) || residual_ <= kNearlySolved) return;
+    }
 }
 
 std::array<double, 2> CoulombProblem::force_of(std::size_t resistance) const {

@@ -74,6 +74,11 @@ public:
     /// can leave none. friction: a factor on all bounds, 0..1.
     bool solve(Effort effort, double friction = 1.0);
 
+    /// Solves with as much of the friction as there is an answer for: all of it, also where rounding leaves the
+    /// conditions met to kNearlySolved only, as between surfaces that press against each other; else less, down to
+    /// none.
+    void solve_with_most(Effort effort, double friction = 1.0);
+
     /// Force of a contact.
     [[nodiscard]] double push(std::size_t contact) const { return force_[contact]; }
     /// Force of a resistance along its directions.
@@ -121,6 +126,7 @@ private:
     std::size_t contact_count_ = 0;
     std::size_t resistance_count_ = 0;
     double friction_ = 1.0;
+    double residual_ = 0.0;  // of the last answer, as a part of the largest rate
 
     // The unknown forces: of the contacts, then of the resistances.
     std::size_t unknowns_ = 0;

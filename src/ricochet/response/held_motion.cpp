@@ -9,9 +9,6 @@
 namespace ricochet {
 namespace {
 
-/// Parts of the friction that are tried where the whole has no answer: a sphere that something jams in.
-constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
-
 /// Stages of the Runge-Kutta method damp what decays up to 2.78 times as fast as a step.
 constexpr double kStageLimit = 2.5;
 
@@ -117,9 +114,7 @@ private:
         const bool slides = weight_ == 0.0 && std::any_of(resistances().begin(), resistances().end(),
                                                           [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
-        for (const double part : kFrictionParts) {
-            if (problem.solve(effort, part * grip_.pressure)) break;
-        }
+        problem.solve_with_most(effort, grip_.pressure);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) push_[k] = problem.push(k) * surfaces_[k].normal;
         for (std::size_t r = 0; r < count_; ++r) {
             const std::size_t k = resistances_[r].surface;

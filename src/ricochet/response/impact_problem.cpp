@@ -11,9 +11,6 @@
 namespace ricochet {
 namespace {
 
-/// Parts of the friction that are tried where the whole has no answer that is found.
-constexpr std::array kFrictionParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
-
 class Impact {
 public:
     Impact(const Motion& before, double radius, std::span<const ImpactSurface> surfaces)
@@ -25,7 +22,7 @@ public:
         const bool has_friction = std::any_of(surfaces_.begin(), surfaces_.end(),
                                               [](const ImpactSurface& surface) { return surface.friction > 0.0; });
         if (!has_friction || restitution_ == 0.0) return kept(whole(restitution_));
-        if (const std::optional<ImpactResult> result = find(restitution_, CoulombProblem::Effort::some, 1.0)) {
+        if (const std::optional<ImpactResult> result = find(restitution_)) {
             if (!gains(*result)) return kept(*result);
         }
         return kept(repeated(whole(0.0)));
@@ -75,11 +72,9 @@ private:
 
     /// The answer, with as much friction as there is one for.
     ImpactResult whole(double restitution) {
-        std::optional<ImpactResult> result;
-        for (std::size_t k = 0; k < kFrictionParts.size() && !result; ++k) {
-            result = find(restitution, CoulombProblem::Effort::all, kFrictionParts[k]);
-        }
-        return result.value_or(ImpactResult{before_, {}});
+        set_up(restitution);
+        problem_.solve_with_most(CoulombProblem::Effort::all);
+        return answer();
     }
 
     /// Compression without rebound, and the part e of its impulses once more.
@@ -90,9 +85,14 @@ private:
         return result;
     }
 
-    [[nodiscard]] std::optional<ImpactResult> find(double restitution, CoulombProblem::Effort effort, double friction) {
+    /// With all friction, where that is found quickly.
+    [[nodiscard]] std::optional<ImpactResult> find(double restitution) {
         set_up(restitution);
-        if (!problem_.solve(effort, friction)) return std::nullopt;
+        if (!problem_.solve(CoulombProblem::Effort::some)) return std::nullopt;
+        return answer();
+    }
+
+    [[nodiscard]] ImpactResult answer() const {
         ImpactResult result;
         std::size_t resistance = 0;
         for (std::size_t c = 0; c < count_; ++c) {

@@ -65,8 +65,8 @@ private:
     /// and positions 1e-15 off the surface.
     static constexpr double kRounding = 1e-13;
 
-    /// Of an impact: the particle is parked 16 units in the last place off the surface, and its velocity is rounded.
-    static constexpr double kRoundingOfImpact = 32 * 0x1p-53;
+    /// Of an impact: the particle is parked 16 units in the last place off the surface, or 64 where that is not free.
+    static constexpr double kRoundingOfImpact = 64 * 0x1p-52;
 
     static double impacts_of(const Simulation& simulation, std::uint64_t particle) {
         const auto& records = simulation.contact_records();

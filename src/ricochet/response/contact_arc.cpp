@@ -112,6 +112,7 @@ ContactArc::State ContactArc::by_midpoint_rule(double t) const {
     constexpr int kMostParts = 8;
     State state = start();
     double elapsed = 0.0;
+    // What stops again and again, jammed between surfaces, stays for the rest.
     for (int part = 1; part <= kMostParts && elapsed < t; ++part) {
         const double left = t - elapsed;
         const ContactInterval rough = plan_at(state, elapsed, left);
@@ -123,11 +124,11 @@ ContactArc::State ContactArc::by_midpoint_rule(double t) const {
         const ContactInterval plan =
             plan_interval_by_middle(state.motion, particle_.radius, forces(middle, elapsed + half),
                                     holding(state).all(), holding(middle).all(), grip, left);
-        const double duration = part == kMostParts ? left : plan.duration;
         const Vec3& v = state.motion.velocity;
-        state.position += duration * (v + (0.5 * duration) * plan.acceleration);
-        state.motion = {v + duration * plan.acceleration, state.motion.spin + duration * plan.spin_acceleration};
-        elapsed = plan.duration < left ? elapsed + duration : t;
+        const double passed = plan.duration;
+        state.position += passed * (v + (0.5 * passed) * plan.acceleration);
+        state.motion = {v + passed * plan.acceleration, state.motion.spin + passed * plan.spin_acceleration};
+        elapsed = passed < left ? elapsed + passed : t;
         state.motion = along_surfaces(state.motion, particle_.radius, holding(state).all(), plan.stuck);
     }
     return state;

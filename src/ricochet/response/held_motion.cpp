@@ -255,7 +255,8 @@ private:
         weight_ = 0.0;
         for (Resistance& r : resistances()) {
             const Vec3 middle = r.rate + (0.5 * duration) * change_of(r);
-            if (r.speed > 0.0 && length(middle) > 0.0) r.heading = normalized(middle);
+            // What has stopped by the middle has no direction there: it was braked along the one that it had.
+            if (r.speed > 0.0 && length(middle) > kSlowSlip * r.speed) r.heading = normalized(middle);
         }
     }
 

@@ -40,14 +40,8 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
 /// The verifier checks the sweep, so it must not compute with the sweep's code: plain data only.
 bool may_verify(const std::string& header) {
     static const std::set<std::string> plain = {
-        "core/box3.h",
-        "core/error.h",
-        "core/motion_part.h",
-        "core/segment.h",
-        "core/tolerances.h",
-        "core/transform.h",
-        "core/vec3.h",
-        "geometry/mesh/triangle_mesh.h",
+        "core/box3.h",       "core/error.h",     "core/motion_part.h", "core/segment.h",
+        "core/tolerances.h", "core/transform.h", "core/vec3.h",        "geometry/mesh/triangle_mesh.h",
     };
     return plain.contains(header.substr(kLibrary.size()));
 }

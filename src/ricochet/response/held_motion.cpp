@@ -111,8 +111,8 @@ private:
         }
         for (const Resistance& r : resistances()) problem.add(resistance(r));
         // What slides can jam; what is at rest has an answer.
-        const bool slides = weight_ == 0.0 && std::any_of(resistances().begin(), resistances().end(),
-                                                          [](const Resistance& r) { return r.speed > 0.0; });
+        const bool slides =
+            std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
         problem.solve_with_most(effort, grip_.pressure);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) push_[k] = problem.push(k) * surfaces_[k].normal;

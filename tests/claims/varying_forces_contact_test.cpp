@@ -61,7 +61,7 @@ std::vector<IntegratorKind> methods_of_second_order() {
     return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4};
 }
 
-/// Expects an error in x that falls at least by 3.8 with half the step.
+/// Expects an error in x as of the midpoint rule, that falls at least by 3.8 with half the step.
 void expect_second_order(ContactScene scene, const MakeForces& forces, double expected) {
     for (const IntegratorKind kind : methods_of_second_order()) {
         scene.integrator = kind;
@@ -71,7 +71,7 @@ void expect_second_order(ContactScene scene, const MakeForces& forces, double ex
         };
         const double coarse = error(0.1);
         const double fine = error(0.05);
-        EXPECT_LT(coarse, 1e-3) << name_of(kind);
+        EXPECT_LT(coarse, 4e-3) << name_of(kind);  // (c dt)^2 / 6 of the way
         EXPECT_LT(fine, coarse / 3.8 + 1e-12) << name_of(kind);
     }
 }

@@ -56,7 +56,8 @@ ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
       impact_(step.impact()),
       manifold_(manifold),
       held_(step, manifold),
-      forces_vary_(!rules_.forces.is_uniform_for(state_) && follows_varying_forces(rules_.settings.integrator.kind)) {}
+      forces_vary_(!rules_.forces.is_uniform_for(state_) && follows_varying_forces(rules_.settings.integrator.kind)),
+      needs_arc_(tolerance() || rules_.forces.is_conservative_for(state_)) {}
 
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
     manifold_.drop_left(kLeavingRounding);
@@ -68,10 +69,24 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
             return {std::nullopt, false, true};
         }
         const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
-        const bool is_arc = turns || (pull.acts && forces_vary_);
-        if (!is_arc) return follow_flat(interval, pull);
+        const bool varies = pull.acts && forces_vary_;
+        if (!turns && !varies) return follow_flat(interval, pull.forces, pull);
+        if (!turns && !needs_arc_) {
+            const Vec3 forces = forces_in_middle(interval);
+            return follow_flat(plan({forces, true, pull.pressure}, duration), forces, pull);
+        }
     }
     return follow_arc(pull, duration);
+}
+
+/// The forces, over the mass, in the middle of an interval that was planned with those at its start.
+Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
+    const double half = 0.5 * interval.duration;
+    ForceInput middle = state_;
+    middle.position += half * (interval.motion.velocity + (0.5 * half) * interval.acceleration);
+    middle.velocity = interval.motion.velocity + half * interval.acceleration;
+    middle.time += half;
+    return rules_.forces.acceleration(middle);
 }
 
 ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
@@ -82,8 +97,9 @@ ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
     return interval;
 }
 
-/// Follows one interval on flat surfaces.
-ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interval, const Pull& pull) {
+/// Follows one interval on flat surfaces. forces: over the mass, that it was planned with.
+ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interval, const Vec3& forces,
+                                                   const Pull& pull) {
     const FlatWay way = way_along(interval);
     if (way.path.duration <= 0.0) return {std::nullopt, true, false};
     step_.log().note_impact();
@@ -94,11 +110,11 @@ ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interv
     held_.find();
     Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
     const double elapsed = before - step_.remaining();
-    manifold_.record_push(turned + elapsed * (interval.acceleration - pull.forces), elapsed, impact_);
+    manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
     Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
-    const double work = pull.acts ? dot(pull.forces, state_.position - from) : 0.0;
-    limit_energy(motion, state_.radius, most + 2.0 * work, length(pull.forces) * contact_offset(state_.position));
+    const double work = pull.acts ? dot(forces, state_.position - from) : 0.0;
+    limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     step_.log().note_contact(pull.forces, pull.acts);

@@ -54,7 +54,8 @@ private:
         bool leaves_surface = false;  ///< nothing holds it any more at its end
     };
 
-    [[nodiscard]] Stop follow_flat(const ContactInterval& interval, const Pull& pull);
+    [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
+    [[nodiscard]] Stop follow_flat(const ContactInterval& interval, const Vec3& forces, const Pull& pull);
     [[nodiscard]] FlatWay way_along(const ContactInterval& interval) const;
     void keep_offset(Path& path, const ContactInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
@@ -72,6 +73,7 @@ private:
     ContactManifold& manifold_;
     HeldSurfaces held_;
     bool forces_vary_;  // and the integrator is of second order or more
+    bool needs_arc_;    // where they vary, for its energy or its tolerance
 };
 
 }  // namespace ricochet

@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "claims/random_contact_scene.h"
+#include "ricochet/dynamics/flows.h"
+#include "ricochet/dynamics/forces.h"
 #include "support/counts.h"
 
 namespace ricochet::testing {
@@ -140,6 +142,21 @@ TEST(RandomContact, GainsNoEnergyLosesNoTimeAndLeaksNowhere) {
         contacts += simulation.statistics().contacts;
     }
     EXPECT_GT(contacts, range.count);
+}
+
+// Drag and wind do work that depends on the way: checked in every interval against the forces at its ends.
+TEST(RandomContact, GainsNoMoreEnergyThanAWindGives) {
+    Seeds range = seeds();
+    if (range.count > 1) range.count = range.count * 3 / 5;
+    for (std::uint64_t seed = range.first; seed < range.first + range.count; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        SimulationSetup setup = random_contact_scene(seed);
+        setup.forces.push_back(make_linear_drag(seed % 2 == 0 ? 2.0 : 0.05, make_wind({1, 0.5, -0.2})));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        expect_nothing_wrong(simulation);
+        EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    }
 }
 
 TEST(RandomContact, EndsInTheSameBitsWithSleepingOnAndOff) {

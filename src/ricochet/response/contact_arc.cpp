@@ -85,12 +85,15 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
         is_flat_[k] = manifold[k].flat;
         is_on_rim_[k] = !manifold[k].flat && geometry.nearest(surfaces_[k], particle.position).rim;
     }
-    plan_ = plan_at({particle.position, {particle.velocity, start.spin}}, 0.0, start.duration);
+    const State begin{particle.position, {particle.velocity, start.spin}};
+    forces_at_start_ = this->forces(begin, 0.0);
+    plan_ = plan_at(begin, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
-    knows_work_ = !start.has_forces || forces.is_uniform_for(particle) || forces.is_conservative_for(particle);
-    keeps_energy_ = knows_work_ && !dissipates();
+    const bool are_steady = !start.has_forces || forces.is_uniform_for(particle);
+    has_potential_ = !are_steady && forces.is_conservative_for(particle);
+    keeps_energy_ = (are_steady || has_potential_) && !dissipates();
     friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now) || may_jam();
 }
 
@@ -98,11 +101,9 @@ ContactArc::State ContactArc::at(double t) const {
     State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
-    if (knows_work_) {
-        const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
-        const double offset = length(forces(state, t)) * contact_offset(state.position);
-        limit_energy(state.motion, particle_.radius, most, offset);
-    }
+    const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
+    const double offset = length(forces(state, t)) * contact_offset(state.position);
+    limit_energy(state.motion, particle_.radius, most, offset);
     return state;
 }
 
@@ -120,13 +121,14 @@ ContactArc::State ContactArc::by_midpoint_rule(double t) const {
         const State middle{
             state.position + half * (state.motion.velocity + (0.5 * half) * rough.acceleration),
             {state.motion.velocity + half * rough.acceleration, state.motion.spin + half * rough.spin_acceleration}};
-        const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
-        const ContactInterval plan =
-            plan_interval_by_middle(state.motion, particle_.radius, forces(middle, elapsed + half),
-                                    holding(state).all(), holding(middle).all(), grip, left);
+        const Vec3 pull = forces(middle, elapsed + half);
+        const ContactInterval plan = plan_interval_by_middle(
+            state.motion, particle_.radius, pull, holding(state).all(), holding(middle).all(), grip(), left);
         const Vec3& v = state.motion.velocity;
         const double passed = plan.duration;
-        state.position += passed * (v + (0.5 * passed) * plan.acceleration);
+        const Vec3 way = passed * (v + (0.5 * passed) * plan.acceleration);
+        state.position += way;
+        state.work += dot(pull - forces_at_start_, way);
         state.motion = {v + passed * plan.acceleration, state.motion.spin + passed * plan.spin_acceleration};
         elapsed = passed < left ? elapsed + passed : t;
         state.motion = along_surfaces(state.motion, particle_.radius, holding(state).all(), plan.stuck);
@@ -139,19 +141,21 @@ ContactArc::State ContactArc::by_stages(double t) const {
     const State begin = start();
     const auto moved = [&](const Rate& r, double s) {
         return State{begin.position + s * r.velocity,
-                     {begin.motion.velocity + s * r.acceleration, begin.motion.spin + s * r.spin_acceleration}};
+                     {begin.motion.velocity + s * r.acceleration, begin.motion.spin + s * r.spin_acceleration},
+                     s * r.power};
     };
     const Rate first = rate(begin, 0.0);
     const Rate second = rate(moved(first, 0.5 * t), 0.5 * t);
     const Rate third = rate(moved(second, 0.5 * t), 0.5 * t);
     const Rate fourth = rate(moved(third, t), t);
-    const auto mean = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const auto mean = [](const auto& a, const auto& b, const auto& c, const auto& d) {
         return (a + 2.0 * (b + c) + d) / 6.0;
     };
     return moved(
         {mean(first.velocity, second.velocity, third.velocity, fourth.velocity),
          mean(first.acceleration, second.acceleration, third.acceleration, fourth.acceleration),
-         mean(first.spin_acceleration, second.spin_acceleration, third.spin_acceleration, fourth.spin_acceleration)},
+         mean(first.spin_acceleration, second.spin_acceleration, third.spin_acceleration, fourth.spin_acceleration),
+         mean(first.power, second.power, third.power, fourth.power)},
         t);
 }
 
@@ -247,14 +251,19 @@ Vec3 ContactArc::forces(const State& state, double t) const {
     return forces_.acceleration(input);
 }
 
+Grip ContactArc::grip() const { return {start_.pressure, start_.shortest, start_.negligible_path}; }
+
 ContactInterval ContactArc::plan_at(const State& state, double t, double duration, const StuckSurfaces& stuck) const {
-    const Grip grip{start_.pressure, start_.shortest, start_.negligible_path};
-    return plan_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip, duration, stuck);
+    return plan_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip(), duration,
+                         stuck);
 }
 
 ContactArc::Rate ContactArc::rate(const State& state, double t) const {
-    const ContactInterval plan = plan_at(state, t, 0.0, stuck_);
-    return {state.motion.velocity, plan.acceleration, plan.spin_acceleration};
+    const Vec3 pull = forces(state, t);
+    const Vec3& v = state.motion.velocity;
+    const ContactInterval plan =
+        plan_interval(state.motion, particle_.radius, pull, holding(state).all(), grip(), 0.0, stuck_);
+    return {v, plan.acceleration, plan.spin_acceleration, dot(pull - forces_at_start_, v)};
 }
 
 /// At the contact offset from what holds it, along the normals, and moving along them.
@@ -331,7 +340,7 @@ bool ContactArc::begins_to_slip(const ContactInterval& now) const {
 /// That of the forces since the start, over the mass.
 double ContactArc::work_until(const State& state) const {
     if (!start_.has_forces) return 0.0;
-    if (forces_.is_uniform_for(particle_)) return dot(forces(state, 0.0), state.position - particle_.position);
+    if (!has_potential_) return dot(forces_at_start_, state.position - particle_.position) + state.work;
     ForceInput there = particle_;
     there.position = state.position;
     there.velocity = state.motion.velocity;

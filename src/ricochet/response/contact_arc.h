@@ -39,6 +39,7 @@ public:
     struct State {
         Vec3 position;
         Motion motion;
+        double work = 0.0;  ///< over the mass, m^2/s^2, of what the forces have changed by since the start
     };
 
     ContactArc(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
@@ -68,11 +69,13 @@ private:
         Vec3 velocity;
         Vec3 acceleration;
         Vec3 spin_acceleration;
+        double power = 0.0;
     };
 
     [[nodiscard]] Holding holding(const State& state) const;
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
+    [[nodiscard]] Grip grip() const;
     [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
                                           const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
@@ -94,10 +97,11 @@ private:
     std::array<SurfaceId, kMostHolding> surfaces_{};
     std::array<bool, kMostHolding> is_flat_{};
     std::array<bool, kMostHolding> is_on_rim_{};
+    Vec3 forces_at_start_;
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
-    bool knows_work_ = false;
+    bool has_potential_ = false;  // of forces that vary
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
 };

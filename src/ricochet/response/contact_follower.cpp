@@ -69,11 +69,12 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
             return {std::nullopt, false, true};
         }
         const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
+        const PlannedInterval begin{interval, pull.forces};
         const bool varies = pull.acts && forces_vary_;
-        if (!turns && !varies) return follow_flat(interval, pull.forces, pull);
+        if (!turns && !varies) return follow_flat(FlatInterval(begin), pull);
         if (!turns && !needs_arc_) {
             const Vec3 forces = forces_in_middle(interval);
-            return follow_flat(plan({forces, true, pull.pressure}, duration), forces, pull);
+            return follow_flat(FlatInterval(begin, {plan({forces, true, pull.pressure}, duration), forces}), pull);
         }
     }
     return follow_arc(pull, duration);
@@ -97,23 +98,23 @@ ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
     return interval;
 }
 
-/// Follows one interval on flat surfaces. forces: over the mass, that it was planned with.
-ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interval, const Vec3& forces,
-                                                   const Pull& pull) {
-    const FlatWay way = way_along(interval);
+/// Follows one interval on flat surfaces.
+ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, const Pull& pull) {
+    const FlatWay way = way_along(flat);
     if (way.path.duration <= 0.0) return {std::nullopt, true, false};
     step_.log().note_impact();
     const double before = step_.remaining();
-    const Vec3 turned = interval.motion.velocity - state_.velocity;
+    const Vec3 turned = flat.motion().velocity - state_.velocity;
     const Vec3 from = state_.position;
     const double most = twice_kinetic({state_.velocity, particle_.spin}, state_.radius);
     held_.find();
     Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
     const double elapsed = before - step_.remaining();
+    const auto [interval, forces] = flat.mean_until(elapsed);
     manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
     Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
-    const double work = pull.acts ? dot(forces, state_.position - from) : 0.0;
+    const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
     limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
@@ -123,27 +124,25 @@ ContactFollower::Stop ContactFollower::follow_flat(const ContactInterval& interv
 }
 
 /// The way of an interval, up to where a surface ends; its end keeps the contact offset.
-ContactFollower::FlatWay ContactFollower::way_along(const ContactInterval& interval) const {
-    const Vec3& v = interval.motion.velocity;
-    const Vec3& a = interval.acceleration;
-    Path path = parabola_path(state_.position, v, a, interval.duration);
+ContactFollower::FlatWay ContactFollower::way_along(const FlatInterval& interval) const {
+    Path path = interval.path(state_.position, interval.duration());
     if (!is_finite(path.end)) return {path, false};
     const double slack = kEdgeOffsets * contact_offset(state_.position);
-    double on = interval.duration;
+    double on = interval.duration();
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
         of_contact_point.c[0] -= state_.radius * manifold_[k].normal;
         on = std::min(on, rules_.world.time_over(manifold_[k].surface, of_contact_point, slack));
     }
-    const bool leaves = on < interval.duration;
-    if (leaves) path = parabola_path(state_.position, v, a, on);
+    const bool leaves = on < interval.duration();
+    if (leaves) path = interval.path(state_.position, on);
     if (path.duration > 0.0) keep_offset(path, interval);
     return {path, leaves};
 }
 
 /// Puts the end of a path along flat surfaces at the contact offset above the planes of those that hold it, and not
 /// nearer to the others, also where the end lies a little beyond a rim.
-void ContactFollower::keep_offset(Path& path, const ContactInterval& interval) const {
+void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) const {
     const SurfaceGeometry& geometry = step_.geometry();
     std::array<Vec3, kMostHolding> normals;
     std::array<double, kMostHolding> lifts{};
@@ -154,7 +153,7 @@ void ContactFollower::keep_offset(Path& path, const ContactInterval& interval) c
         const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
         const double lift = contact_offset(path.end) - height;
-        if (interval.push[k] == Vec3{} && lift < 0.0) continue;
+        if (!interval.is_held_by(k) && lift < 0.0) continue;
         normals[count] = surface.normal;
         lifts[count++] = lift;
         largest = std::max(largest, std::fabs(lift));

@@ -8,6 +8,7 @@
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_arc.h"
 #include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/flat_interval.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/held_surfaces.h"
 #include "ricochet/response/particle_step.h"
@@ -55,9 +56,9 @@ private:
     };
 
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
-    [[nodiscard]] Stop follow_flat(const ContactInterval& interval, const Vec3& forces, const Pull& pull);
-    [[nodiscard]] FlatWay way_along(const ContactInterval& interval) const;
-    void keep_offset(Path& path, const ContactInterval& interval) const;
+    [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
+    [[nodiscard]] FlatWay way_along(const FlatInterval& interval) const;
+    void keep_offset(Path& path, const FlatInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
     [[nodiscard]] std::optional<ArcWay> way_along(const ContactArc& arc) const;
     void lead_until(double time, const ContactArc& arc, ArcWay& way) const;

@@ -1,0 +1,33 @@
+#include "ricochet/response/flat_interval.h"
+
+namespace ricochet {
+
+Path FlatInterval::path(const Vec3& x, double time) const {
+    const Vec3& v = motion().velocity;
+    const Vec3& a = begin_.interval.acceleration;
+    if (!varies_) return parabola_path(x, v, a, time);
+    const Vec3 turned = middle_.interval.acceleration - a;
+    const Vec3 end = x + time * (v + time * (0.5 * a + (time / (3.0 * duration())) * turned));
+    return hermite_path(x, v, end, v + time * mean_until(time).interval.acceleration, time);
+}
+
+PlannedInterval FlatInterval::mean_until(double time) const {
+    if (!varies_) return middle_;
+    const double part = time / duration();
+    const auto mean = [&](const Vec3& begin, const Vec3& middle) { return begin + part * (middle - begin); };
+    const ContactInterval& begin = begin_.interval;
+    PlannedInterval result = middle_;
+    result.forces = mean(begin_.forces, middle_.forces);
+    result.interval.acceleration = mean(begin.acceleration, middle_.interval.acceleration);
+    result.interval.spin_acceleration = mean(begin.spin_acceleration, middle_.interval.spin_acceleration);
+    return result;
+}
+
+double FlatInterval::work_until(double time, const Vec3& way) const {
+    const PlannedInterval mean = mean_until(time);
+    // What is faster later is pushed on for longer by what the forces are later.
+    const double later = time * time / 6.0 * dot(mean.forces - begin_.forces, mean.interval.acceleration);
+    return dot(mean.forces, way) + later;
+}
+
+}  // namespace ricochet

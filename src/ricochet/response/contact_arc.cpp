@@ -122,8 +122,8 @@ ContactArc::State ContactArc::by_midpoint_rule(double t) const {
             state.position + half * (state.motion.velocity + (0.5 * half) * rough.acceleration),
             {state.motion.velocity + half * rough.acceleration, state.motion.spin + half * rough.spin_acceleration}};
         const Vec3 pull = forces(middle, elapsed + half);
-        const ContactInterval plan = plan_interval_by_middle(
-            state.motion, particle_.radius, pull, holding(state).all(), holding(middle).all(), grip(), left);
+        const ContactInterval plan = plan_interval_by_middle(state.motion, particle_.radius, pull, holding(state).all(),
+                                                             holding(middle).all(), grip(), left);
         const Vec3& v = state.motion.velocity;
         const double passed = plan.duration;
         const Vec3 way = passed * (v + (0.5 * passed) * plan.acceleration);

@@ -101,7 +101,7 @@ private:
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
-    bool has_potential_ = false;  // of forces that vary
+    bool has_potential_ = false;              // of forces that vary
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
 };

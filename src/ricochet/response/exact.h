@@ -7,7 +7,8 @@
 /// nothing by more than sphere_tolerance(); the time of impact is accurate to rounding on the path.
 /// What it does not guarantee: that a bounce cascade below the resting speed is resolved impact by impact (it is summed
 /// in closed form), that slow circling in a pit is followed to its end (it becomes rest, kMaxSlowContacts), nor that a
-/// particle whose bounce budget is spent uses the whole step (the rest is counted).
+/// particle whose bounce budget is spent uses the whole step (the rest is counted). Contact that lasts is exact on flat
+/// surfaces under constant forces while slip keeps its direction, else of second order or better (docs/responses.md).
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// ile
+/// \file
 /// Distance field: a grid of certain lower bounds of the distance to the nearest triangle.
 ///
 /// Each cell holds its chessboard distance to the nearest cell with a triangle in it (A. Rosenfeld, J. L. Pfaltz,

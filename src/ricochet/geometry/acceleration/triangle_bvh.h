@@ -1,4 +1,4 @@
-/// ile
+/// \file
 /// The broad phase: which triangles may a segment touch, which are near a point? A bounding volume hierarchy over
 /// padded boxes, traversed by Embree in single precision.
 ///

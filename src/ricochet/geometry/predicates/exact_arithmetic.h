@@ -1,4 +1,4 @@
-/// ile
+/// \file
 /// Exact and bounded arithmetic behind the predicates' filters: double-double with error bounds, then floating-point
 /// expansions, on the stack. Bounds and their reasons: docs/exactness.md.
 ///

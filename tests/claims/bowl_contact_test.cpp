@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -120,6 +121,50 @@ TEST(APointInABowl, KeepsTheEnergyOfAHundredSwingsThroughTheWholeProgram) {
 TEST(ASphereInABowl, KeepsTheEnergyOfAHundredSwingsWhileItRolls) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         EXPECT_LT(worst_energy(in_bowl(angle, 0.1, 10.0, 0.02, 220.0), 0.4), bound) << angle;
+    }
+}
+
+// v' = -mu v^2 / R without gravity: only the surface's curvature presses.
+TEST(APointInABowl, IsSlowedByTheFrictionOfItsOwnTurningByEveryIntegrator) {
+    for (const IntegratorKind kind :
+         {IntegratorKind::ballistic, IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
+          IntegratorKind::implicit_euler, IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
+          IntegratorKind::rk4, IntegratorKind::dormand_prince}) {
+        ContactScene scene = in_bowl(0.0, 0.0, 0.2, 0.01, 1.0);
+        scene.gravity = {};
+        scene.particle.velocity = {3, 0, 0};
+        scene.integrator = kind;
+        EXPECT_NEAR(length(end_of(scene).velocity), 3.0 / (1.0 + 0.2 * 3.0), 1e-6) << name_of(kind);
+    }
+}
+
+/// Angle and rate after a second of a point that slides up a bowl, stops at 0.424 s and slides back.
+std::array<double, 2> slid_up_and_back(double friction, double speed) {
+    std::array<double, 2> state{0.0, speed};
+    const double step = 1e-5;
+    double sign = 1.0;
+    const auto rate = [&](const std::array<double, 2>& y) {
+        const double pressing = kG * std::cos(y[0]) + y[1] * y[1];
+        return std::array<double, 2>{y[1], -kG * std::sin(y[0]) - sign * friction * pressing};
+    };
+    for (int k = 0; k < 100'000; ++k) {
+        const std::array<double, 2> next = runge_kutta_step(state, step, rate);
+        const bool turns = sign > 0.0 && next[1] < 0.0;
+        const double until_turn = turns ? step * state[1] / (state[1] - next[1]) : step;
+        state = runge_kutta_step(state, until_turn, rate);
+        if (turns) sign = -1.0;
+        if (turns) state = runge_kutta_step(state, step - until_turn, rate);
+    }
+    return state;
+}
+
+TEST(APointInABowl, SlidesBackToSecondOrderAfterItsSlipHasTurnedRound) {
+    const double expected = slid_up_and_back(0.2, 3.0)[0];
+    for (const auto& [step, bound] : {std::pair{0.02, 1e-5}, std::pair{0.01, 2.5e-6}, std::pair{0.0025, 1.6e-7}}) {
+        ContactScene scene = in_bowl(0.0, 0.0, 0.2, step, 1.0);
+        scene.particle.velocity = {3, 0, 0};
+        const Vec3 end = end_of(scene).position;
+        EXPECT_NEAR(std::atan2(end.x, -end.z), expected, bound) << step;
     }
 }
 

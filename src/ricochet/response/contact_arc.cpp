@@ -12,6 +12,9 @@ namespace {
 /// Step along a shape that its curvature is taken over, as a fraction of its size.
 constexpr double kCurvatureStep = 1e-4;
 
+/// Turn, rad, of a surface in an arc that is looked at closely: those that are planned turn by kMaxArcAngle.
+constexpr double kMostTurn = 2.0 * kMaxArcAngle;
+
 /// Corrections of the position and of the energy; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 
@@ -94,11 +97,13 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     const bool are_steady = !start.has_forces || forces.is_uniform_for(particle);
     has_potential_ = !are_steady && forces.is_conservative_for(particle);
     keeps_energy_ = (are_steady || has_potential_) && !dissipates();
-    friction_turns_fast_ = plan_.is_stiff || begins_to_slip(now) || may_jam();
+    friction_turns_fast_ = plan_.is_stiff || ends_a_slip() || begins_to_slip(now) || may_jam();
 }
 
 ContactArc::State ContactArc::at(double t) const {
     State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
+    const Vec3 straight_on = parabola_end(particle_.position, plan_.motion.velocity, plan_.acceleration, t);
+    state.turned = std::max(turned_at(state.position), turned_at(straight_on));
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
@@ -177,6 +182,7 @@ bool ContactArc::is_within_tolerance(double t) const {
 }
 
 ContactArc::Hold ContactArc::hold_on(const State& state, double t) const {
+    if (state.turned > kMostTurn) return Hold::turned;
     const ContactInterval plan = plan_at(state, t, 0.0);
     if (std::all_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push == Vec3{}; })) {
         return Hold::none;
@@ -186,6 +192,30 @@ ContactArc::Hold ContactArc::hold_on(const State& state, double t) const {
         if (slips && holds_[k] && materials_.surfaces[k].friction > 0.0) return Hold::slipping;
     }
     return Hold::as_before;
+}
+
+/// True where slip or turning comes to a stop at its end, and friction has no direction there.
+bool ContactArc::ends_a_slip() const {
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const Stuck& before = stuck_[k];
+        const Stuck& after = plan_.stuck[k];
+        if (!holds_[k]) continue;
+        if (after.to_slip && !before.to_slip) return true;
+        if ((after.to_turning && !before.to_turning) || (after.to_spinning && !before.to_spinning)) return true;
+    }
+    return false;
+}
+
+/// The largest change of a shape's normal that a sphere sees from the start to a position.
+double ContactArc::turned_at(const Vec3& position) const {
+    double turned = 0.0;
+    for (std::size_t k = 0; k < materials_.count; ++k) {
+        const bool can_be_narrow = particle_.radius > 0.0 && !is_flat_[k] && geometry_.world().is_shape(surfaces_[k]);
+        if (!can_be_narrow) continue;
+        turned = std::max(turned, length(geometry_.nearest(surfaces_[k], position).normal -
+                                         geometry_.nearest(surfaces_[k], particle_.position).normal));
+    }
+    return turned;
 }
 
 double ContactArc::longest() const {

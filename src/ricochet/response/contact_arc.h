@@ -39,7 +39,8 @@ public:
     struct State {
         Vec3 position;
         Motion motion;
-        double work = 0.0;  ///< over the mass, m^2/s^2, of what the forces have changed by since the start
+        double work = 0.0;    ///< over the mass, m^2/s^2, of what the forces have changed by since the start
+        double turned = 0.0;  ///< rad, by which shapes have turned under a sphere since the start, at most
     };
 
     ContactArc(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
@@ -50,8 +51,9 @@ public:
     /// The state after t seconds, by the classical Runge-Kutta method, or the midpoint rule: on the surfaces that hold,
     /// along them, and with the energy that it has to have.
     [[nodiscard]] State at(double t) const;
-    /// How it is held there: as at the start; or something that stuck there slips; or by nothing any more.
-    enum class Hold { as_before, slipping, none };
+    /// How it is held there: as at the start; or something that stuck there slips; or a surface has turned further than
+    /// it does in an arc; or by nothing any more.
+    enum class Hold { as_before, slipping, turned, none };
     [[nodiscard]] Hold hold_on(const State& state, double t) const;
     /// The particle, moving along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
@@ -84,6 +86,8 @@ private:
     [[nodiscard]] bool is_within_tolerance(double t) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool may_jam() const;
+    [[nodiscard]] bool ends_a_slip() const;
+    [[nodiscard]] double turned_at(const Vec3& position) const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
     [[nodiscard]] double work_until(const State& state) const;
     void restore_energy(State& state, double t) const;

@@ -24,26 +24,42 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
-/// The first time, s, at which something is so, by halving; it is at `high`.
+/// Turn of a surface, rad, in no time: a jump.
+constexpr double kJump = 1e-3;
+
+/// Times, s, before and from which something is so, found by halving; it is at `high`.
+struct Change {
+    double before = 0.0;
+    double from = 0.0;
+};
 template <class IsSo>
-double first_time(double high, int halvings, const IsSo& is_so) {
+Change first_change(double high, int halvings, const IsSo& is_so) {
     double low = 0.0;
     for (int k = 0; k < halvings; ++k) {
         const double middle = 0.5 * (low + high);
         (is_so(middle) ? high : low) = middle;
     }
-    return high;
+    return {low, high};
 }
 
-/// How long the arc lasts, s: until something changes: slip begins, or nothing holds it any more (`leaves`).
-double arc_duration(const ContactArc& arc, bool& leaves) {
+/// How long an arc lasts, s, and how it ends.
+struct ArcEnd {
+    double time = 0.0;
+    bool leaves_surface = false;
+    bool jams = false;
+};
+ArcEnd end_of(const ContactArc& arc) {
+    using Hold = ContactArc::Hold;
     constexpr int kHalvings = 40;
     const auto hold_at = [&](double time) { return arc.hold_on(arc.at(time), time); };
-    const auto changes = [&](double time) { return hold_at(time) != ContactArc::Hold::as_before; };
-    double duration = arc.longest();
-    if (changes(duration)) duration = first_time(duration, kHalvings, changes);
-    leaves = hold_at(duration) == ContactArc::Hold::none;
-    return duration;
+    const auto changes = [&](double time) { return hold_at(time) != Hold::as_before; };
+    const double longest = arc.longest();
+    if (!changes(longest)) return {longest};
+    const Change change = first_change(longest, kHalvings, changes);
+    const Hold hold = hold_at(change.from);
+    if (hold != Hold::turned) return {change.from, hold == Hold::none};
+    // Where a surface is too narrow for a sphere, the nearest point jumps to another side.
+    return {change.before, false, arc.at(change.from).turned - arc.at(change.before).turned > kJump};
 }
 
 }  // namespace
@@ -177,6 +193,11 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     }
     std::optional<ArcWay> way = way_along(arc);
     if (!way) return {std::nullopt, true, false};
+    const Vec3& from = state_.position;
+    if (way->jams && length(way->end.position - from) <= kTouchingOffsets * contact_offset(from)) {
+        particle_.spin = Vec3{};
+        return {std::nullopt, false, true};
+    }
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
@@ -198,15 +219,18 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
 std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactArc& arc) const {
     if (arc.hold_on(arc.start(), 0.0) == ContactArc::Hold::none) return std::nullopt;
     ArcWay way;
-    const double whole = arc_duration(arc, way.leaves_surface);
-    if (!(whole > 0.0)) return std::nullopt;
-    lead_until(whole, arc, way);
+    const ArcEnd end = end_of(arc);
+    way.leaves_surface = end.leaves_surface;
+    way.jams = end.jams;
+    if (!(end.time > 0.0) && !way.jams) return std::nullopt;
+    lead_until(end.time, arc, way);
     way.turning_point = way.path.end;
     // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
     for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(way.path.end)); ++k) {
         const double on = time_on_pieces(way.path);
         if (!(on < way.path.duration)) break;
         way.turning_point = way.path.position(on);
+        way.jams = false;
         way.leaves_surface = held_.has_left_face(way.turning_point);
         lead_until(on, arc, way);
     }
@@ -215,6 +239,7 @@ std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactA
 
 void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way) const {
     way.end = arc.at(time);
+    if (!(time > 0.0)) return;
     way.path = hermite_path(arc.start().position, arc.start().motion.velocity, way.end.position,
                             way.end.motion.velocity, time);
     if (state_.radius == 0.0) held_.lift_middle(way.path);
@@ -224,7 +249,7 @@ void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way
 double ContactFollower::time_on_pieces(const Path& path) const {
     constexpr int kHalvings = 32;
     const auto has_passed = [&](double time) { return held_.touches_next_part(path.position(time)); };
-    return has_passed(path.duration) ? first_time(path.duration, kHalvings, has_passed) : path.duration;
+    return has_passed(path.duration) ? first_change(path.duration, kHalvings, has_passed).from : path.duration;
 }
 
 /// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
@@ -234,13 +259,13 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
         const Vec3 there = arc.at(time).position;
         const double off = length(there - tried.position(time));
         if (!(off > kTouchingOffsets * contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
-        way.leaves_surface = false;
+        way.leaves_surface = way.jams = false;
         way.turning_point = there;
         lead_until(time, arc, way);
         return way.path;
     };
     const std::optional<Contact> contact = step_.follow(way.path, held_.all(), closer);
-    const Motion motion = contact ? arc.at(contact->time).motion : way.end.motion;
+    const Motion motion = contact ? arc.at(contact->time).motion : way.jams ? Motion{} : way.end.motion;
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     return contact;

@@ -53,6 +53,7 @@ private:
         ContactArc::State end;
         Vec3 turning_point;           ///< on the way, where another part of a surface begins; else its end
         bool leaves_surface = false;  ///< nothing holds it any more at its end
+        bool jams = false;            ///< it is stuck at its end
     };
 
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;

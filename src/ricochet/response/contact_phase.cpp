@@ -81,7 +81,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
 void ContactPhase::record_weight() {
     manifold_.touch_again(particle_.contact, TouchRule::at(state_.position));
     const Vec3 forces = rules_.forces.acceleration(state_);
-    manifold_.load(forces);
+    if (!manifold_.empty()) static_cast<void>(follower_.plan({forces}, step_.remaining()));
     const Vec3 change = -state_.velocity - step_.remaining() * forces;
     if (manifold_.empty()) {
         impact_.push(particle_.contact.surfaces[0], change, false);
@@ -187,7 +187,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
         if (!support_.is_pressed(forces)) return std::nullopt;
-        const Stop stop = follower_.advance({forces, !kicked, kicked ? 0.0 : 1.0}, step_.remaining());
+        const Stop stop = follower_.advance({forces, !kicked, 1.0}, step_.remaining());
         if (stop.contact) return stop.contact;
         if (stop.left_surface) {
             find_next_surfaces();

@@ -315,6 +315,10 @@ void build_particles(SceneContext& context, SimulationSetup& setup) {
     }
     for (const ObjectView& view : context.objects("particles")) {
         setup.particles.push_back(view.read<Particle>());
+        const Particle& particle = setup.particles.back();
+        if (particle.spin != Vec3{} && particle.radius == 0.0) {
+            context.error(view, "spin", "found for a point, which has none, expected a \"radius\" above 0 too");
+        }
         setup.particles.back().attributes = particle_values(context, setup, view);
     }
     warn_about_particles_outside(context, setup);

@@ -191,7 +191,11 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     expect_refused(files.run({"--resume"}), 2, "there is no checkpoint to resume from");
     EXPECT_TRUE(files.exists("out/summary.json"));
     (void)files.folder.write("out/checkpoint.bin", "not a checkpoint at all");
-    expect_refused(files.run({"--resume"}), 2, "not a checkpoint that this version can read");
+    expect_refused(files.run({"--resume"}), 2, "not a checkpoint;");
+    (void)files.folder.write("out/checkpoint.bin", "3KHCOCIR and more");  // little-endian, as earlier versions began
+    expect_refused(files.run({"--resume"}), 2, "a checkpoint of another version");
+    (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");
+    expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
 }
 
 TEST(RunCommand, RefusesOutputFoldersThatAreNotItsOwn) {

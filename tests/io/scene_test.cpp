@@ -214,6 +214,31 @@ TEST(Scene, ReadsParticlesFromATable) {
               (Lines{"s.json:1:39: particles.file: start.csv:2: found \"a\" in column \"z\", expected a number (m)"}));
 }
 
+// A run may be resumed where its fingerprint is the same.
+TEST(Scene, HasAFingerprintOfEverythingThatDecidesTheRun) {
+    const SampleFolder folder;
+    (void)folder.write("start.csv", "x,y,z\n1,2,3\n");
+    const std::string members = R"("colliders": [{"type": "mesh", "file": "rock.obj"}],
+        "emitters": [{"type": "mesh", "file": "other.obj", "burst": 1}], "particles": {"file": "start.csv"})";
+    (void)folder.write("other.obj", test::kSampleMesh);
+    const auto fingerprint = [&](const std::string& more = "") {
+        return parse_scene(scene_of((members + more).c_str()), folder.path("s.json")).fingerprint;
+    };
+    const std::uint64_t first = fingerprint();
+    EXPECT_EQ(fingerprint(), first);
+    EXPECT_EQ(fingerprint(R"(, "output": {"every": 3})"), first);
+    EXPECT_NE(fingerprint(R"(, "simulation": {"seed": 3})"), first);
+    for (const char* file : {"start.csv", "rock.obj", "other.obj"}) {
+        const std::string before = folder.read(file);
+        (void)folder.write(file, before + "\n");
+        EXPECT_NE(fingerprint(), first) << file;
+        (void)folder.write(file, before);
+        EXPECT_EQ(fingerprint(), first) << file;
+    }
+    const SceneDescription scene = parse_scene(scene_of(members.c_str()), folder.path("s.json"));
+    EXPECT_EQ(scene.files.size(), 3U);
+}
+
 struct Spoiled {
     const char* members;
     const char* error;

@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
+#include "support/counts.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -181,6 +184,44 @@ TEST(SavedSimulation, IsRefusedWhereAnyByteIsDamaged) {
     Simulation same(busy_setup());
     restore(same, bytes);
     EXPECT_EQ(same.state_hash(), whole.state_hash());
+}
+
+/// Gives a state that was changed the checksum that it says it has.
+void sign(std::vector<std::byte>& bytes) {
+    constexpr std::size_t kSize = sizeof(std::uint64_t);
+    StateHash checksum;
+    checksum.add(std::span(bytes).first(bytes.size() - kSize));
+    const std::uint64_t value = checksum.value();
+    std::memcpy(bytes.data() + bytes.size() - kSize, &value, kSize);
+}
+
+// A checksum keeps off accidents; what somebody makes up with a right one is refused, or is a state like any other.
+TEST(SavedSimulation, IsRefusedOrGoesOnWhateverWasMadeUp) {
+    Simulation whole(busy_setup());
+    run_to(whole, 40);
+    const std::vector<std::byte> bytes = saved(whole);
+    const int cases = test::scaled(300 * test::case_factor(20));
+    int refused = 0;
+    for (int k = 0; k < cases; ++k) {
+        RandomSequence random(17, 3, static_cast<std::uint64_t>(k));
+        std::vector<std::byte> forged = bytes;
+        const int changes = 1 + static_cast<int>(3 * random.uniform());
+        for (int c = 0; c < changes; ++c) {
+            const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(forged.size() - 8));
+            forged[at] ^= std::byte{1} << static_cast<int>(8 * random.uniform());
+        }
+        sign(forged);
+        Simulation same(busy_setup());
+        try {
+            restore(same, forged);
+            for (int step = 0; step < 3; ++step) same.step();
+        } catch (const InputError&) {
+            ++refused;
+        } catch (const RunError&) {  // it diverges
+        }
+    }
+    EXPECT_GT(refused, 0);
+    EXPECT_LT(refused, cases);
 }
 
 TEST(SavedSimulation, IsNotTakenOverByEmittersThatHaveEmitted) {

@@ -64,6 +64,19 @@ TEST(Simulation, CountsStepsByTheRoundedUpRule) {
     EXPECT_EQ(steps(1.0 / 60.0, 4.0), 240U);
     EXPECT_EQ(steps(10.0, 1.0), 1U);
     EXPECT_EQ(steps(1.0, 0.0), 0U);
+    EXPECT_EQ(steps(1.0, 1e-9), 1U);
+    EXPECT_EQ(steps(1e300, 1e-300), 1U);
+}
+
+TEST(Simulation, EndsWhereItSaysWhateverTheRemainder) {
+    for (const double duration : {1e-9, 0.3, 1.0 - 1e-8, 1.0, 1.0 + 1e-8, 2.0 + 1e-7, 2.5}) {
+        SimulationSetup setup = empty_setup(1.0, duration);
+        setup.particles.push_back(particle({0, 0, 0}, {1, 0, 0}));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_EQ(simulation.time(), duration);
+        EXPECT_DOUBLE_EQ(simulation.particles().position[0].x, duration);
+    }
 }
 
 TEST(Simulation, ShortensTheLastStepToTheDuration) {

@@ -2,6 +2,7 @@
 /// Values as bytes and back, for states that are saved and resumed on one kind of machine.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +42,18 @@ public:
         (*this)(static_cast<std::uint64_t>(values.size()));
         if (!values.empty()) sink_(std::as_bytes(std::span(values)));
     }
+    /// A list beside another one of `size` entries.
+    template <class T>
+    requires kIsFlat<T>
+    void operator()(const std::vector<T>& values, std::size_t size) {
+        static_cast<void>(size);
+        (*this)(values);
+    }
+    /// The same, or an empty one.
+    template <class T>
+    void all_or_none(const std::vector<T>& values, std::size_t size) {
+        (*this)(values, size);
+    }
     void operator()(const std::string& text) {
         (*this)(static_cast<std::uint64_t>(text.size()));
         if (!text.empty()) sink_(std::as_bytes(std::span(text)));
@@ -50,38 +63,85 @@ private:
     ByteSink sink_;
 };
 
-/// Reads what a BinaryWriter has written, in the same order.
+/// Reads what a BinaryWriter has written, in the same order. Whatever the bytes say, it takes no more memory than a few
+/// times what there is of them: lists grow as they are read.
 class BinaryReader {
 public:
     static constexpr bool kReads = true;
-    /// Longest list, entries: a damaged length must not exhaust the memory.
-    static constexpr std::uint64_t kLongestList = std::uint64_t{1} << 34;
 
     explicit BinaryReader(ByteSource source) : source_(std::move(source)) {}
 
     template <class T>
     requires kIsFlat<T>
     void operator()(T& value) { source_(std::as_writable_bytes(std::span(&value, 1))); }
+    void operator()(bool& value) {
+        std::uint8_t byte = 0;
+        (*this)(byte);
+        if (byte > 1) throw InputError("a saved truth value is neither 0 nor 1");
+        value = byte == 1;
+    }
     template <class T>
     requires kIsFlat<T>
-    void operator()(std::vector<T>& values) {
-        values.resize(length());
-        if (!values.empty()) source_(std::as_writable_bytes(std::span(values)));
+    void operator()(std::vector<T>& values) { fill(values, length()); }
+    /// Throws InputError unless the list has `size` entries.
+    template <class T>
+    requires kIsFlat<T>
+    void operator()(std::vector<T>& values, std::size_t size) {
+        const std::uint64_t found = length();
+        if (found != size) throw InputError("saved lists that belong together have different lengths");
+        fill(values, found);
     }
-    void operator()(std::string& text) {
-        text.resize(length());
-        if (!text.empty()) source_(std::as_writable_bytes(std::span(text)));
+    /// The same, or an empty one.
+    template <class T>
+    requires kIsFlat<T>
+    void all_or_none(std::vector<T>& values, std::size_t size) {
+        const std::uint64_t found = length();
+        if (found != 0 && found != size) throw InputError("saved lists that belong together have different lengths");
+        fill(values, found);
     }
+    void operator()(std::string& text) { fill(text, length()); }
 
 private:
-    [[nodiscard]] std::size_t length() {
+    /// Bytes by which lists grow.
+    static constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+    [[nodiscard]] std::uint64_t length() {
         std::uint64_t count = 0;
         (*this)(count);
-        if (count > kLongestList) throw InputError("a saved list is longer than any can be");
-        return static_cast<std::size_t>(count);
+        return count;
+    }
+    template <class List>
+    void fill(List& list, std::uint64_t size) {
+        constexpr std::size_t kEntries = std::max<std::size_t>(1, kPiece / sizeof(typename List::value_type));
+        list.clear();
+        while (list.size() < size) {
+            const std::size_t first = list.size();
+            list.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, first + kEntries)));
+            source_(std::as_writable_bytes(std::span(list).subspan(first)));
+        }
     }
 
     ByteSource source_;
 };
+
+/// For a list of any length, in archive_entries().
+inline constexpr std::uint64_t kAnyLength = ~std::uint64_t{0};
+
+/// Saves or restores a list of what is not saved as it lies in memory, entry by entry, by visit(entry). Reading throws
+/// InputError unless it is as long as expected.
+template <class Archive, class T, class Visit>
+void archive_entries(Archive& a, std::vector<T>& entries, const Visit& visit, std::uint64_t expected = kAnyLength) {
+    auto count = static_cast<std::uint64_t>(entries.size());
+    a(count);
+    if constexpr (Archive::kReads) {
+        if (expected != kAnyLength && count != expected) {
+            throw InputError("saved lists that belong together have different lengths");
+        }
+        entries.clear();
+        for (std::uint64_t k = 0; k < count; ++k) visit(entries.emplace_back());
+    } else {
+        for (T& entry : entries) visit(entry);
+    }
+}
 
 }  // namespace ricochet

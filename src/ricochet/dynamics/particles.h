@@ -73,8 +73,10 @@ public:
 
     /// Saves or restores the values; a: what a simulation saves to or restores from.
     template <class Archive>
-    void archive(Archive& a) {
-        for (std::vector<double>& column : values_) a(column);
+    void archive(Archive& a, std::size_t particles) {
+        for (std::size_t k = 0; k < columns_.size(); ++k) {
+            a(values_[k], particles * static_cast<std::size_t>(columns_[k].components));
+        }
     }
 
 private:

@@ -138,6 +138,17 @@ void SpringNetwork::require_entries(std::span<const Vec3> values) const {
     if (!empty()) require_same_length(values.size(), particle_count_, "positions and velocities of springs' particles");
 }
 
+void SpringNetwork::require_states() const {
+    const auto count_of = [&](State state) {
+        return static_cast<std::size_t>(std::count(states_.begin(), states_.end(), state));
+    };
+    const std::size_t broken = count_of(State::broken);
+    const std::size_t lost = count_of(State::lost);
+    if (broken != broken_ || lost != lost_ || broken + lost + count_of(State::intact) != states_.size()) {
+        throw InputError("the saved states of springs contradict each other");
+    }
+}
+
 Vec3 SpringNetwork::force_on(std::uint32_t i, std::span<const Vec3> position, std::span<const Vec3> velocity) const {
     require_entries(position);
     require_entries(velocity);

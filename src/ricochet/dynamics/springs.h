@@ -100,9 +100,10 @@ public:
     /// after it.
     template <class Archive>
     void archive(Archive& a) {
-        a(states_);
+        a(states_, springs_.size());
         a(broken_);
         a(lost_);
+        if constexpr (Archive::kReads) require_states();
     }
 
     /// Springs that have broken so far.
@@ -114,6 +115,7 @@ private:
     enum class State : std::uint8_t { intact, broken, lost };
 
     void compile_links();
+    void require_states() const;
     void require_entries(std::span<const Vec3> values) const;
 
     std::vector<Spring> springs_;

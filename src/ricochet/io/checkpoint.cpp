@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/binary_archive.h"
@@ -14,22 +18,13 @@
 namespace ricochet {
 namespace {
 
-/// Begins every checkpoint; the last digit changes with the layout.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b33ULL;
+/// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b34ULL;
+constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
 template <class Archive>
 void archive_series(Archive& a, std::vector<PvdEntry>& series) {
-    auto count = static_cast<std::uint64_t>(series.size());
-    a(count);
-    if constexpr (Archive::kReads) {
-        if (count > BinaryReader::kLongestList) throw InputError("a saved list is longer than any can be");
-        series.resize(count);
-    }
-    for (PvdEntry& entry : series) {
-        a(entry.time);
-        a(entry.part);
-        a(entry.file);
-    }
+    archive_entries(a, series, [&](PvdEntry& entry) { a(entry.time), a(entry.part), a(entry.file); });
 }
 
 template <class Archive>
@@ -44,18 +39,48 @@ struct Close {
     void operator()(std::FILE* file) const { (void)std::fclose(file); }
 };
 
+using OpenFile = std::unique_ptr<std::FILE, Close>;
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
     throw InputError(fmt::format("{}: {}; run the scene without --resume to begin anew (this removes what is there)",
                                  file.string(), why));
+}
+
+/// Before anything is believed: what kind of file it is, and that no byte of it has changed.
+void require_whole_checkpoint(std::FILE* file) {
+    std::uint64_t format = 0;
+    if (std::fread(&format, sizeof(format), 1, file) != 1) throw InputError("the file is damaged: it is too short");
+    if (format != kCheckpointFormat) {
+        const bool is_of_another_version = (format & kAnyLayout) == (kCheckpointFormat & kAnyLayout);
+        throw InputError(is_of_another_version ? "a checkpoint of another version of ricochet, which can resume it"
+                                               : "not a checkpoint");
+    }
+    StateHash checksum;
+    checksum.add(std::as_bytes(std::span(&format, 1)));
+    // The last eight bytes are always kept back.
+    std::vector<std::byte> piece(sizeof(std::uint64_t) + (std::size_t{1} << 16));
+    std::size_t kept = 0;
+    while (const std::size_t got = std::fread(piece.data() + kept, 1, piece.size() - kept, file)) {
+        const std::size_t count = kept + got;
+        kept = std::min(count, sizeof(std::uint64_t));
+        checksum.add(std::span(piece).first(count - kept));
+        std::memmove(piece.data(), piece.data() + (count - kept), kept);
+    }
+    std::uint64_t found = 0;
+    std::memcpy(&found, piece.data(), kept);
+    if (kept != sizeof(found) || found != checksum.value()) {
+        throw InputError("the file is damaged or cut short (its checksum is wrong)");
+    }
+    std::rewind(file);
 }
 
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation) {
     AtomicFile target(file);
-    StateHash head;
+    StateHash checksum;
     const ByteSink sink = [&](std::span<const std::byte> bytes) {
-        head.add(bytes);
+        checksum.add(bytes);
         target.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     };
     BinaryWriter writer(sink);
@@ -63,39 +88,36 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
     writer(checkpoint.scene);
     Checkpoint copy = checkpoint;
     archive_checkpoint(writer, copy);
-    writer(head.value());
-    simulation.save(sink);  // with a checksum of its own
+    simulation.save(sink);
+    const std::uint64_t whole = checksum.value();
+    writer(whole);
     target.commit();
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene, Simulation& simulation) {
-    const std::unique_ptr<std::FILE, Close> opened(std::fopen(file.c_str(), "rb"));
+    const OpenFile opened(std::fopen(file.c_str(), "rb"));
     if (!opened) {
         throw InputError(
             fmt::format("{}: there is no checkpoint to resume from: the run was finished, or killed before "
                         "its first checkpoint (output.checkpoint_every); run it without --resume",
                         file.string()));
     }
-    StateHash head;
     const ByteSource source = [&](std::span<std::byte> bytes) {
         if (std::fread(bytes.data(), 1, bytes.size(), opened.get()) != bytes.size()) {
             throw InputError("the file ends too early");
         }
-        head.add(bytes);
     };
     Checkpoint checkpoint;
     try {
+        require_whole_checkpoint(opened.get());
         BinaryReader reader(source);
         std::uint64_t format = 0;
         reader(format);
-        if (format != kCheckpointFormat) throw InputError("not a checkpoint that this version can read");
         reader(checkpoint.scene);
-        if (checkpoint.scene != scene) throw InputError("the scene is not the one that was interrupted");
+        if (checkpoint.scene != scene) {
+            throw InputError("the scene, or a file that it reads, is not the one that was interrupted");
+        }
         archive_checkpoint(reader, checkpoint);
-        const std::uint64_t expected = head.value();
-        std::uint64_t found = 0;
-        reader(found);
-        if (found != expected) throw InputError("the file is damaged (its checksum is wrong)");
         simulation.restore(source);
     } catch (const InputError& error) {
         refuse(file, error.what());

@@ -48,12 +48,18 @@ SceneDescription parse_scene(std::string_view text, const std::filesystem::path&
     std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
     if (!root) throw SceneError(diagnostics.errors());
     for (std::size_t i = 0; i < overrides.size(); ++i) detail::apply_override(*root, i, diagnostics);
-    const std::uint64_t fingerprint = detail::scene_fingerprint(*root);
+    StateHash fingerprint;
+    fingerprint.add(detail::scene_fingerprint(*root));
     detail::check_scene(*root, diagnostics);
     SceneDescription scene = detail::build_scene(*root, file.parent_path(), diagnostics);
     if (diagnostics.failed()) throw SceneError(diagnostics.errors());
     scene.file = file.string();
-    scene.fingerprint = fingerprint;
+    try {
+        for (const std::filesystem::path& read : scene.files) detail::add_bytes(fingerprint, read);
+    } catch (const InputError& error) {
+        throw SceneError({detail::printable(error.what(), 1000)});
+    }
+    scene.fingerprint = fingerprint.value();
     scene.warnings = diagnostics.warnings();
     return scene;
 }

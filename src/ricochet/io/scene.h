@@ -35,9 +35,11 @@ struct SceneDescription {
     SimulationSetup setup;
     OutputOptions output;
     std::optional<CameraDescription> camera;
-    std::string file;                   ///< as it was named
-    std::vector<std::string> warnings;  ///< one line each, with file and source location
-    /// Hash of all that decides the run (not of output and camera): a run may be resumed where it is the same.
+    std::string file;                          ///< as it was named
+    std::vector<std::string> warnings;         ///< one line each, with file and source location
+    std::vector<std::filesystem::path> files;  ///< every file that it names and reads, each once
+    /// Hash of all that decides the run (not of output and camera), what is in its files too: a run may be resumed
+    /// where it is the same.
     std::uint64_t fingerprint = 0;
 };
 

@@ -1,11 +1,14 @@
 // A running simulation as bytes and back.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <new>
 #include <type_traits>
+#include <vector>
 
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
@@ -94,6 +97,32 @@ void Simulation::Impl::archive(Archive& a) {
     coupled.archive(a);
 }
 
+/// What the lists cannot say of themselves: numbers that lead nowhere would be followed.
+void Simulation::Impl::require_sound_state() const {
+    const Particles& p = particles();
+    const auto require = [](bool sound, const char* what) {
+        if (!sound) throw InputError(fmt::format("the state is damaged: it has {}", what));
+    };
+    require(p.size() < kNoSupport, "more particles than there can be");
+    std::vector<std::uint64_t> ids = p.id;
+    std::sort(ids.begin(), ids.end());
+    require(std::adjacent_find(ids.begin(), ids.end()) == ids.end(), "two particles of one id");
+    require(ids.empty() || ids.back() < store.next_id(), "an id that is not given yet");
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        for (const SurfaceId surface : p.support[i]) {
+            require(surface == kNoSupport || surface < world.surface_count(), "a particle on no surface");
+        }
+        const bool moves = p.frozen[i] == 0;
+        require(!moves || (is_finite(p.position[i]) && is_finite(p.velocity[i]) && is_finite(p.spin[i])),
+                "a particle that moves and is nowhere");
+        require(p.mass[i] > 0.0 && p.radius[i] >= 0.0 && std::isfinite(p.mass[i]) && std::isfinite(p.radius[i]),
+                "a mass or a radius that none can have");
+    }
+    for (const Origin& origin : p.origin) {
+        require(origin.emitter == kNoEmitter || origin.emitter < emitters.size(), "a particle of no emitter");
+    }
+}
+
 // What emitters have emitted does not depend on how time was cut, so they are simply run again.
 void Simulation::Impl::replay_emitters() {
     const std::uint64_t steps = recorder.statistics().steps;
@@ -143,6 +172,7 @@ void Simulation::Impl::read_state(const ByteSource& source) {
         throw InputError("the state is damaged: it says that it is longer than the memory");
     }
     expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
+    require_sound_state();
 }
 
 void Simulation::restore(const ByteSource& source) {

@@ -67,6 +67,7 @@ struct Simulation::Impl {
     template <class Archive>
     void archive(Archive& a);
     void read_state(const ByteSource& source);
+    void require_sound_state() const;
     [[nodiscard]] std::uint64_t collider_hash() const;
     [[nodiscard]] std::uint64_t settings_hash() const;
     void replay_emitters();

@@ -10,7 +10,8 @@ namespace ricochet {
 
 /// How time is stepped, how impacts are answered, and what is kept of a run.
 struct SimulationOptions : ResponseSettings {
-    double duration = 1.0;  ///< s, >= 0; steps = ceil(duration / time_step - 1e-6), the last one shortened
+    /// s, >= 0; steps = ceil(duration / time_step - 1e-6), at least 1 above 0; the last one ends there.
+    double duration = 1.0;
     ResponseKind response = ResponseKind::exact;  ///< how impacts are answered
     bool record_contacts = false;                 ///< keep every impact of the last step, see contact_records()
     /// Check every segment, side and distance by code of its own, see verify/verifier.h. The same bits as without it.

@@ -44,10 +44,10 @@ public:
         }
         cores_.resize(kept);
     }
-    /// Saves or restores all; a: an archive of core/binary_archive.h.
+    /// Saves or restores all; a: an archive of core/binary_archive.h, count: of the particles.
     template <class Archive>
-    void archive(Archive& a) {
-        a(cores_);
+    void archive(Archive& a, std::size_t count) {
+        a.all_or_none(cores_, count);
     }
 
     /// Spin of the core of a sphere, rad/s.

@@ -70,6 +70,9 @@ public:
     /// Begins to fetch from memory what load() and store() use.
     void prefetch(std::size_t i) const;
 
+    /// The id of the next particle that is added.
+    [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
+
     /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a);
@@ -98,23 +101,21 @@ template <class Archive>
 void ParticleStore::archive(Archive& a) {
     a(next_id_);
     Particles& p = particles_;
-    a(p.id), a(p.position), a(p.velocity), a(p.spin), a(p.mass), a(p.radius), a(p.birth_time), a(p.lifetime);
-    a(p.unsimulated_time), a(p.contacts), a(p.frozen), a(p.resting), a(p.held), a(p.absorbed), a(p.pinned);
-    a(p.draws), a(p.support), a(p.cascade_left), a(p.accounted_until);
-    p.attributes.archive(a);
-    cores_.archive(a);
-    auto origins = static_cast<std::uint64_t>(p.origin.size());
-    a(origins);
-    if constexpr (Archive::kReads) p.origin.resize(origins);
-    for (Origin& origin : p.origin) {
+    a(p.id);
+    const std::size_t n = p.id.size();
+    a(p.position, n), a(p.velocity, n), a(p.spin, n), a(p.mass, n), a(p.radius, n), a(p.birth_time, n);
+    a(p.lifetime, n), a(p.unsimulated_time, n), a(p.contacts, n), a(p.frozen, n), a(p.resting, n), a(p.held, n);
+    a(p.absorbed, n), a(p.pinned, n), a(p.draws, n), a(p.support, n), a(p.cascade_left, n), a(p.accounted_until, n);
+    p.attributes.archive(a, n);
+    cores_.archive(a, n);
+    const auto origin_of = [&](Origin& origin) {
         a(origin.emitter), a(origin.generation), a(origin.lineage), a(origin.birth_impacts), a(origin.impact_children);
-    }
-    auto sides = static_cast<std::uint64_t>(sides_.size());
-    a(sides);
-    if constexpr (Archive::kReads) sides_.resize(sides);
-    for (SideMemory& memory : sides_) {
+    };
+    archive_entries(a, p.origin, origin_of, p.keeps_origin ? n : 0);
+    const auto side_of = [&](SideMemory& memory) {
         a(memory.side), a(memory.penetrating), a(memory.touching), a(memory.depth);
-    }
+    };
+    archive_entries(a, sides_, side_of, n * colliders_);
 }
 
 }  // namespace ricochet

@@ -22,14 +22,15 @@ struct TimeSpan {
     double end = 0.0;
 };
 
-/// Equal steps from 0 to the end of the run; the last one is cut there.
+/// Equal steps from 0 to the end of the run; the last one is cut there, or longer by less than kStepRounding.
 class StepClock {
 public:
     /// time_step > 0, duration >= 0, both finite, s.
     StepClock(double time_step, double duration)
         : time_step_(time_step),
           duration_(duration),
-          steps_(static_cast<std::uint64_t>(std::max(0.0, std::ceil(duration / time_step - kStepRounding)))) {}
+          steps_(static_cast<std::uint64_t>(
+              std::max(duration > 0.0 ? 1.0 : 0.0, std::ceil(duration / time_step - kStepRounding)))) {}
 
     /// Steps of the whole run.
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
@@ -50,7 +51,7 @@ public:
     }
 
 private:
-    /// A final step shorter than this fraction of a step is not made: duration / time_step is meant to be whole.
+    /// A remainder below this fraction of a step is added to the last one: duration / time_step is meant to be whole.
     static constexpr double kStepRounding = 1e-6;
 
     double time_step_;

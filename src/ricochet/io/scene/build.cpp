@@ -104,7 +104,8 @@ Fields<SimulationKeys> time_fields() {
     return {
         {"time_step", &S::time_step, kPositive, "s", "Length of a step."},
         {"duration", &S::duration, kNotNegative, "s",
-         "Simulated time. The number of steps is ceil(duration / time_step - 1e-6); the last one is shortened."},
+         "Simulated time. The number of steps is ceil(duration / time_step - 1e-6), at least 1 where it is above 0; "
+         "the last one ends there."},
         {"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
          "How particles move inside a step. Of these only `forward_euler`, `midpoint`, `rk4` and `dormand_prince` have "
          "a meaning where a flow carries the particles.",
@@ -333,6 +334,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     if (scene.setup.particles.empty() && scene.setup.emitters.empty()) {
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");
     }
+    scene.files = context.files();
     return scene;
 }
 

@@ -31,7 +31,9 @@ void SceneContext::warn(const ObjectView& view, const std::string& what) const {
 }
 
 std::filesystem::path SceneContext::file_of(const ObjectView& view) const {
-    return (folder_ / view.text("file")).lexically_normal();
+    std::filesystem::path path = (folder_ / view.text("file")).lexically_normal();
+    files_.insert(path);
+    return path;
 }
 
 std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& view) {

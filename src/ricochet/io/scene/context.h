@@ -45,8 +45,10 @@ public:
     void warn(const ObjectView& view, std::string_view key, const std::string& what) const;
     void warn(const ObjectView& view, const std::string& what) const;
 
-    /// The path that the key "file" means.
+    /// The path that the key "file" means; noted among files().
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
+    /// Every path that file_of() has given, each once.
+    [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
     /// The mesh that the key "file" names; null pointer after reporting why there is none.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
     /// A mesh in world coordinates; null pointer after reporting, for this key, that a vertex is out of range.
@@ -65,6 +67,7 @@ private:
     std::filesystem::path folder_;
     Diagnostics& diagnostics_;
     MeshLibrary meshes_;
+    mutable std::set<std::filesystem::path> files_;
 };
 
 /// `there is no material "ruber"; did you mean "rubber"?`

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -67,6 +68,21 @@ std::string read_bytes(const fs::path& path, std::uint64_t largest) {
         throw InputError(fmt::format("{} cannot be read to its end", path.string()));
     }
     return bytes;
+}
+
+void add_bytes(StateHash& hash, const fs::path& path) {
+    if (const auto problem = file_problem(path)) throw InputError(*problem);
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> piece(std::size_t{1} << 16);
+    std::uint64_t size = 0;
+    while (file) {
+        file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        const auto count = static_cast<std::size_t>(file.gcount());
+        hash.add(std::as_bytes(std::span(piece).first(count)));
+        size += count;
+    }
+    if (file.bad()) throw InputError(fmt::format("{} cannot be read to its end", path.string()));
+    hash.add(size);
 }
 
 const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ricochet/core/hash.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
@@ -57,6 +58,9 @@ struct TriangleMaterials {
 
 /// The bytes of a file. Throws InputError when it cannot be read or is larger than the limit.
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::uint64_t largest);
+
+/// Adds what is in a file. Throws InputError when it cannot be read.
+void add_bytes(StateHash& hash, const std::filesystem::path& path);
 
 /// Meshes by file; each is read once however often it is used.
 class MeshLibrary {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,29 @@ Simulation make_simulation(SimulationSetup setup, const std::string& file) {
 // Finds out before the work, not after it, whether the file can be written.
 void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
+}
+
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored) ||
+           std::filesystem::equivalent(a, b, ignored);
+}
+
+// The final state must not replace what the run reads, nor what it writes.
+void check_target(const std::string& target, const SceneDescription& scene, const std::string& folder) {
+    if (target.empty()) return;
+    const auto refuse = [&](const char* what) {
+        throw InputError(fmt::format("--output-state {}: {}, expected another name", target, what));
+    };
+    const std::filesystem::path path(target);
+    if (is_same_file(path, scene.file)) refuse("is the scene itself");
+    for (const std::filesystem::path& file : scene.files) {
+        if (is_same_file(path, file)) refuse("is a file that the scene reads");
+    }
+    const std::filesystem::path parent = path.parent_path().empty() ? "." : path.parent_path();
+    const std::string name = path.filename().string();
+    const bool is_own = is_run_file(name) || name == kRunMarkerFile;
+    if (is_own && is_same_file(parent, folder)) refuse("is a file of the run");
 }
 
 // The progress line of a run. Steps cost more as particles are born, so the time left is told from the latest steps.
@@ -228,6 +252,7 @@ void complete(RunSummary& summary, const RunInfo& info, const RunPlan& plan) {
 int run(const RunArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
     SceneDescription scene = load_scene(arguments);
+    check_target(arguments.output_state, scene, arguments.output);
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);

@@ -198,6 +198,21 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
 }
 
+TEST(RunCommand, NeverWritesTheFinalStateOverWhatItReadsOrWrites) {
+    const RunFiles files;
+    const std::string scene = files.folder.read("scene.json");
+    expect_refused(files.run({"--output-state", files.scene}), 2, "is the scene itself");
+    std::filesystem::create_symlink(files.scene, files.folder.path("link.json"));
+    expect_refused(files.run({"--output-state", files.folder.path("link.json").string()}), 2, "is the scene itself");
+    EXPECT_EQ(files.folder.read("scene.json"), scene);
+    for (const char* name : {"summary.json", "particles_000000.vtp", "checkpoint.bin", ".ricochet-run"}) {
+        const std::string target = files.folder.path(std::string("out/") + name).string();
+        expect_refused(files.run({"--output-state", target}), 2, "is a file of the run");
+        EXPECT_FALSE(files.exists("out"));
+    }
+    EXPECT_EQ(files.run({"--output-state", files.folder.path("summary.json").string()}).exit_code, 0);
+}
+
 TEST(RunCommand, RefusesOutputFoldersThatAreNotItsOwn) {
     const RunFiles files;
     (void)files.folder.write("other", "x");

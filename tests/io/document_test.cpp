@@ -66,6 +66,16 @@ TEST(JsonParser, KnowsWhereEveryKeyAndValueStands) {
 
 TEST(JsonParser, AByteOrderMarkIsAllowed) { EXPECT_EQ(location_of(parsed("\xEF\xBB\xBF[1]").array()->at(0)), "1:2"); }
 
+TEST(JsonParser, RefusesWhatIsNotTextInUtf8) {
+    using namespace std::string_view_literals;
+    const std::string utf16 = "f:1:1: is UTF-16 or binary, expected text in UTF-8: save the file as UTF-8";
+    EXPECT_EQ(only_error("\xFF\xFE{\0}\0"sv), utf16);
+    EXPECT_EQ(only_error("\xFE\xFF\0{\0}"sv), utf16);
+    EXPECT_EQ(only_error("{\0}\0"sv), utf16);
+    EXPECT_EQ(only_error("[1, 2]\n\0 and more"sv), "f:2:1: found a NUL byte, expected text only");
+    EXPECT_EQ(only_error("[1, 2]\0"sv), "f:1:7: found a NUL byte, expected text only");
+}
+
 TEST(JsonParser, SyntaxErrorsHaveLineAndColumn) {
     EXPECT_EQ(only_error("{\n  \"a\": 1,\n}").rfind("f:3:1: not valid JSON", 0), 0U) << only_error("{\n  \"a\": 1,\n}");
     for (const char* text : {"",           "  ",        "// only a comment",

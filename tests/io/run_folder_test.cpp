@@ -110,6 +110,20 @@ TEST(OutputDirectory, ReplacesAnEarlierRunsFilesAndNothingElse) {
     }
 }
 
+TEST(OutputDirectory, KeepsForAResumedRunWhatWasFinishedUpToItsStep) {
+    const TemporaryFolder folder;
+    { const OutputDirectory first(folder.path("")); }
+    const std::vector<std::string> kept{"particles_000010.vtp", "summary.json", "checkpoint.bin", "notes.partial"};
+    const std::vector<std::string> removed{"particles_000011.vtp", "contacts_000020.vtp",
+                                           "particles_000010.vtp.17-0.partial", "checkpoint.bin.4-12.partial"};
+    for (const auto& names : {kept, removed}) {
+        for (const std::string& name : names) (void)folder.write(name, "x");
+    }
+    OutputDirectory(folder.path(""), OutputDirectory::Earlier::keep).remove_after(10);
+    for (const std::string& name : kept) EXPECT_TRUE(std::filesystem::exists(folder.path(name))) << name;
+    for (const std::string& name : removed) EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
+}
+
 TEST(OutputDirectory, RemovesALinkAndNotWhatItPointsTo) {
     const TemporaryFolder folder;
     const TemporaryFolder elsewhere;

@@ -214,7 +214,8 @@ void OutputDirectory::remove_after(std::uint64_t step) const {
     remove_files(path_, [&](const std::string& name) {
         const auto frame = step_of_frame_file(name);
         const auto contacts = step_of_contact_file(name);
-        return (frame && *frame > step) || (contacts && *contacts > step);
+        const bool is_unfinished = without_partial_ending(name) != name && is_run_file(name);
+        return is_unfinished || (frame && *frame > step) || (contacts && *contacts > step);
     });
 }
 

@@ -126,6 +126,19 @@ public:
 
     JsonNode take() { return std::move(root_); }
 
+    /// Reports text that is not UTF-8, of which the parser would read the part before its first NUL byte.
+    [[nodiscard]] bool is_text() {
+        const std::size_t nul = text_.find('\0');
+        if (nul == std::string_view::npos) return true;
+        constexpr std::size_t kWidestCharacter = 4;
+        if (nul < kWidestCharacter) {
+            diagnostics_.error({1, 1}, "", "is UTF-16 or binary, expected text in UTF-8: save the file as UTF-8");
+        } else {
+            diagnostics_.error(location_of_byte(nul + 1), "", "found a NUL byte, expected text only");
+        }
+        return false;
+    }
+
 private:
     template <typename Value>
     bool add(Value value) {
@@ -241,6 +254,7 @@ void set_location(JsonNode& node, const SourceLocation& location) {
 
 std::optional<JsonNode> parse_json(std::string_view text, Diagnostics& diagnostics) {
     TreeBuilder builder(text, diagnostics);
+    if (!builder.is_text()) return std::nullopt;
     constexpr bool kStrict = true;
     constexpr bool kComments = true;
     if (!Json::sax_parse(text.begin(), text.end(), &builder, nlohmann::detail::input_format_t::json, kStrict,

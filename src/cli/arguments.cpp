@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/terminal.h"
 
 #include <fmt/format.h>
 
@@ -106,7 +107,7 @@ void add_scene_arguments(cli::Command command, SceneArguments& arguments) {
 
 SceneDescription load_scene(const SceneArguments& arguments) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "ricochet: warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) cli::print(stderr, "ricochet: warning: {}\n", warning);
     return scene;
 }
 

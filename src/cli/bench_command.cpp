@@ -175,7 +175,7 @@ public:
     [[nodiscard]] int compare(const Measured& measured) const {
         if (!before_) return 0;
         const auto changes = bench::compare_ratios(*before_, ratios_of(measured), tolerance_);
-        fmt::print("  against {} ({}, ricochet {}); a ratio may fall by {:.3g} %\n", arguments_.compare,
+        cli::print("  against {} ({}, ricochet {}); a ratio may fall by {:.3g} %\n", arguments_.compare,
                    before_->machine, before_->version, 100.0 * tolerance_);
         cli::print_table(bench::to_table(changes));
         const bool is_slower = std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.fell; });
@@ -192,9 +192,9 @@ private:
                                                           : cli::plot_script(measured.files);
         const std::string failure = results_->write(arguments_.suite, measured.records(), script);
         if (!failure.empty()) {
-            fmt::print("  note: no picture: {}; the script {}.gp is there\n", failure, arguments_.suite);
+            cli::print("  note: no picture: {}; the script {}.gp is there\n", failure, arguments_.suite);
         }
-        fmt::print("  results in {}\n", results_->folder().string());
+        cli::print("  results in {}\n", results_->folder().string());
     }
 
     const BenchArguments& arguments_;

@@ -102,18 +102,18 @@ void write_report(const std::filesystem::path& folder, const Comparison& compari
 }
 
 void print_report(const Comparison& comparison, const CompareArguments& arguments, const std::string& failure) {
-    fmt::print("{}: {} particles, {:.6g} s; reference exact at {:.4g} s\n", arguments.scene.file,
+    cli::print("{}: {} particles, {:.6g} s; reference exact at {:.4g} s\n", arguments.scene.file,
                comparison.reference.figures.statistics.emitted, comparison.options.duration,
                comparison.plan.reference_step);
     cli::print_table(comparison_table(comparison));
     for (const ComparisonRow* row : comparison.listed_rows()) {
         for (const std::string& warning : row->figures.warnings) {
-            fmt::print("  note: {} at {:.4g} s: {}\n", name_of(row->response), row->time_step, warning);
+            cli::print("  note: {} at {:.4g} s: {}\n", name_of(row->response), row->time_step, warning);
         }
     }
     if (!failure.empty())
-        fmt::print("  note: no pictures: {}; the script {} is there\n", failure, kComparisonScriptFile);
-    fmt::print("  report in {}\n", (std::filesystem::path(arguments.output) / kComparisonHtmlFile).string());
+        cli::print("  note: no pictures: {}; the script {} is there\n", failure, kComparisonScriptFile);
+    cli::print("  report in {}\n", (std::filesystem::path(arguments.output) / kComparisonHtmlFile).string());
 }
 
 int run_compare(const CompareArguments& arguments) {

@@ -13,6 +13,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/terminal.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene_warnings.h"
@@ -58,7 +59,7 @@ Json json_of(const MeshReport& report, const std::string& file) {
     return out;
 }
 
-void print_line(std::string_view name, std::string_view value) { fmt::print("{:<22}{}\n", name, value); }
+void print_line(std::string_view name, std::string_view value) { cli::print("{:<22}{}\n", name, value); }
 
 template <typename Value>
 void print_line(std::string_view name, const Value& value) {
@@ -107,7 +108,7 @@ void run_info(const InfoOptions& options) {
     print_line("file", options.mesh);
     print_sizes(report);
     print_topology(report);
-    for (const std::string& warning : report.warnings) fmt::print("warning: {}\n", warning);
+    for (const std::string& warning : report.warnings) cli::print("warning: {}\n", warning);
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ std::size_t triangle_count(const SimulationSetup& setup) {
 }
 
 void print_warnings(const std::string& file, const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) fmt::print(stderr, "ricochet: warning: {}: {}\n", file, warning);
+    for (const std::string& warning : warnings) cli::print(stderr, "ricochet: warning: {}: {}\n", file, warning);
 }
 
 void run_check(const cli::SceneArguments& arguments) {
@@ -153,7 +154,7 @@ void run_check(const cli::SceneArguments& arguments) {
         const Simulation simulation(std::move(scene.setup));
         print_warnings(arguments.file, simulation.warnings());
         print_warnings(arguments.file, scene_warnings(simulation, emitters, fall));
-        fmt::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
+        cli::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
                    simulation.options().time_step);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", arguments.file, error.what()));

@@ -11,6 +11,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
@@ -43,7 +44,7 @@ std::string version_text() {
 
 int report_error(std::string message, int exit_code) {
     std::replace(message.begin(), message.end(), '\n', ' ');
-    fmt::print(stderr, "ricochet: {}\n", message);
+    cli::print(stderr, "ricochet: {}\n", message);
     return exit_code;
 }
 

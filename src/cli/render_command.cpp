@@ -206,11 +206,11 @@ void render(const RenderArguments& arguments) {
     const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, arguments.night, {}};
     film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
     if (arguments.quiet) return;
-    fmt::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    cli::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
     if (pictures.shows_own_colors()) {
-        fmt::print("in the particles' own colours\n");
+        cli::print("in the particles' own colours\n");
     } else {
-        fmt::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
+        cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
     }
 }
 

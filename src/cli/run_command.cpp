@@ -162,7 +162,7 @@ void settle_checkpoint(const Simulation& simulation, RunWriter& writer, const Ru
 
 void print_warnings(const SimulationStatistics& statistics) {
     const auto warn = [](std::uint64_t count, const char* what) {
-        if (count > 0) fmt::print("  note: {} {}\n", count, what);
+        if (count > 0) cli::print("  note: {} {}\n", count, what);
     };
     warn(statistics.frozen, "particles were stopped because their state was not finite or absurdly large (frozen)");
     warn(statistics.springs_broken, "springs broke (springs_broken)");
@@ -183,24 +183,24 @@ void print_warnings(const SimulationStatistics& statistics) {
 
 void print_report(const RunSummary& summary, const std::string& output) {
     const SimulationStatistics& statistics = summary.statistics;
-    fmt::print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}\n", summary.scene, statistics.steps,
+    cli::print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}\n", summary.scene, statistics.steps,
                summary.simulated_time, summary.wall_seconds, summary.threads,
                summary.threads == 1 ? "thread" : "threads",
                summary.interrupted ? " (interrupted)"
                : summary.diverged  ? " (diverged)"
                                    : "");
-    fmt::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
+    cli::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
                statistics.emitted, summary.particles_alive, statistics.particle_steps,
                cli::short_number(static_cast<double>(statistics.particle_steps) / summary.wall_seconds),
                statistics.contacts, statistics.bounces_per_step_max);
     print_warnings(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;
-        fmt::print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
+        cli::print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
                    summary.energy_violations.value_or(0),
                    all_judged ? "" : "; overlaps from birth count once the sphere has been free");
     }
-    fmt::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
+    cli::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
 }
 
 // Lists what a verified run found wrong. Returns whether there was anything.
@@ -208,7 +208,7 @@ bool print_violations(const Simulation& simulation) {
     const SimulationStatistics& statistics = simulation.statistics();
     const auto lines = cli::violation_lines(
         simulation.violations(), statistics.violations + statistics.energy_violations, simulation.colliders());
-    for (const std::string& line : lines) fmt::print(stderr, "{}\n", line);
+    for (const std::string& line : lines) cli::print(stderr, "{}\n", line);
     return !lines.empty();
 }
 
@@ -220,7 +220,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, const OutputDire
     folder.remove_after(simulation.step_index());
     plan.earlier_seconds = checkpoint.wall_seconds;
     if (!arguments.quiet) {
-        fmt::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
+        cli::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
                    simulation.time());
     }
     return checkpoint;
@@ -258,7 +258,7 @@ int run(const RunArguments& arguments) {
     const Box3 region = particle_region(scene.setup);
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
     for (const std::string& warning : simulation.warnings()) {
-        fmt::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
+        cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
     const InterruptGuard guard;
     using Earlier = OutputDirectory::Earlier;

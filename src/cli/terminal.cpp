@@ -10,7 +10,10 @@
 
 namespace ricochet::cli {
 
-void print_table(const std::vector<std::vector<std::string>>& table) {
+void print_table(std::vector<std::vector<std::string>> table) {
+    for (auto& row : table) {
+        for (std::string& cell : row) cell = printable(cell);
+    }
     std::vector<std::size_t> widths(table.front().size(), 0);
     for (const auto& row : table) {
         for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
@@ -39,7 +42,7 @@ bool ProgressLine::due() {
 void ProgressLine::show(const std::string& text) {
     if (!enabled_) return;
     const std::lock_guard lock(mutex_);
-    fmt::print(stderr, "\r{}\033[K", text);
+    fmt::print(stderr, "\r{}\033[K", printable(text));
     (void)std::fflush(stderr);
     shown_ = true;
 }

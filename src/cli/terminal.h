@@ -1,23 +1,53 @@
 // What the tool says to a terminal, and hears from it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "ricochet/collision/collider.h"
+#include "ricochet/core/printable.h"
 #include "ricochet/verify/verifier.h"
 
 namespace ricochet::cli {
 
+// Text on a terminal.
+
+/// What print() shows of an argument.
+template <class T>
+using Printed = std::conditional_t<std::is_convertible_v<const T&, std::string_view>, std::string, std::decay_t<T>>;
+
+template <class T>
+[[nodiscard]] Printed<T> printed(const T& value) {
+    if constexpr (std::is_convertible_v<const T&, std::string_view>)
+        return printable(value);
+    else
+        return value;
+}
+
+/// Prints as fmt::print() does, with all texts among the arguments as printable() makes them: they may be a stranger's.
+template <class... Args>
+void print(std::FILE* file, fmt::format_string<Printed<Args>...> format, const Args&... args) {
+    fmt::print(file, "{}", fmt::format(format, printed(args)...));
+}
+template <class... Args>
+void print(fmt::format_string<Printed<Args>...> format, const Args&... args) {
+    fmt::print("{}", fmt::format(format, printed(args)...));
+}
+
 // Tables on standard output.
 
 /// A header and rows of as many cells each: the first column to the left, numbers to the right.
-void print_table(const std::vector<std::vector<std::string>>& table);
+void print_table(std::vector<std::vector<std::string>> table);
 
 // One line on a terminal that is drawn over and over, and nothing at all in a pipe.
 

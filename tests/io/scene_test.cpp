@@ -337,7 +337,7 @@ const std::vector<Spoiled> kSpoiled = {
     {R"("particles": {"file": "rock.obj"})", "s.json:1:39: particles.file: found rock.obj, expected a .csv file"},
     {R"("particles": {"file": "a.csv"})", "s.json:1:39: particles.file: there is no file a.csv"},
     {R"("colliders": [{"type": "mesh", "file": "a\u0000b"}])",
-     "s.json:1:56: colliders[0].file: \"a?b\" contains a control character, expected plain text"},
+     "s.json:1:56: colliders[0].file: \"a\\x00b\" contains a control character, expected plain text"},
     {R"("particles": [{"position": [0, 0, 0], "spin": [0, 0, 1]}])",
      "s.json:1:63: particles[0].spin: found for a point, which has none, expected a \"radius\" above 0 too"},
     // responses

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/context.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/document.h"
@@ -37,7 +38,7 @@ SceneDescription read_scene(const std::filesystem::path& file, const std::vector
     try {
         text = detail::read_bytes(file, kLargestSceneFile);
     } catch (const InputError& error) {
-        throw SceneError({detail::printable(error.what(), 1000)});
+        throw SceneError({printable(error.what(), 1000)});
     }
     return parse_scene(text, file, overrides);
 }
@@ -57,7 +58,7 @@ SceneDescription parse_scene(std::string_view text, const std::filesystem::path&
     try {
         for (const std::filesystem::path& read : scene.files) detail::add_bytes(fingerprint, read);
     } catch (const InputError& error) {
-        throw SceneError({detail::printable(error.what(), 1000)});
+        throw SceneError({printable(error.what(), 1000)});
     }
     scene.fingerprint = fingerprint.value();
     scene.warnings = diagnostics.warnings();

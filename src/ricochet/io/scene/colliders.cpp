@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 

@@ -1,4 +1,5 @@
 #include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/core/printable.h"
 
 #include <fmt/format.h>
 

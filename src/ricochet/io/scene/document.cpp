@@ -14,31 +14,12 @@
 #include <vector>
 
 #include "ricochet/core/hash.h"
+#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::detail {
 
 // Nodes, and their values in messages.
-
-namespace {
-
-// Bytes of the UTF-8 character that the text begins with; 0 where it is none.
-std::size_t character_length(std::string_view text) {
-    const auto first = static_cast<unsigned char>(text[0]);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xC2 ? 0
-                               : first < 0xE0 ? 2
-                               : first < 0xF0 ? 3
-                               : first < 0xF5 ? 4
-                                              : 0;
-    if (length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) return 0;
-    }
-    return length;
-}
-
-}  // namespace
 
 std::optional<double> JsonNode::number() const {
     if (const auto* whole = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*whole);
@@ -76,19 +57,6 @@ std::string described(const JsonNode& node) {
         return items->empty() ? "an empty list" : fmt::format("a list of {}", items->size());
     if (node.object() != nullptr) return "an object";
     return "null";
-}
-
-std::string printable(std::string_view text, std::size_t longest) {
-    std::string result;
-    std::size_t at = 0;
-    while (at < text.size() && result.size() < longest) {
-        const std::size_t length = character_length(text.substr(at));
-        const auto code = static_cast<unsigned char>(text[at]);
-        const bool shown = length > 1 || (length == 1 && code >= 0x20 && code != 0x7f);
-        result += shown ? text.substr(at, length) : "?";
-        at += std::max<std::size_t>(length, 1);
-    }
-    return at < text.size() ? result + "..." : result;
 }
 
 // Changes from the command line.

@@ -56,8 +56,8 @@ struct JsonMember {
 /// The value in a few words for messages: numbers as they are, short texts in quotes, "a list of 3", "an object".
 [[nodiscard]] std::string described(const JsonNode& node);
 
-/// Text with everything but printable characters replaced, and cut to a length, for one-line messages.
-[[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 200);
+/// Longest message of a parser, bytes.
+inline constexpr std::size_t kLongestMessage = 200;
 
 inline constexpr std::size_t kDeepestNesting = 64;
 inline constexpr std::size_t kMostValues = 4000000;

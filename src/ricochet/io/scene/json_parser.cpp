@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::detail {
@@ -90,7 +91,7 @@ std::string plain_message(std::string message) {
     if (message.starts_with("parse error at ")) {
         if (const auto colon = message.find(": "); colon != std::string::npos) message.erase(0, colon + 2);
     }
-    return printable(message);
+    return printable(message, kLongestMessage);
 }
 
 // Builds the tree. The open containers are the last elements of their parents, so that pointers to them stay valid.

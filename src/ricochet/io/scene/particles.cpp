@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/io/scene/context.h"
 

@@ -122,6 +122,25 @@ const Spoiled kSpoiled[] = {
     {R"("frame_rate": 25)", R"("frame_rate": 0)", "simulation.frame_rate: found 0"},
 };
 
+TEST(EmitterScene, ChildrenThatWaitForEachOtherAreNamed) {
+    const auto warnings = [](const std::string& parent) {
+        return parse_scene(
+                   R"({"ricochet": 1, "emitters": [{"name": "first", "type": "point", "burst": 1, "lifetime": 1},
+            {"name": "a", "type": "child", "parent": ")" +
+                       parent + R"(", "on": "death"},
+            {"name": "b", "type": "child", "parent": "a", "on": "death"},
+            {"name": "c", "type": "child", "parent": "b", "on": "death"}]})",
+                   "s.json")
+            .warnings;
+    };
+    EXPECT_TRUE(warnings("first").empty());
+    const std::vector<std::string> itself = warnings("a");
+    ASSERT_EQ(itself.size(), 1U);
+    EXPECT_NE(itself[0].find("emitters[1].parent: leads back to this emitter"), std::string::npos) << itself[0];
+    EXPECT_EQ(warnings("b").size(), 2U);
+    EXPECT_EQ(warnings("c").size(), 3U);
+}
+
 TEST(EmitterScene, WrongValuesAreNamedByTheirPath) {
     const SampleFolder folder;
     for (const Spoiled& spoiled : kSpoiled) {

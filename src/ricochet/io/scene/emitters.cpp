@@ -323,6 +323,20 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
     }
 }
 
+// Children whose ancestors lead back to themselves wait for each other for ever.
+void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
+        std::size_t ancestor = k;
+        for (std::size_t n = 0; n < views.size() && setup.emitters[ancestor].parent; ++n) {
+            ancestor = setup.emitters[ancestor].parent->emitter;
+            if (ancestor != k) continue;
+            context.warn(views[k], "parent", "leads back to this emitter, which no other begins: nothing is born here");
+            break;
+        }
+    }
+}
+
 // Two emitters cannot have the same parents to share out.
 void check_shares(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
@@ -376,6 +390,7 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         setup.emitters.push_back(std::move(emitter));
     }
     find_parents(context, setup);
+    warn_of_circles(context, setup);
     check_shares(context, setup);
 }
 

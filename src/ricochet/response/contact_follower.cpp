@@ -71,9 +71,7 @@ ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
       state_(step.state()),
       impact_(step.impact()),
       manifold_(manifold),
-      held_(step, manifold),
-      forces_vary_(!rules_.forces.is_uniform_for(state_) && follows_varying_forces(rules_.settings.integrator.kind)),
-      needs_arc_(tolerance() || rules_.forces.is_conservative_for(state_)) {}
+      held_(step, manifold) {}
 
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
     manifold_.drop_left(kLeavingRounding);
@@ -86,9 +84,9 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         }
         const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
         const PlannedInterval begin{interval, pull.forces};
-        const bool varies = pull.acts && forces_vary_;
+        const bool varies = pull.acts && forces_vary();
         if (!turns && !varies) return follow_flat(FlatInterval(begin), pull);
-        if (!turns && !needs_arc_) {
+        if (!turns && !needs_arc()) {
             const Vec3 forces = forces_in_middle(interval);
             return follow_flat(FlatInterval(begin, {plan({forces, true, pull.pressure}, duration), forces}), pull);
         }
@@ -270,6 +268,14 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
     particle_.spin = motion.spin;
     return contact;
 }
+
+/// The forces do in a step, and the integrator is of second order or more.
+bool ContactFollower::forces_vary() const {
+    return follows_varying_forces(rules_.settings.integrator.kind) && !rules_.forces.is_uniform_for(state_);
+}
+
+/// Forces that vary ask for an arc, for its energy or its tolerance.
+bool ContactFollower::needs_arc() const { return tolerance() || rules_.forces.is_conservative_for(state_); }
 
 /// What an arc may be wrong by, where the integrator chooses its own steps.
 std::optional<ErrorTolerance> ContactFollower::tolerance() const {

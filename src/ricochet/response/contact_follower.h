@@ -56,6 +56,8 @@ private:
         bool jams = false;            ///< it is stuck at its end
     };
 
+    [[nodiscard]] bool forces_vary() const;
+    [[nodiscard]] bool needs_arc() const;
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
     [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
     [[nodiscard]] FlatWay way_along(const FlatInterval& interval) const;
@@ -74,8 +76,6 @@ private:
     ImpactAnswer& impact_;
     ContactManifold& manifold_;
     HeldSurfaces held_;
-    bool forces_vary_;  // and the integrator is of second order or more
-    bool needs_arc_;    // where they vary, for its energy or its tolerance
 };
 
 }  // namespace ricochet

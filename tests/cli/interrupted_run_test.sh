@@ -101,7 +101,7 @@ fi
 code=0
 "$ricochet" run "$folder/resumed.json" --output "$folder/interrupted" --resume 2>"$folder/other.err" || code=$?
 ((code == 2)) || fail "exit code $code after resuming with another scene"
-grep -q 'the scene is not the one that was interrupted' "$folder/other.err" || fail "$(cat "$folder/other.err")"
+grep -q 'the scene, or a file that it reads, is not the one that was interrupted' "$folder/other.err" || fail "$(cat "$folder/other.err")"
 
 run_and_signal terminated TERM
 ((code == 143)) || fail "exit code $code after SIGTERM"

@@ -78,8 +78,8 @@ public:
     OutputDirectory& operator=(const OutputDirectory&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Removes frames and contact files of steps after this one, and what was never finished: an interrupted run goes on
-    /// there.
+    /// Removes frames and contact files of steps after this one, and what was never finished: an interrupted run goes
+    /// on there.
     void remove_after(std::uint64_t step) const;
 
 private:

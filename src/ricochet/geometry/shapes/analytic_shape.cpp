@@ -158,7 +158,8 @@ double AnalyticShape::time_over(ShapePart part, const Path& path, double slack) 
 
 ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const HeldParts& held) const {
     ShapeContacts result;
-    for (const LocalContact& contact : contacts_of(shape_, frame_.local_path(path), radius, held).all()) {
+    const LocalContacts found = contacts_of(shape_, frame_.local_path(path), radius, held);
+    for (const LocalContact& contact : found.all()) {
         result.contacts[result.count++] = {contact.time, frame_.world_normal(contact.normal),
                                            frame_.world_point(contact.point), contact.part, contact.on_rim};
     }

@@ -1,5 +1,4 @@
 #include "cli/arguments.h"
-#include "cli/terminal.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "cli/terminal.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet::cli {

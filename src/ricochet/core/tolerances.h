@@ -352,6 +352,15 @@ inline constexpr double kTurningAway = 0x1p-24;
 /// exact.
 inline constexpr double kMaxArcAngle = 0.1;
 
+/// Turn, rad, of a curved surface under a sphere in one arc, from which on the arc is searched for a jump of the
+/// nearest point. Reason: planned arcs turn by kMaxArcAngle. Smaller: whole arcs are searched and cut. Larger: a sphere
+/// wider than a shape goes on through the side that it has jumped to.
+inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
+
+/// Turn, rad, between two times 2^-40 of an arc apart that is a jump: the surface is narrower than the sphere, which
+/// jams. Smaller: what turns fast jams. Larger: small jumps are passed.
+inline constexpr double kJump = 1e-3;
+
 /// Largest part by which an arc's end is corrected to have its energy. Reason: the method's own error is far below it;
 /// more would hide another mistake. Smaller: slow turning points are left uncorrected. Larger: that.
 inline constexpr double kMostEnergyCorrection = 1e-2;

@@ -12,9 +12,6 @@ namespace {
 /// Step along a shape that its curvature is taken over, as a fraction of its size.
 constexpr double kCurvatureStep = 1e-4;
 
-/// Turn, rad, of a surface in an arc that is looked at closely: those that are planned turn by kMaxArcAngle.
-constexpr double kMostTurn = 2.0 * kMaxArcAngle;
-
 /// Corrections of the position and of the energy; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 

@@ -24,9 +24,6 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
-/// Turn of a surface, rad, in no time: a jump.
-constexpr double kJump = 1e-3;
-
 /// Times, s, before and from which something is so, found by halving; it is at `high`.
 struct Change {
     double before = 0.0;

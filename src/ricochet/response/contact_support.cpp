@@ -20,15 +20,19 @@ ContactSupport::ContactSupport(ParticleStep& step, const ContactManifold& manifo
 
 bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                      double kick_duration) const {
-    const bool dies_out = std::any_of(contact.all().begin(), contact.all().end(),
-                                      [&](const ContactSurface& surface) { return has_losses(surface); });
+    const auto dies_out = [&] {
+        return std::any_of(contact.all().begin(), contact.all().end(),
+                           [&](const ContactSurface& surface) { return has_losses(surface); });
+    };
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact_.material_of(surface.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
+        if (!(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        return !(approach > 0.0 && rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out));
+        if (rebound >= rules_.settings.resting_speed) return false;  // no slow rebound is as fast
+        return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));
     });
 }
 

@@ -43,11 +43,13 @@ bool ParticleStep::can_follow(const Path& path) {
 
 /// The first contact of a path, and the certified segments to the safe position there or to the path's end.
 ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
-    return travel(query, find_first_contact(geometry_, query, scratch_.contacts));
+    Travel travel{find_first_contact(geometry_, query, scratch_.contacts)};
+    go(query, travel);
+    return travel;
 }
 
-ParticleStep::Travel ParticleStep::travel(const ContactQuery& query, const ContactQueryResult& found) {
-    Travel travel{found};
+/// To the contact found, or to the end of the path.
+void ParticleStep::go(const ContactQuery& query, Travel& travel) {
     const Path& path = query.path;
     const NearSurfaces& near = travel.found.near;
     std::optional<Contact>& contact = travel.found.contact;
@@ -56,7 +58,7 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query, const Conta
     if (starts_there && !near.surfaces_at(path.c[0]).empty()) {
         leave_surface(near);
         contact.reset();
-        return travel;
+        return;
     }
     if (contact) {
         stop_at_contact(query, travel);
@@ -68,7 +70,6 @@ ParticleStep::Travel ParticleStep::travel(const ContactQuery& query, const Conta
     record_chain();
     travel.elapsed = contact ? contact->time : path.duration;
     pass(travel.elapsed);
-    return travel;
 }
 
 /// What blocks the way to the contact is met before.
@@ -102,12 +103,6 @@ CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const Contac
 void ParticleStep::wait(double duration) {
     pass(duration);
     record_flown(line_path(state().position, Vec3{}, duration), duration, Vec3{}, false);
-}
-
-/// After it: a piece of what the particle has flown.
-void ParticleStep::record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
-    if (!scratch_.record_flown) return;
-    scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
 }
 
 void ParticleStep::pass(double duration) {

@@ -75,13 +75,17 @@ private:
 
     [[nodiscard]] bool can_follow(const Path& path);
     [[nodiscard]] Travel travel(const ContactQuery& query);
-    [[nodiscard]] Travel travel(const ContactQuery& query, const ContactQueryResult& found);
+    void go(const ContactQuery& query, Travel& travel);
     void stop_at_contact(const ContactQuery& query, Travel& travel);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
     void record_chain();
     void pass(double duration);
-    void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free);
+    /// Of a piece of what the particle has flown, after it.
+    void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
+        if (!scratch_.record_flown) return;
+        scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
+    }
 
     const ResponseRules& rules_;
     MovingParticle& particle_;
@@ -102,14 +106,14 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
     const Vec3 departure = state().velocity;
     Path followed = path;
     const ContactQuery query{followed, state().radius, nullptr, {}, held};
-    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
-    while (found.contact) {
-        const std::optional<Path> next = shorter(found.contact->time, followed);
+    Travel travelled{find_first_contact(geometry_, query, scratch_.contacts)};
+    while (travelled.found.contact) {
+        const std::optional<Path> next = shorter(travelled.found.contact->time, followed);
         if (!next) break;
         followed = *next;
-        found = find_first_contact(geometry_, query, scratch_.contacts);
+        travelled.found = find_first_contact(geometry_, query, scratch_.contacts);
     }
-    const Travel travelled = travel(query, found);
+    go(query, travelled);
     state().velocity = followed.velocity(travelled.elapsed);
     record_flown(followed, travelled.elapsed, departure, false);
     return travelled.found.contact;

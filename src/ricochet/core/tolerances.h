@@ -124,6 +124,16 @@ inline constexpr double kStraightHeading = 0x1p-44;
 /// the surface by more (angle^2 / 2 of the radius of curvature) before it falls back.
 inline constexpr double kMaxChordAngle = 0.01;
 
+/// Part of a step for which a flow has to lead a particle away from a wall that has stopped it before it goes. Smaller:
+/// where a flow turns away only on the spot, a particle creeps along the wall in ever more hops, until its budget is
+/// spent. Larger: it starts later, by less than this part of the step.
+inline constexpr double kShortestRelease = 1.0 / 64.0;
+
+/// Part of a step below which a path along a wall that moves the particle by rounding only is not made. Smaller: what is
+/// left before a rim or a release is divided by times so short that velocities leave the range of the arithmetic.
+/// Larger: a particle lets go of a wall earlier, by less than a quarter of a contact offset of its way.
+inline constexpr double kNoProgress = 0x1p-20;
+
 // Broad phase and look-ahead
 
 /// Distance, relative to the largest coordinate involved, that is left beside a path in free flight for many steps.

@@ -5,10 +5,11 @@
 /// exact response, and every segment that is travelled is certified to intersect no surface: nothing leaks, exactly.
 ///
 /// A particle that slides follows g without its part into the surfaces that it touches (the closest velocity that
-/// enters none of them; at most three count), by the same integrator, for as long as they are under it. Over an edge it
-/// goes on with the flow until that presses it onto something again. On a curved surface it goes in straight segments
-/// of kMaxChordAngle. A particle that stops stays where it has hit a wall while the flow presses it on, and leaves when
-/// the flow turns away.
+/// enters none of them; at most three count), by the same integrator, for as long as they are under it and g presses it
+/// onto them. Over an edge it goes on with the flow until that presses it onto something again. On a curved surface it
+/// goes in straight segments of kMaxChordAngle. A particle that stops stays where it has hit a wall while the flow
+/// presses it on or would bring it back within kShortestRelease of a step. In a pit of more than three faces it stays
+/// to the end of the step.
 ///
 /// The velocity stored is the one that it goes on with: zero where it is stopped. Materials, mass and spin play no
 /// role; impacts are counted and recorded, without impulses. Particles have no momentum here.

@@ -1,0 +1,250 @@
+#include "ricochet/response/constrained_flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/flight.h"
+#include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/impact_answer.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings in search of the time at which the flow turns away from a wall: to the last bit of the time.
+constexpr int kReleaseHalvings = 60;
+
+/// A flow without its part along normals.
+class FlowAlong final : public FlowField {
+public:
+    FlowAlong(const FlowField& flow, std::span<const Vec3> normals) : flow_(flow), normals_(normals) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        const Vec3 free = flow_.velocity(position, time);
+        return normals_.empty() ? free : along_all(free, normals_);
+    }
+    [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
+
+private:
+    const FlowField& flow_;
+    std::span<const Vec3> normals_;
+};
+
+/// The end of [0, duration] up to which something holds that holds at first: to the last bit.
+template <class Holds>
+double last_time(double duration, const Holds& holds) {
+    double held = 0.0;
+    double free = duration;
+    for (int k = 0; k < kReleaseHalvings; ++k) {
+        const double middle = 0.5 * (held + free);
+        (holds(middle) ? held : free) = middle;
+    }
+    return free;
+}
+
+Vec3 displacement(const Path& path, double s) {
+    Vec3 sum;
+    for (std::size_t k = path.c.size(); k-- > 1;) sum = s * (path.c[k] + sum);
+    return sum;
+}
+
+Path cut(Path path, double duration) {
+    if (duration < path.duration) {
+        path.end = path.position(duration);
+        path.duration = duration;
+    }
+    return path;
+}
+
+}  // namespace
+
+void Holders::add(std::size_t point, const Vec3& normal) {
+    points_[count_] = point;
+    normals_[count_++] = normal;
+}
+
+void Holders::remove(std::size_t k) {
+    for (--count_; k < count_; ++k) {
+        points_[k] = points_[k + 1];
+        normals_[k] = normals_[k + 1];
+    }
+}
+
+bool Holders::has(std::size_t point) const {
+    return std::find(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_), point) !=
+           points_.begin() + static_cast<std::ptrdiff_t>(count_);
+}
+
+Vec3 ConstrainedFlow::velocity() const {
+    return project_off(flow_.velocity(state_.position, state_.time), manifold_.normals());
+}
+
+bool ConstrainedFlow::leads_in(double time) const {
+    const auto normals = manifold_.normals();
+    if (normals.empty()) return false;
+    const auto is_into = [&](const Vec3& v) {
+        return std::any_of(normals.begin(), normals.end(), [&](const Vec3& normal) { return dot(v, normal) < 0.0; });
+    };
+    if (is_into(flow_.velocity(state_.position, time))) return true;
+    const Path ahead =
+        flow_path(rules_.settings.integrator, flow_, state_.position, time, kShortestRelease * step_, 0.0).path;
+    return is_into(displacement(ahead, ahead.duration));
+}
+
+double ConstrainedFlow::time_to_release(double remaining) const {
+    if (flow_.is_steady() || leads_in(state_.time + remaining)) return remaining;
+    return last_time(remaining, [&](double s) { return leads_in(state_.time + s); });
+}
+
+Path ConstrainedFlow::next_path(double duration, double reach) {
+    for (holders_ = holders_now();;) {
+        const Path path = free_path(duration);
+        if (holders_.empty() || !can_be_followed(path)) return path;
+        const Part held = until_release(path);
+        if (is_no_progress(held.path)) {  // the flow turns away here
+            holders_.remove(held.ended_by);
+            continue;
+        }
+        const Part part = until_rim(held.path, reach);
+        if (is_no_progress(part.path)) {  // it is past that surface's end
+            manifold_.remove(holders_.point(part.ended_by));
+            holders_ = holders_now();
+            continue;
+        }
+        for (std::size_t k = 0; k < holders_.size(); ++k) {
+            const ContactSurface support = manifold_[holders_.point(k)];
+            if (!support.flat) return along_curved(support, part.path);
+        }
+        return lifted(part.path);
+    }
+}
+
+bool ConstrainedFlow::dips(const Path& path, double time) const {
+    const double depth = 0.25 * contact_offset(state_.position);
+    const Vec3 moved = displacement(path, time);
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const ContactSurface surface = manifold_[k];
+        if (surface.flat && !holders_.has(k) && dot(moved, surface.normal) < -depth) return true;
+    }
+    return false;
+}
+
+/// Those whose reaction to the flow is not zero.
+Holders ConstrainedFlow::holders_now() const {
+    const auto normals = manifold_.normals();
+    const auto loads = normal_accelerations(flow_.velocity(state_.position, state_.time), normals);
+    Holders holders;
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+        if (loads[k] > 0.0) holders.add(k, normals[k]);
+    }
+    return holders;
+}
+
+Path ConstrainedFlow::free_path(double duration) {
+    const FlowAlong along(flow_, holders_.normals());
+    const FlowPath free =
+        flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration, next_duration_);
+    next_duration_ = free.next_duration;
+    return free.path;
+}
+
+/// The holder that a flow presses on least.
+std::size_t ConstrainedFlow::weakest(const Vec3& g) const {
+    const auto loads = normal_accelerations(g, holders_.normals());
+    return static_cast<std::size_t>(
+        std::min_element(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(holders_.size())) - loads.begin());
+}
+
+/// A path up to where the flow turns away from a holder. The cubic through both ends would dip into the surface before
+/// an end that leaves it; up to there it has no part along the normal.
+ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
+    const auto flow_at = [&](double s) { return flow_.velocity(path.position(s), state_.time + s); };
+    const auto holds = [&](double s) {
+        const Vec3 g = flow_at(s);
+        const auto loads = normal_accelerations(g, holders_.normals());
+        return std::all_of(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(holders_.size()),
+                           [](double load) { return load > 0.0; });
+    };
+    Part part{path, 0};
+    if (!holds(path.duration)) {
+        const double until = last_time(path.duration, holds);
+        part.ended_by = weakest(flow_at(until));
+        const FlowAlong along(flow_, holders_.normals());
+        part.path = flow_path(rules_.settings.integrator, along, state_.position, state_.time, until, until).path;
+    }
+    Path& held = part.path;
+    for (std::size_t k = 1; k < held.c.size(); ++k) held.c[k] = along_all(held.c[k], holders_.normals());
+    held.end = held.c[0] + along_all(held.end - held.c[0], holders_.normals());
+    return part;
+}
+
+/// A path up to the first rim of the flat holders.
+ConstrainedFlow::Part ConstrainedFlow::until_rim(const Path& path, double reach) const {
+    Part part{path, 0};
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        const ContactSurface support = manifold_[holders_.point(k)];
+        if (!support.flat) continue;
+        Path of_contact_point = path;
+        of_contact_point.c[0] -= state_.radius * support.normal;
+        const double on = rules_.world.time_over(support.surface, of_contact_point, reach);
+        if (!(on < part.path.duration)) continue;
+        part = {cut(path, on), k};
+    }
+    return part;
+}
+
+/// A path along flat surfaces whose end keeps the contact offset from them.
+Path ConstrainedFlow::lifted(Path path) const {
+    const CollisionWorld& world = rules_.world;
+    const double offset = contact_offset(path.end);
+    Holders lifting;
+    std::array<double, kMostHolding> lifts{};
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        const ContactSurface support = manifold_[holders_.point(k)];
+        const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
+        const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
+        const double lift = offset - height;
+        // Where the flow has turned away the particle is above the surface by more than rounding. Next to the origin a
+        // height above a large triangle can be all rounding.
+        const bool is_rounding =
+            std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) && height <= 2.0 * kTouchingOffsets * offset;
+        if (!is_rounding) continue;
+        lifts[lifting.size()] = lift;
+        lifting.add(k, support.normal);
+    }
+    if (lifting.empty()) return path;
+    const Vec3 shift = shift_by(lifting.normals(), {lifts.data(), lifting.size()});
+    path.end = flush_tiny(path.end + shift);
+    // A start below the contact offset must not lead into the surface.
+    path.c[1] += shift / path.duration;
+    return path;
+}
+
+/// A straight part of a path along a curved surface that turns by at most kMaxChordAngle: a tangent where the surface
+/// bends away, from whose end the flow presses the particle on again; a chord where it bends towards the particle.
+Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) const {
+    const CollisionWorld& world = rules_.world;
+    const double size = world.size_of(support.surface);
+    const double bend = state_.radius > 0.0 ? std::min(size, state_.radius) : size;
+    const double speed = length(path.c[1]);
+    if (speed > 0.0) path = cut(path, kMaxChordAngle * bend / speed);
+    const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
+    const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
+    const double offset = contact_offset(path.end);
+    const double lift = state_.radius + offset - side * there.distance;
+    if (!(lift > 0.0)) return path;
+    const Vec3 end = flush_tiny(path.end + (side * lift) * there.normal);
+    // Over the seam of a flat surface the height differs by rounding only.
+    if (lift > kTouchingOffsets * offset) {
+        path = line_path(state_.position, (end - state_.position) / path.duration, path.duration);
+    }
+    path.end = end;
+    return path;
+}
+
+/// Too short to change anything: neither a noticeable part of the step nor of what positions are rounded by.
+bool ConstrainedFlow::is_no_progress(const Path& path) const {
+    return !(path.duration > kNoProgress * step_) &&
+           !(length(path.c[1]) * path.duration > 0.25 * contact_offset(state_.position));
+}
+
+}  // namespace ricochet

@@ -114,7 +114,7 @@ TEST(Culling, ChangesNoImpactAndNoBitOfTheStateInRandomCases) {
         }
         impacts += simulation.statistics().contacts;
     }
-    EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(100)) * 20);
+    EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(100)) * 10);  // not an empty test
 }
 
 }  // namespace

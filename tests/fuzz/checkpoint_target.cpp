@@ -94,9 +94,8 @@ std::string striking_value(ByteChoices& choices) {
                                        0x0000000000000001, 0x8000000000000000, 0x4F80000000000000}));
 }
 
-/// Overwrites, removes or inserts some bytes.
+/// Overwrites, removes or inserts some bytes of a body that has some.
 void edit(ByteChoices& choices, std::string& body, std::size_t& state_begin) {
-    if (body.empty()) return;
     const std::size_t kind = choices.index(5);
     const std::size_t at = choices.two_bytes() % body.size();
     std::string piece;
@@ -143,7 +142,7 @@ bool fuzz_checkpoint(std::string_view bytes) {
     const std::size_t scene = choices.index(kScenes.size());
     std::string body = base_of(scene).body;
     std::size_t state_begin = base_of(scene).state_begin;
-    while (!choices.at_end()) edit(choices, body, state_begin);
+    while (!choices.at_end() && !body.empty()) edit(choices, body, state_begin);
     const MemoryFile file(with_checksums(std::move(body), state_begin));
     Simulation simulation(parse_scene(kScenes[scene], "base.json").setup);
     try {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,12 @@
 #include "support/allocation_guard.h"
 
 namespace ricochet::fuzz {
+
+/// For GoogleTest's messages.
+void PrintTo(const FuzzTarget& target, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+    *out << target.name;
+}
+
 namespace {
 
 const std::filesystem::path kFolder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz";
@@ -81,7 +88,7 @@ TEST_P(FuzzReplay, StandsUpToSeedsCutShortAndChanged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FuzzReplay, ::testing::ValuesIn(kFuzzTargets),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(FuzzReplayFolders, EveryFolderOfInputsHasATarget) {
     for (const char* kind : {"corpus", "regressions"}) {

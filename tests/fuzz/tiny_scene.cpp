@@ -1,5 +1,6 @@
 #include "fuzz/tiny_scene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -165,6 +166,9 @@ void add_options(ByteChoices& choices, SimulationSetup& setup) {
     options.duration = options.time_step * static_cast<double>(kTinySteps);
     options.resting_speed = choices.one_of<double>({1e-3, 0.0, 0.05});
     options.bounce_budget = choices.one_of<std::uint32_t>({60, 1, 3});
+    // All particles go back for each bounce of one.
+    if (options.rollback.global && options.response == ResponseKind::rollback) options.bounce_budget /= 10;
+    options.bounce_budget = std::max<std::uint32_t>(1, options.bounce_budget);
     options.seed = choices.byte();
     options.max_depth = 2;
     options.most_particles = 24;

@@ -44,7 +44,7 @@ constexpr std::array kScenes{
         "particles": [{"position": [0, 0, 0.05], "velocity": [1, 0, -4]}, {"position": [1, 0, 0.2], "radius": 0.1}]})",
 };
 constexpr std::size_t kStepsBefore = 3;
-constexpr std::size_t kStepsAfter = 3;
+constexpr std::size_t kStepsAfter = 1;
 constexpr std::size_t kChecksums = 2 * sizeof(std::uint64_t);
 
 struct Base {

@@ -106,7 +106,7 @@ ColliderShape collider_shape(ByteChoices& choices) {
 Material material(ByteChoices& choices, bool may_be_random) {
     Material result;
     result.restitution = up_to(choices, {0.0, 1.0, 0.5, 0.9});
-    result.friction = up_to(choices, {0.0, 0.3, 1.0, 5.0});
+    result.friction = up_to(choices, {0.0, 0.3, 1.0, 2.0});
     if (choices.yes()) result.rolling_friction = 0.2 * choices.part();
     if (choices.yes()) result.spinning_friction = 0.01 * choices.part();
     if (choices.yes()) result.restitution_threshold = choices.part();
@@ -159,15 +159,15 @@ void add_options(ByteChoices& choices, SimulationSetup& setup) {
         IntegratorKind::symplectic_euler, IntegratorKind::rk4,           IntegratorKind::velocity_verlet,
         IntegratorKind::dormand_prince,   IntegratorKind::implicit_euler};
     SimulationOptions& options = setup.options;
-    options.integrator = choices.one_of(kIntegrators);
+    options.integrator = {choices.one_of(kIntegrators), {1e-4, 1e-4}};
     options.response = choices.yes() ? ResponseKind::exact : response_kinds()[choices.index(response_kinds().size())];
     options.rollback.global = choices.yes();
     options.time_step = choices.one_of<double>({1.0 / 60.0, 1e-3, 0.05, 0.1});
     options.duration = options.time_step * static_cast<double>(kTinySteps);
     options.resting_speed = choices.one_of<double>({1e-3, 0.0, 0.05});
-    options.bounce_budget = choices.one_of<std::uint32_t>({60, 1, 3});
+    options.bounce_budget = choices.one_of<std::uint32_t>({20, 1, 3});
     // All particles go back for each bounce of one.
-    if (options.rollback.global && options.response == ResponseKind::rollback) options.bounce_budget /= 10;
+    if (options.rollback.global && options.response == ResponseKind::rollback) options.bounce_budget /= 4;
     options.bounce_budget = std::max<std::uint32_t>(1, options.bounce_budget);
     options.seed = choices.byte();
     options.max_depth = 2;
@@ -184,8 +184,8 @@ double radius(ByteChoices& choices) { return up_to(choices, {0.0, 0.25, 0.1, 1e-
 Particle particle(ByteChoices& choices, double time_step) {
     Particle result;
     result.position = choices.point();
-    // The fastest go through the scene in a step, and not round and round in it.
-    const double speed = choices.one_of<double>({0.0, 1.0, 10.0, 3.0 / time_step});
+    // The fastest go through the scene in a step, and not round and round in it, wedged between surfaces.
+    const double speed = choices.one_of<double>({0.0, 1.0, 10.0, std::min(1.0 / time_step, 100.0)});
     result.velocity = speed * choices.point();
     result.radius = radius(choices);
     result.mass = choices.one_of<double>({1.0, 0.01, 100.0});

@@ -242,13 +242,16 @@ void add_emitters(ByteChoices& choices, SimulationSetup& setup) {
 }
 
 void add_springs(ByteChoices& choices, SimulationSetup& setup) {
+    const double step = setup.options.time_step;
     for (std::size_t k = 1; k < setup.particles.size(); ++k) {
         Spring spring;
         spring.first = k - 1;
         spring.second = k;
         spring.rest_length = choices.part();
-        spring.stiffness = 100.0 * choices.part();
-        spring.damping = choices.part();
+        // Explicit integrators follow it: what they cannot follow goes round and round at any speed.
+        const double lighter = std::min(setup.particles[k - 1].mass, setup.particles[k].mass);
+        spring.stiffness = 0.5 * choices.part() * lighter / (step * step);
+        spring.damping = 0.2 * choices.part() * lighter / step;
         setup.springs.push_back(spring);
     }
 }

@@ -28,5 +28,8 @@ default_jobs() {
 # need_value OPTION COUNT: refuses an option whose value is missing.
 need_value() { (($2 >= 2)) || die "$1 needs a value (see --help)" 2; }
 
-# positive_number OPTION TEXT: refuses anything but 1, 2, 3, ...
-positive_number() { [[ "$2" =~ ^[1-9][0-9]{0,3}$ ]] || die "$1 needs a whole number from 1 on, got '$2'" 2; }
+# positive_number OPTION TEXT [DIGITS]: refuses anything but 1, 2, 3, ... of at most so many digits (4).
+positive_number() {
+    if [[ "$2" =~ ^[1-9][0-9]*$ ]] && ((${#2} <= ${3:-4})); then return 0; fi
+    die "$1 needs a whole number from 1 on, got '$2'" 2
+}

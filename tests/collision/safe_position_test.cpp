@@ -169,6 +169,26 @@ TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     EXPECT_FALSE(followed.blocker);
 }
 
+// Of triangles without extent no path is near enough to a chord of its own accord.
+TEST(FollowPath, EndsNextToTrianglesOfAnySmallness) {
+    for (const double size : {0.0, 1e-30, 1e-9}) {
+        const TriangleMesh specks{{{-1, 0, 0}, {-1 + size, 0, 0}, {-1, size, 0}, {1, 0, 0.5}, {1, size, 0.5}},
+                                  {{0, 1, 2}, {3, 4, 3}, {0, 0, 0}}};
+        for (const double radius : {0.0, 0.25}) {
+            SCOPED_TRACE(::testing::Message() << "size " << size << ", radius " << radius);
+            CollisionWorld world = world_of(mesh_collider(specks));
+            world.prepare_radius(radius);
+            ContactScratch scratch;
+            const Path beside = parabola_path({-1, 0.3, 0.1}, {1, 0, 1}, {0, 0, -1}, 2.0);
+            const auto found = query(world, scratch, beside, radius);
+            ASSERT_FALSE(found.contact);
+            const CertifiedPath followed = follow_path(found.near, beside, 2.0, beside.end, scratch.chain);
+            EXPECT_EQ(followed.reached, beside.end);
+            EXPECT_LT(scratch.chain.size(), 100'000U);
+        }
+    }
+}
+
 TEST(FollowPath, StopsWhereAChordIsBlocked) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;

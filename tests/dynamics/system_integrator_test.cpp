@@ -184,6 +184,23 @@ TEST(SystemIntegrator, ImplicitEulerSolvesItsEquationsWithDragAndCompressedSprin
     EXPECT_EQ(end.positions()[0], x0[0]);
 }
 
+// A spring without a length has no direction, and gets one within the step: its places in the matrix are there before.
+TEST(SystemIntegrator, ImplicitEulerPullsApartWhatBeginsAtOnePoint) {
+    for (const int others : {0, 1, 5}) {
+        SCOPED_TRACE(others);
+        std::vector<Spring> springs;
+        for (std::uint64_t k = 0; k + 1 < 8; ++k) springs.push_back({k, k + 1, 0.5, 100.0, 0.1});
+        FreeSystem system(std::move(springs));
+        for (int k = 0; k < 8; ++k) system.add({k <= others ? 0.0 : k, 0, 0}, {0.1 * k, -0.2 * k, 0.3}, 1.0);
+        EXPECT_TRUE(system.run(IntegratorKind::implicit_euler, 0.5, 10));
+        Vec3 momentum;
+        for (const Vec3& v : system.particles.velocity) momentum += v;
+        EXPECT_NEAR(momentum.x, 2.8, 1e-12);
+        EXPECT_NEAR(momentum.y, -5.6, 1e-12);
+        EXPECT_NEAR(momentum.z, 2.4, 1e-12);
+    }
+}
+
 TEST(SpringStability, BoundIsWhereAPairBeginsToExplode) {
     const std::vector<Spring> springs{{0, 1, 1.0, 100.0, 0.0}};
     std::vector<Particle> particles(2);

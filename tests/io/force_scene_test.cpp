@@ -108,6 +108,13 @@ TEST(ForceScene, NamesWrongValuesByTheirPath) {
               (Lines{"forces[0].attractors[0].strength: missing, expected a number (m^3/s^2)"}));
 }
 
+TEST(ForceScene, NamesAFlowWhereNoneBelongs) {
+    EXPECT_EQ(errors_of(R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81],
+                             "flow": {"type": "uniform", "velocity": [1, 0, 0]}}])"),
+              (Lines{"forces[0].flow: not a key of type \"gravity\", it belongs to \"drag\", \"quadratic_drag\", "
+                     "\"stokes_drag\", \"schiller_naumann_drag\", \"field\""}));
+}
+
 TEST(ForceScene, NamesFlowsThatAreNotThere) {
     EXPECT_EQ(errors_of(R"("flows": {"breeze": {"type": "uniform", "velocity": [1, 0, 0]}},
                            "forces": [{"type": "drag", "coefficient": 1, "flow": "breze"}])"),

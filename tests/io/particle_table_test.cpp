@@ -70,6 +70,9 @@ TEST(ParticleTable, StopsAfterTenErrors) {
     std::string text = "x,y,z\n";
     for (int i = 0; i < 1000; ++i) text += "a,1,2\n";
     EXPECT_EQ(parse_particle_table(text, "t.csv").errors.size(), 11U);
+    std::string header = "x,y,z";
+    for (int i = 0; i < 1000; ++i) header += ",a" + std::to_string(i);
+    EXPECT_EQ(parse_particle_table(header, "t.csv").errors.size(), 11U);
 }
 
 TEST(ParticleTable, RefusesAnEmptyFileAndBinaryData) {

@@ -329,6 +329,24 @@ TEST(VtkReader, RefusesCornersThatNameNoPoint) {
     }
 }
 
+// Each of them would take its own memory.
+TEST(VtkReader, RefusesArraysThatShareTheirBytes) {
+    const TemporaryFolder folder;
+    write_vtp(folder.path("good.vtp"), particle_frame(test::example_particles(1000), 0.0));
+    std::string bytes = folder.read("good.vtp");
+    const std::size_t begin = bytes.find("<DataArray type=\"Float64\" Name=\"mass\"");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string tag = bytes.substr(begin, bytes.find('>', begin) + 1 - begin);
+    for (int k = 0; k < 100; ++k) bytes.insert(begin, tag);
+    try {
+        (void)read_vtp(folder.write("bad.vtp", bytes));
+        ADD_FAILURE() << "was read";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("array mass shares its bytes with others"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(VtkReader, RefusesAFolderAndAMissingFile) {
     const TemporaryFolder folder;
     EXPECT_THROW((void)read_vtp(folder.path("")), InputError);

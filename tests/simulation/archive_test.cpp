@@ -224,6 +224,32 @@ TEST(SavedSimulation, IsRefusedOrGoesOnWhateverWasMadeUp) {
     EXPECT_LT(refused, cases);
 }
 
+TEST(SavedSimulation, IsRefusedWithAParticleOutOfRange) {
+    const auto setup = [] {
+        SimulationSetup one;
+        one.particles.push_back({0, {0.123456789, 0, 0}, {}, 1.0, 0.987654321});
+        return one;
+    };
+    for (const double value : {0.123456789, 0.987654321}) {
+        for (const double other : {2.0, 1e80, -1.0}) {
+            SCOPED_TRACE(::testing::Message() << other << " instead of " << value);
+            std::vector<std::byte> bytes = saved(Simulation(setup()));
+            const auto written = std::as_bytes(std::span(&value, 1));
+            const auto found = std::search(bytes.begin(), bytes.end(), written.begin(), written.end());
+            ASSERT_NE(found, bytes.end());
+            std::memcpy(&*found, &other, sizeof(other));
+            sign(bytes);
+            Simulation same(setup());
+            const bool is_good = other == 2.0 || (other == -1.0 && value == 0.123456789);
+            if (is_good) {
+                EXPECT_NO_THROW(restore(same, bytes));
+            } else {
+                EXPECT_THROW(restore(same, bytes), InputError);
+            }
+        }
+    }
+}
+
 TEST(SavedSimulation, IsNotTakenOverByEmittersThatHaveEmitted) {
     Simulation whole(busy_setup());
     run_to(whole, 3);

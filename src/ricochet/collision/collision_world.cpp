@@ -74,7 +74,8 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, doubl
     triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
     for (const ShapeSurface& shape : shapes_) bounds_.include(shape.shape.bounds());
-    chord_margin_ = chord_margin * mean_box();
+    const double extent = triangles_.empty() ? 0.0 : triangle_bounds_.diagonal();
+    chord_margin_ = std::max(chord_margin * mean_box(), kLeastChordMargin * extent);
     prepare_radius(0.0);
     distance_field_ = DistanceField(vertices_, triangles_, triangle_bounds_);
 }
@@ -119,7 +120,8 @@ void CollisionWorld::prepare_radius(double radius) {
     const auto at = std::lower_bound(classes_.begin(), classes_.end(), largest,
                                      [](const RadiusClass& c, double r) { return c.largest_radius < r; });
     if (at != classes_.end() && at->largest_radius == largest) return;
-    const double box_margin = largest <= 0.5 * chord_margin_ ? chord_margin_ : largest + chord_margin_;
+    const double beside_chords = std::max(chord_margin_, kLeastChordMargin * largest);
+    const double box_margin = largest <= 0.5 * chord_margin_ ? chord_margin_ : largest + beside_chords;
     if (!clusters_) {
         clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices_, triangles_));
     }

@@ -154,6 +154,11 @@ inline constexpr int kMaxLookAheadStepsCurved = 256;
 inline constexpr double kChordMargin = 1.0 / 32;
 inline constexpr double kLookAheadMargin = 1.0 / 16;
 
+/// Least of that, in parts of the box of all triangles and of a sphere's radius, where triangles are tiny or points.
+/// Smaller: paths next to tiny triangles are cut into chords without number. Larger: boxes overlap more where
+/// triangles are much smaller than the scene. No result depends on it.
+inline constexpr double kLeastChordMargin = 0x1p-26;
+
 /// Rounding of positions in a distance field, in cells. Reason: positions are rounded to some 2^-50 of the largest
 /// coordinate, of which a cell is kSmallestDistanceCell at least, and to as much of the grid's thousand cells. Smaller
 /// than some 2^-18: a triangle could be nearer than the lower bound. Larger: bounds are that much smaller.

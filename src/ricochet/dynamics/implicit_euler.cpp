@@ -240,12 +240,26 @@ private:
         add_block(entries, i, i, block, 1.0);
     }
 
-    /// What a spring adds: h^2 times its stiffness along and across, and h c of its damper along.
+    /// What a spring adds, also where that is zero: the matrix has the same places in every iteration, for which it was
+    /// analysed once.
     void add_bond(Triplets& entries, const ParticleSystem::Bond& bond, Slope slope) const {
+        const Block block = spring_block(bond, slope);
+        const bool first_moves = !system_.is_pinned(bond.first);
+        const bool second_moves = !system_.is_pinned(bond.second);
+        if (first_moves) add_block(entries, bond.first, bond.first, block, 1.0);
+        if (second_moves) add_block(entries, bond.second, bond.second, block, 1.0);
+        if (!first_moves || !second_moves) return;
+        add_block(entries, bond.first, bond.second, block, -1.0);
+        add_block(entries, bond.second, bond.first, block, -1.0);
+    }
+
+    /// h^2 times a spring's stiffness along and across, and h c of its damper along; zero where its ends coincide.
+    [[nodiscard]] Block spring_block(const ParticleSystem::Bond& bond, Slope slope) const {
         const Spring& spring = system_.spring_of(bond);
         const Vec3 apart = x1_[bond.first] - x1_[bond.second];
         const double now = length(apart);
-        if (!(now > 0.0)) return;
+        Block block{};
+        if (!(now > 0.0)) return block;
         const Vec3 u = apart / now;
         const Vec3 w = v1_[bond.first] - v1_[bond.second];
         const double h2 = h_ * h_;
@@ -258,7 +272,6 @@ private:
             across += h2 * spring.damping * dot(w, u) / now;
             turn = (h2 * spring.damping / now) * (w - dot(w, u) * u);
         }
-        Block block{};
         for (std::size_t row = 0; row < 3; ++row) {
             const double u_row = u[static_cast<int>(row)];
             for (std::size_t column = 0; column < 3; ++column) {
@@ -269,13 +282,7 @@ private:
                                      (slope == Slope::exact ? here : 0.5 * (here + mirrored));
             }
         }
-        const bool first_moves = !system_.is_pinned(bond.first);
-        const bool second_moves = !system_.is_pinned(bond.second);
-        if (first_moves) add_block(entries, bond.first, bond.first, block, 1.0);
-        if (second_moves) add_block(entries, bond.second, bond.second, block, 1.0);
-        if (!first_moves || !second_moves) return;
-        add_block(entries, bond.first, bond.second, block, -1.0);
-        add_block(entries, bond.second, bond.first, block, -1.0);
+        return block;
     }
 
     static void add_block(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) {

@@ -199,6 +199,8 @@ public:
         if (bytes > file_.size() - position - sizeof bytes) {
             refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, position));
         }
+        read_ += bytes;
+        if (read_ > file_.size()) refuse(path_, fmt::format("array {} shares its bytes with others", array.name));
         std::vector<T> values(static_cast<std::size_t>(count));
         file_.read(position + sizeof bytes, values.data(), bytes);
         return values;
@@ -227,6 +229,7 @@ private:
     std::filesystem::path path_;
     FileBytes& file_;
     std::uint64_t data_start_;
+    std::uint64_t read_ = 0;  // bytes of all arrays so far: what many of them share would fill memory many times
 };
 
 const ArrayHeader& only_array(const std::filesystem::path& path, const Header& header, std::string_view section,

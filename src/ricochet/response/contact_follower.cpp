@@ -189,7 +189,8 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     std::optional<ArcWay> way = way_along(arc);
     if (!way) return {std::nullopt, true, false};
     const Vec3& from = state_.position;
-    if (way->jams && length(way->end.position - from) <= kTouchingOffsets * contact_offset(from)) {
+    const bool is_short = length(way->end.position - from) <= kTouchingOffsets * contact_offset(from);
+    if (way->jams && (is_short || !(way->path.duration > 0.0))) {
         particle_.spin = Vec3{};
         return {std::nullopt, false, true};
     }
@@ -219,6 +220,7 @@ std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactA
     way.jams = end.jams;
     if (!(end.time > 0.0) && !way.jams) return std::nullopt;
     lead_until(end.time, arc, way);
+    if (!(end.time > 0.0)) return way;  // it jams at once, and has no path
     way.turning_point = way.path.end;
     // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
     for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(way.path.end)); ++k) {

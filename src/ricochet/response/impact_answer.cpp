@@ -101,26 +101,40 @@ bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const 
 void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Rebound rebound) {
     const double rounding = kProjectionRounding * length(particle_.state.velocity);
     std::array<ImpactSurface, ImpactResult::kMostSurfaces> all;
+    Foremost kept;
     for (int pass = 0; pass < kCornerPasses && approach(surfaces) > rounding; ++pass) {
-        for (std::size_t k = 0; k < surfaces.size(); ++k) {
-            const Material& material = material_of(surfaces[k].surface);
-            const double speed = std::max(0.0, -dot(particle_.state.velocity, surfaces[k].normal));
+        const std::span<const ContactSurface> met = foremost(surfaces, kept);
+        for (std::size_t k = 0; k < met.size(); ++k) {
+            const Material& material = material_of(met[k].surface);
+            const double speed = std::max(0.0, -dot(particle_.state.velocity, met[k].normal));
             const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
-            all[k] = {surfaces[k].normal, restitution, material.friction};
+            all[k] = {met[k].normal, restitution, material.friction};
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
-                                                 std::span(all).first(surfaces.size()));
-        for (std::size_t k = 0; k < surfaces.size(); ++k) {
+                                                 std::span(all).first(met.size()));
+        for (std::size_t k = 0; k < met.size(); ++k) {
             if (result.push[k] == Vec3{}) continue;
             const Vec3 before = particle_.state.velocity;
             particle_.state.velocity += result.push[k];
-            push(surfaces[k].surface, result.push[k], pass == 0);
-            record(surfaces[k], before);
+            push(met[k].surface, result.push[k], pass == 0);
+            record(met[k], before);
         }
         particle_.state.velocity = result.after.velocity;
         particle_.spin = result.after.spin;
     }
     stop_approach(surfaces);
+}
+
+/// As many of the surfaces as one problem holds: those that are approached fastest, the first ones among equals.
+std::span<const ContactSurface> ImpactAnswer::foremost(std::span<const ContactSurface> surfaces, Foremost& kept) const {
+    if (surfaces.size() <= kept.size()) return surfaces;
+    const auto is_before = [&](const ContactSurface& a, const ContactSurface& b) {
+        const double towards_a = dot(particle_.state.velocity, a.normal);
+        const double towards_b = dot(particle_.state.velocity, b.normal);
+        return towards_a != towards_b ? towards_a < towards_b : a.surface < b.surface;
+    };
+    std::partial_sort_copy(surfaces.begin(), surfaces.end(), kept.begin(), kept.end(), is_before);
+    return kept;
 }
 
 /// The largest speed towards one of the surfaces, m/s.

@@ -3,9 +3,11 @@
 /// recorded.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "ricochet/response/contact_motion.h"
+#include "ricochet/response/impact_problem.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -42,6 +44,9 @@ private:
     [[nodiscard]] bool answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
                                     Rebound rebound);
     void answer_together(std::span<const ContactSurface> surfaces, Rebound rebound);
+    using Foremost = std::array<ContactSurface, ImpactResult::kMostSurfaces>;
+    [[nodiscard]] std::span<const ContactSurface> foremost(std::span<const ContactSurface> surfaces,
+                                                           Foremost& kept) const;
     void answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound);
     [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
     void stop_approach(std::span<const ContactSurface> surfaces);

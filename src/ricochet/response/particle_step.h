@@ -2,8 +2,11 @@
 /// Private to the responses that find the first contact of a path: one particle in one step.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/safe_position.h"
@@ -44,7 +47,7 @@ public:
     /// come to a contact at a time, or nothing where the path is close enough there.
     template <class Shorter>
     std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held, const Shorter& shorter);
-    /// Calls found(surface) for all surfaces near the particle.
+    /// Calls found(surface) for all surfaces near the particle: planes, shapes, triangles, each in ascending order.
     template <class Found>
     void visit_near(const Found& found);
     /// Lets time pass where the particle is, s.
@@ -129,7 +132,10 @@ void ParticleStep::visit_near(const Found& found) {
         const CollisionWorld::ShapeSurface& shape = world.shapes()[k];
         for (SurfaceId part = 0; part < shape.shape.part_count(); ++part) found(shape.surface + part);
     }
-    for (const std::uint32_t triangle : scratch_.contacts.triangles) found(world.surface_of_triangle(triangle));
+    // The broad phase's own order is nobody's promise, and of many surfaces the first ones count.
+    std::vector<std::uint32_t>& triangles = scratch_.contacts.triangles;
+    std::sort(triangles.begin(), triangles.end());
+    for (const std::uint32_t triangle : triangles) found(world.surface_of_triangle(triangle));
 }
 
 /// Puts a particle whose centre lies exactly on a surface, and so has no side yet, on the side that the normal points

@@ -13,6 +13,7 @@
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
@@ -103,6 +104,7 @@ void Simulation::Impl::require_sound_state() const {
     const auto require = [](bool sound, const char* what) {
         if (!sound) throw InputError(fmt::format("the state is damaged: it has {}", what));
     };
+    const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestCoordinate; };
     require(p.size() < kNoSupport, "more particles than there can be");
     std::vector<std::uint64_t> ids = p.id;
     std::sort(ids.begin(), ids.end());
@@ -113,9 +115,9 @@ void Simulation::Impl::require_sound_state() const {
             require(surface == kNoSupport || surface < world.surface_count(), "a particle on no surface");
         }
         const bool moves = p.frozen[i] == 0;
-        require(!moves || (is_finite(p.position[i]) && is_finite(p.velocity[i]) && is_finite(p.spin[i])),
+        require(!moves || (in_range(p.position[i]) && in_range(p.velocity[i]) && in_range(p.spin[i])),
                 "a particle that moves and is nowhere");
-        require(p.mass[i] > 0.0 && p.radius[i] >= 0.0 && std::isfinite(p.mass[i]) && std::isfinite(p.radius[i]),
+        require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
     }
     for (const Origin& origin : p.origin) {

@@ -388,7 +388,11 @@ private:
             if (variant != nullptr && member.key == "type") continue;
             correct_key(member, node, spec, variant, path, excused);
             const KeySpec* key = find_key(spec, variant, member.key);
-            if (key != nullptr) check_value(member.value, *key, path_of_key(path, member.key));
+            if (key != nullptr) {
+                check_value(member.value, *key, path_of_key(path, member.key));
+            } else {
+                member.value.value = std::monostate{};  // nobody knows what it would be
+            }
         }
         for (const KeySpec* key : keys) {
             if (key->required && node.find(key->name) == nullptr && !excused.contains(key->name)) {

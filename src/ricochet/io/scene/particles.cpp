@@ -123,6 +123,10 @@ private:
         for (const Column& column : known_columns()) names.push_back(column.name);
         std::set<std::string_view> seen;
         for (const std::string_view cell : cells_of(line)) {
+            if (table_.errors.size() >= kMostErrors) {
+                fail("the columns after this one were not read");
+                return;
+            }
             const auto same_name = [&](const Column& column) { return column.name == cell; };
             const auto found = std::find_if(known_columns().begin(), known_columns().end(), same_name);
             if (!seen.insert(cell).second) fail(fmt::format("the column \"{}\" appears twice", cell));

@@ -1,0 +1,104 @@
+// Runs every fuzz target over its seeds and over all inputs that it ever failed on.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "fuzz/fuzz_targets.h"
+#include "support/allocation_guard.h"
+
+namespace ricochet::fuzz {
+
+/// For GoogleTest's messages.
+void PrintTo(const FuzzTarget& target, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+    *out << target.name;
+}
+
+namespace {
+
+const std::filesystem::path kFolder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz";
+
+/// scripts/fuzz refuses single allocations of this size, bytes.
+constexpr std::size_t kMostMemory = 200'000'000;
+
+/// The files of a folder in the order of their names; none where there is no such folder.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder) {
+    std::error_code none;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+class FuzzReplay : public ::testing::TestWithParam<FuzzTarget> {
+protected:
+    /// Fails where the target finds anything wrong; whether it accepts the bytes.
+    static bool run(const std::string& bytes) {
+        const test::AllocationGuard guard;
+        bool is_accepted = false;
+        EXPECT_NO_THROW(is_accepted = GetParam().run(bytes));
+        EXPECT_LT(guard.peak_bytes(), kMostMemory);
+        return is_accepted;
+    }
+};
+
+// Seeds that are refused would begin no search.
+TEST_P(FuzzReplay, AcceptsItsSeedsAndFindsNothingWrong) {
+    const auto seeds = files_of(kFolder / "corpus" / GetParam().name);
+    EXPECT_FALSE(seeds.empty());
+    for (const auto& seed : seeds) {
+        SCOPED_TRACE(seed);
+        EXPECT_TRUE(run(bytes_of(seed)));
+    }
+}
+
+TEST_P(FuzzReplay, FindsNothingWrongAnyMoreWithWhatOnceFailed) {
+    for (const auto& file : files_of(kFolder / "regressions" / GetParam().name)) {
+        SCOPED_TRACE(file);
+        static_cast<void>(run(bytes_of(file)));
+    }
+}
+
+// Every cut of a seed, and seeds with one byte changed: the targets themselves stand up to anything.
+TEST_P(FuzzReplay, StandsUpToSeedsCutShortAndChanged) {
+    constexpr std::size_t kCuts = 16;
+    for (const auto& seed : files_of(kFolder / "corpus" / GetParam().name)) {
+        SCOPED_TRACE(seed);
+        const std::string bytes = bytes_of(seed);
+        for (std::size_t k = 0; k < kCuts; ++k) {
+            const std::size_t at = bytes.size() * k / kCuts;
+            SCOPED_TRACE("byte " + std::to_string(at));
+            static_cast<void>(run(bytes.substr(0, at)));
+            std::string changed = bytes;
+            if (!changed.empty()) changed[at] = static_cast<char>(changed[at] ^ 0x15);
+            static_cast<void>(run(changed));
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FuzzReplay, ::testing::ValuesIn(kFuzzTargets),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(FuzzReplayFolders, EveryFolderOfInputsHasATarget) {
+    for (const char* kind : {"corpus", "regressions"}) {
+        for (const auto& folder : files_of(kFolder / kind)) {
+            EXPECT_TRUE(std::any_of(kFuzzTargets.begin(), kFuzzTargets.end(), [&](const FuzzTarget& target) {
+                return folder.filename() == target.name;
+            })) << folder;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::fuzz

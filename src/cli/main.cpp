@@ -77,4 +77,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace ricochet
 
-int main(int argc, char** argv) { return ricochet::run(argc, argv); }
+int main(int argc, char** argv) {
+    ricochet::cli::reserve_standard_streams();
+    return ricochet::run(argc, argv);
+}

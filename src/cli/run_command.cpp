@@ -197,8 +197,8 @@ void print_report(const RunSummary& summary, const std::string& output) {
                                    : "");
     cli::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
                statistics.emitted, summary.particles_alive, statistics.particle_steps,
-               rate_text(statistics.particle_steps, summary.wall_seconds),
-               statistics.contacts, statistics.bounces_per_step_max);
+               rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
+               statistics.bounces_per_step_max);
     print_warnings(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;

@@ -72,6 +72,20 @@ std::vector<std::string> full_disk(const std::filesystem::path& path, std::int64
     return preloaded({"RICOCHET_FAULT_PATH=" + path.string(), "RICOCHET_FAULT_BYTES=" + std::to_string(bytes)});
 }
 
+std::vector<std::string> no_memory(std::int64_t at, bool goes_on) {
+    return preloaded(
+        {"RICOCHET_FAULT_ALLOCATION=" + std::to_string(at), std::string("RICOCHET_FAULT_ON=") + (goes_on ? "1" : "0")});
+}
+
+std::int64_t count_allocations(const std::vector<std::string>& arguments) {
+    const TemporaryFolder folder;
+    ProgramStart start;
+    start.environment = preloaded({"RICOCHET_FAULT_ALLOCATIONS=" + folder.path("count").string()});
+    const ProgramResult result = run_ricochet(arguments, start);
+    if (result.exit_code != 0) throw std::runtime_error("the undisturbed program failed: " + result.errors);
+    return std::stoll(folder.read("count"));
+}
+
 std::vector<std::string> jumping_clocks(std::uint64_t seed) {
     return preloaded({"RICOCHET_FAULT_CLOCK=" + std::to_string(seed)});
 }

@@ -22,6 +22,12 @@ namespace ricochet::test {
 /// The environment in which the disk has room for so many bytes.
 [[nodiscard]] std::vector<std::string> full_disk(const std::filesystem::path& path, std::int64_t bytes);
 
+/// The environment in which the program's allocation of this number, from 1, fails; see preload/memory_faults.cpp.
+[[nodiscard]] std::vector<std::string> no_memory(std::int64_t at, bool goes_on = false);
+
+/// Allocations of the tool with these arguments.
+[[nodiscard]] std::int64_t count_allocations(const std::vector<std::string>& arguments);
+
 /// The environment in which clocks jump; see preload/clock_faults.cpp.
 [[nodiscard]] std::vector<std::string> jumping_clocks(std::uint64_t seed);
 

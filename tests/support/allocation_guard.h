@@ -23,7 +23,7 @@ private:
 [[nodiscard]] std::size_t bytes_in_use();
 
 /// While it lives, the number-th call of operator new from now on, over all threads, throws std::bad_alloc, or gives
-/// null where it is of the kind that does not throw. One at a time.
+/// null where it is of the kind that does not throw. Embree's own calls never fail. One at a time.
 class AllocationFault {
 public:
     enum class Later { succeed, fail };

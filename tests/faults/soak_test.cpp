@@ -42,7 +42,7 @@ constexpr std::size_t kPhases = 20;
 std::uint64_t steps_per_phase() {
     const char* text = std::getenv("RICOCHET_SOAK");  // NOLINT(concurrency-mt-unsafe): nothing sets it
     const std::uint64_t times = text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
-    if (test::is_long_run()) return 30000 * std::max<std::uint64_t>(1, times);
+    if (test::is_long_run()) return 100000 * std::max<std::uint64_t>(1, times);
     return static_cast<std::uint64_t>(test::scaled(500));
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -74,7 +76,31 @@ int run(int argc, char** argv) {
     }
 }
 
+std::atomic<bool> memory_has_run_out{false};
+const std::terminate_handler terminate_otherwise = std::get_terminate();
+
+[[noreturn]] void remember_and_throw() {
+    memory_has_run_out = true;
+    throw std::bad_alloc();
+}
+
+// Where no error can pass (destructors of JSON documents, iterators of folders) the want of memory ends the program.
+// That is one line too.
+[[noreturn]] void terminate() {
+    if (memory_has_run_out) {
+        (void)std::fputs("ricochet: out of memory\n", stderr);
+        std::_Exit(kFailed);
+    }
+    terminate_otherwise();
+    std::abort();
+}
+
 }  // namespace
 }  // namespace ricochet
 
-int main(int argc, char** argv) { return ricochet::run(argc, argv); }
+int main(int argc, char** argv) {
+    std::set_new_handler(ricochet::remember_and_throw);
+    std::set_terminate(ricochet::terminate);
+    ricochet::cli::reserve_standard_streams();
+    return ricochet::run(argc, argv);
+}

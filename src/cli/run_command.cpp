@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -41,7 +42,15 @@ struct RunArguments {
     bool verify = false;
 };
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+// Not below 0: a clock may be put back under a run that goes on for days.
+double seconds_since(Clock::time_point start) {
+    return std::max(0.0, std::chrono::duration<double>(Clock::now() - start).count());
+}
+
+// Nothing where no time has passed.
+std::string rate_text(std::uint64_t count, double seconds) {
+    return seconds > 0.0 ? cli::short_number(static_cast<double>(count) / seconds) : "-";
+}
 
 Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     try {
@@ -87,13 +96,12 @@ public:
     // output_share: of the run's time so far.
     void show(const Simulation& simulation, double output_share) {
         if (!line_.due()) return;
-        const Clock::time_point now = Clock::now();
-        const double seconds = std::chrono::duration<double>(now - last_time_).count();
+        const double seconds = seconds_since(last_time_);
         const auto steps = static_cast<double>(simulation.step_index() - last_step_);
-        const auto moved = static_cast<double>(simulation.statistics().particle_steps - last_particle_steps_);
+        const std::uint64_t moved = simulation.statistics().particle_steps - last_particle_steps_;
         seconds_per_step_ =
             seconds_per_step_ == 0.0 ? seconds / steps : 0.8 * seconds_per_step_ + 0.2 * seconds / steps;
-        last_time_ = now;
+        last_time_ = Clock::now();
         last_step_ = simulation.step_index();
         last_particle_steps_ = simulation.statistics().particle_steps;
         const auto left = static_cast<double>(simulation.step_count() - simulation.step_index());
@@ -101,8 +109,8 @@ public:
             "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {:.0f} % on output  {} left",
             100.0 * static_cast<double>(simulation.step_index()) / static_cast<double>(simulation.step_count()),
             simulation.step_index(), simulation.step_count(),
-            cli::short_number(static_cast<double>(simulation.particles().size())), cli::short_number(moved / seconds),
-            100.0 * output_share, cli::duration_text(left * seconds_per_step_)));
+            cli::short_number(static_cast<double>(simulation.particles().size())), rate_text(moved, seconds),
+            100.0 * std::min(output_share, 1.0), cli::duration_text(left * seconds_per_step_)));
     }
 
 private:
@@ -122,6 +130,8 @@ struct RunPlan {
     bool quiet = false;
 
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
+    // Of the time so far; the clock need not have moved.
+    [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
 // Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why.
@@ -131,7 +141,7 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
         writer.add_step(simulation);
-        progress.show(simulation, writer.output_seconds() / plan.seconds());
+        progress.show(simulation, plan.share(writer.output_seconds()));
         return InterruptGuard::signal() == 0;
     };
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
@@ -150,14 +160,10 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
     return std::nullopt;
 }
 
-// An interrupted run leaves what it takes to go on; a finished one needs nothing.
-void settle_checkpoint(const Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
-    if (simulation.finished()) {
-        writer.remove_checkpoint();
-    } else {
-        writer.write_frame(simulation);
-        writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
-    }
+// What it takes to go on where a signal has ended the run.
+void leave_checkpoint(const Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
+    writer.write_frame(simulation);
+    writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
 }
 
 void print_warnings(const SimulationStatistics& statistics) {
@@ -191,8 +197,8 @@ void print_report(const RunSummary& summary, const std::string& output) {
                                    : "");
     cli::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
                statistics.emitted, summary.particles_alive, statistics.particle_steps,
-               cli::short_number(static_cast<double>(statistics.particle_steps) / summary.wall_seconds),
-               statistics.contacts, statistics.bounces_per_step_max);
+               rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
+               statistics.bounces_per_step_max);
     print_warnings(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;
@@ -268,7 +274,8 @@ int run(const RunArguments& arguments) {
     const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
     RunWriter writer(folder.path(), info, simulation, region, resumed);
     const auto diverged = step_and_write(simulation, writer, plan);
-    if (!diverged) settle_checkpoint(simulation, writer, plan);
+    const bool is_interrupted = !simulation.finished() && !diverged;
+    if (is_interrupted) leave_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
         const Clock::time_point start = Clock::now();
@@ -277,8 +284,10 @@ int run(const RunArguments& arguments) {
         summary.output_seconds += seconds_since(start);
     }
     complete(summary, info, plan);
-    summary.interrupted = !simulation.finished() && !diverged;
+    summary.interrupted = is_interrupted;
     writer.write_summary(summary);
+    // Only now: until all is on disk the run can go on from there.
+    if (!diverged && !is_interrupted) writer.remove_checkpoint();
     if (!arguments.quiet) print_report(summary, arguments.output);
     if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
     if (print_violations(simulation)) return 1;

@@ -1,5 +1,6 @@
 #include "cli/terminal.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -9,6 +10,13 @@
 #include <cstdio>
 
 namespace ricochet::cli {
+
+void reserve_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(stream, F_GETFD) >= 0) continue;
+        (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // takes the lowest free number
+    }
+}
 
 void print_table(std::vector<std::vector<std::string>> table) {
     for (auto& row : table) {
@@ -42,7 +50,7 @@ bool ProgressLine::due() {
 void ProgressLine::show(const std::string& text) {
     if (!enabled_) return;
     const std::lock_guard lock(mutex_);
-    fmt::print(stderr, "\r{}\033[K", printable(text));
+    (void)std::fputs(fmt::format("\r{}\033[K", printable(text)).c_str(), stderr);
     (void)std::fflush(stderr);
     shown_ = true;
 }
@@ -50,7 +58,7 @@ void ProgressLine::show(const std::string& text) {
 void ProgressLine::erase() {
     const std::lock_guard lock(mutex_);
     if (!shown_) return;
-    fmt::print(stderr, "\r\033[K");
+    (void)std::fputs("\r\033[K", stderr);
     (void)std::fflush(stderr);
     shown_ = false;
 }

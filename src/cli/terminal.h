@@ -35,14 +35,19 @@ template <class T>
 }
 
 /// Prints as fmt::print() does, with all texts among the arguments as printable() makes them: they may be a stranger's.
+/// What the file does not take is lost; std::ferror() tells.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Printed<Args>...> format, const Args&... args) {
-    fmt::print(file, "{}", fmt::format(format, printed(args)...));
+    (void)std::fputs(fmt::format(format, printed(args)...).c_str(), file);
 }
 template <class... Args>
 void print(fmt::format_string<Printed<Args>...> format, const Args&... args) {
-    fmt::print("{}", fmt::format(format, printed(args)...));
+    cli::print(stdout, format, args...);
 }
+
+/// Opens what the caller has closed of standard input, output and error, so that no file of ours takes their numbers:
+/// a message would be written into it. Reading and writing them fails as before.
+void reserve_standard_streams();
 
 // Tables on standard output.
 

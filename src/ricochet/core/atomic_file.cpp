@@ -39,8 +39,8 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
 }
 
 AtomicFile::~AtomicFile() {
-    if (file_ == nullptr) return;
-    (void)std::fclose(file_);
+    if (file_ != nullptr) (void)std::fclose(file_);
+    if (is_committed_) return;
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
 }
@@ -52,10 +52,10 @@ void AtomicFile::write(std::string_view bytes) {
 
 void AtomicFile::commit() {
     if (std::fflush(file_) != 0) fail(target_, "write");
+    // Some file systems say only now that they could not store what was written: before it has its name.
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(target_, "close");
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "name");
-    const int closed = std::fclose(file_);
-    file_ = nullptr;
-    if (closed != 0) fail(target_, "close");
+    is_committed_ = true;
 }
 
 void write_file(const std::filesystem::path& target, std::string_view bytes) {

@@ -27,6 +27,7 @@ private:
     std::filesystem::path target_;
     std::filesystem::path temporary_;
     std::FILE* file_ = nullptr;
+    bool is_committed_ = false;
 };
 
 /// Writes a whole file in one go; throws like AtomicFile.

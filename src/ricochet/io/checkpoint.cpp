@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -46,10 +47,33 @@ using OpenFile = std::unique_ptr<std::FILE, Close>;
                                  file.string(), why));
 }
 
+[[noreturn]] void fail_to_read(const std::filesystem::path& file) {
+    throw RunError(fmt::format("{}: cannot be read ({})", file.string(), std::strerror(errno)));
+}
+
+OpenFile open_checkpoint(const std::filesystem::path& file) {
+    OpenFile opened(std::fopen(file.c_str(), "rb"));
+    if (opened) return opened;
+    if (errno != ENOENT) fail_to_read(file);
+    throw InputError(
+        fmt::format("{}: there is no checkpoint to resume from: the run was finished, or killed before "
+                    "its first checkpoint (output.checkpoint_every); run it without --resume",
+                    file.string()));
+}
+
+/// As fread(), but what cannot be read is not taken for a file that has ended: a whole checkpoint may be there.
+std::size_t read_bytes(std::span<std::byte> bytes, std::FILE* file, const std::filesystem::path& name) {
+    const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file);
+    if (std::ferror(file) != 0) fail_to_read(name);
+    return count;
+}
+
 /// Before anything is believed: what kind of file it is, and that no byte of it has changed.
-void require_whole_checkpoint(std::FILE* file) {
+void require_whole_checkpoint(std::FILE* file, const std::filesystem::path& name) {
     std::uint64_t format = 0;
-    if (std::fread(&format, sizeof(format), 1, file) != 1) throw InputError("the file is damaged: it is too short");
+    if (read_bytes(std::as_writable_bytes(std::span(&format, 1)), file, name) != sizeof(format)) {
+        throw InputError("the file is damaged: it is too short");
+    }
     if (format != kCheckpointFormat) {
         const bool is_of_another_version = (format & kAnyLayout) == (kCheckpointFormat & kAnyLayout);
         throw InputError(is_of_another_version ? "a checkpoint of another version of ricochet, which can resume it"
@@ -60,7 +84,7 @@ void require_whole_checkpoint(std::FILE* file) {
     // The last eight bytes are always kept back.
     std::vector<std::byte> piece(sizeof(std::uint64_t) + (std::size_t{1} << 16));
     std::size_t kept = 0;
-    while (const std::size_t got = std::fread(piece.data() + kept, 1, piece.size() - kept, file)) {
+    while (const std::size_t got = read_bytes(std::span(piece).subspan(kept), file, name)) {
         const std::size_t count = kept + got;
         kept = std::min(count, sizeof(std::uint64_t));
         checksum.add(std::span(piece).first(count - kept));
@@ -95,21 +119,13 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene, Simulation& simulation) {
-    const OpenFile opened(std::fopen(file.c_str(), "rb"));
-    if (!opened) {
-        throw InputError(
-            fmt::format("{}: there is no checkpoint to resume from: the run was finished, or killed before "
-                        "its first checkpoint (output.checkpoint_every); run it without --resume",
-                        file.string()));
-    }
+    const OpenFile opened = open_checkpoint(file);
     const ByteSource source = [&](std::span<std::byte> bytes) {
-        if (std::fread(bytes.data(), 1, bytes.size(), opened.get()) != bytes.size()) {
-            throw InputError("the file ends too early");
-        }
+        if (read_bytes(bytes, opened.get(), file) != bytes.size()) throw InputError("the file ends too early");
     };
     Checkpoint checkpoint;
     try {
-        require_whole_checkpoint(opened.get());
+        require_whole_checkpoint(opened.get(), file);
         BinaryReader reader(source);
         std::uint64_t format = 0;
         reader(format);

@@ -26,7 +26,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 
 /// Puts a simulation, which has not made a step yet, where the checkpoint was made. scene: the fingerprint of the scene
 /// that it was made from. Throws InputError, naming the file and what to do, when there is no such file, when it is
-/// damaged, of another version, or of another scene.
+/// damaged, of another version, or of another scene; RunError when the system does not let it be read.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene,
                                          Simulation& simulation);
 

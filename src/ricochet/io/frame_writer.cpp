@@ -189,16 +189,13 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
     VtkPolyData frame;
     frame.time = time;
     frame.points = std::move(columns.point);
-    frame.point_arrays = {{"time", std::move(columns.time)},
-                          {"particle", std::move(columns.particle)},
-                          {"collider", std::move(columns.collider)},
-                          {"triangle", std::move(columns.triangle)},
-                          {"barycentric", std::move(columns.barycentric)},
-                          {"normal", std::move(columns.normal)},
-                          {"velocity_before", std::move(columns.velocity_before)},
-                          {"velocity_after", std::move(columns.velocity_after)},
-                          {"impulse", std::move(columns.impulse)},
-                          {"radius", std::move(columns.radius)}};
+    frame.point_arrays =
+        list_of(VtkArray{"time", std::move(columns.time)}, VtkArray{"particle", std::move(columns.particle)},
+                VtkArray{"collider", std::move(columns.collider)}, VtkArray{"triangle", std::move(columns.triangle)},
+                VtkArray{"barycentric", std::move(columns.barycentric)}, VtkArray{"normal", std::move(columns.normal)},
+                VtkArray{"velocity_before", std::move(columns.velocity_before)},
+                VtkArray{"velocity_after", std::move(columns.velocity_after)},
+                VtkArray{"impulse", std::move(columns.impulse)}, VtkArray{"radius", std::move(columns.radius)});
     return frame;
 }
 

@@ -158,7 +158,7 @@ Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
 // A simulation that keeps no totals per triangle gives none.
 std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
     if (totals.hits.empty()) return {};
-    return {{"hits", as_signed(totals.hits)}, {"impulse", totals.impulse}};
+    return list_of(VtkArray{"hits", as_signed(totals.hits)}, VtkArray{"impulse", totals.impulse});
 }
 
 // A shape with a formula is one surface: every triangle that shows it has the whole surface's totals.
@@ -237,7 +237,7 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
         stretches.push_back(std::max({stretch[a], stretch[b], stretch[c]}));
     }
     frame.has_vertices = !frame.triangles.empty();
-    frame.cell_arrays = {{"spring", std::move(numbers)}, {"stretch", std::move(stretches)}};
+    frame.cell_arrays = list_of(VtkArray{"spring", std::move(numbers)}, VtkArray{"stretch", std::move(stretches)});
 }
 
 VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time) {

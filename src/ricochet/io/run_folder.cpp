@@ -142,11 +142,12 @@ int open_marker(const std::filesystem::path& folder) {
     constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
     int descriptor = ::open(marker.c_str(), kFlags);
     if (descriptor < 0 && errno == ENOENT) {
-        if (!is_empty_folder(folder)) {
+        // A folder that is not empty may be one that another run has taken this very moment.
+        descriptor = ::open(marker.c_str(), is_empty_folder(folder) ? kFlags | O_CREAT : kFlags, 0644);
+        if (descriptor < 0 && errno == ENOENT) {
             throw InputError(fmt::format(
                 "{}: the folder is not empty and no earlier run's; choose a new or empty folder", folder.string()));
         }
-        descriptor = ::open(marker.c_str(), kFlags | O_CREAT, 0644);
     }
     if (descriptor < 0) fail(marker, "open the run's marker", std::strerror(errno));
     return descriptor;
@@ -160,6 +161,17 @@ bool holds_other_text(int descriptor) {
     return !kMarkerText.starts_with(read);
 }
 
+void write_marker(int descriptor, const std::filesystem::path& marker) {
+    std::size_t done = 0;
+    while (done < kMarkerText.size()) {
+        const ssize_t count =
+            ::pwrite(descriptor, kMarkerText.data() + done, kMarkerText.size() - done, static_cast<off_t>(done));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(marker, "write the run's marker", std::strerror(errno));
+        done += static_cast<std::size_t>(count);
+    }
+}
+
 void lock_marker(int descriptor, const std::filesystem::path& folder) {
     const std::filesystem::path marker = folder / kRunMarkerFile;
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
@@ -170,9 +182,7 @@ void lock_marker(int descriptor, const std::filesystem::path& folder) {
         throw InputError(
             fmt::format("{}: not a marker that ricochet wrote; choose another output folder", marker.string()));
     }
-    if (::pwrite(descriptor, kMarkerText.data(), kMarkerText.size(), 0) != static_cast<ssize_t>(kMarkerText.size())) {
-        fail(marker, "write the run's marker", std::strerror(errno));
-    }
+    write_marker(descriptor, marker);
 }
 
 template <class Wanted>

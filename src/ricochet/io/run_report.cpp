@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
@@ -98,6 +99,8 @@ RunInfo read_run_info(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: cannot be read; expected the run.json of a ricochet run", path.string()));
     try {
         return run_info_of(Json::parse(text));
+    } catch (const std::bad_alloc&) {
+        throw;  // the file is not to blame
     } catch (const std::exception& error) {
         throw InputError(fmt::format("{}: not the run.json of a ricochet run ({}); run the scene again", path.string(),
                                      error.what()));

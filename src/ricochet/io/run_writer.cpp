@@ -1,5 +1,6 @@
 #include "ricochet/io/run_writer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <variant>
@@ -16,7 +17,8 @@ namespace {
 class SecondsTo {
 public:
     explicit SecondsTo(double& sum) : sum_(sum) {}
-    ~SecondsTo() { sum_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    // A clock that is put back meanwhile counts for nothing.
+    ~SecondsTo() { sum_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - start_).count()); }
     SecondsTo(const SecondsTo&) = delete;
     SecondsTo& operator=(const SecondsTo&) = delete;
 

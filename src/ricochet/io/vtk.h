@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,6 +29,16 @@ struct VtkArray {
 
     [[nodiscard]] std::size_t size() const;
 };
+
+/// The arrays as a list, moved. A list in braces copies them; and where that runs out of memory, the variant of GCC
+/// 12's library goes wrong: it is destroyed without a value, which it takes for impossible.
+template <class... Arrays>
+[[nodiscard]] std::vector<VtkArray> list_of(Arrays... arrays) {
+    std::vector<VtkArray> list;
+    list.reserve(sizeof...(arrays));
+    (list.push_back(std::move(arrays)), ...);
+    return list;
+}
 
 /// A few named numbers that belong to the whole file.
 struct VtkField {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -168,11 +167,7 @@ void Simulation::Impl::read_state(const ByteSource& source) {
         source(bytes);
         checksum.add(bytes);
     });
-    try {
-        archive(reader);
-    } catch (const std::bad_alloc&) {
-        throw InputError("the state is damaged: it says that it is longer than the memory");
-    }
+    archive(reader);
     expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
     require_sound_state();
 }

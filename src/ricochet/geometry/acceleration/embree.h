@@ -76,7 +76,8 @@ inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #endif
 }
 
-/// Throws RunError when the device has recorded an error since the last call.
+/// Throws RunError when the device has recorded an error since the last call. A null device stands for those that could
+/// not be made.
 inline void check_device(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
@@ -112,8 +113,9 @@ using Scene = Owned<RTCScene, rtcReleaseScene>;
 /// A new device, in Embree's own configuration language. Geometries and rays need mask -1: Embree 4 always masks.
 [[nodiscard]] inline Device make_device(const std::string& config = {}) {
     Device device(rtcNewDevice(config.c_str()));
-    if (device.get() == nullptr) throw RunError("Embree could not create a device");
-    return device;
+    if (device.get() != nullptr) return device;
+    check_device(nullptr, "creating a device");
+    throw RunError("Embree could not create a device");
 }
 
 }  // namespace ricochet::embree

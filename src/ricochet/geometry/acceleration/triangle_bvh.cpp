@@ -190,6 +190,14 @@ struct TriangleBvh::Impl {
         LoopSync sync;  // after impl: it is constructed when impl is set
     };
 
+    Impl() = default;
+    // Where memory has run out, Embree's threads may keep the device beyond this object: they must not count then.
+    ~Impl() {
+        if (device.get() != nullptr) rtcSetDeviceMemoryMonitorFunction(device.get(), nullptr, nullptr);
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
     void build();
     void set_frame();
     void write_bounds(std::uint32_t number, RTCBounds& bounds) const;

@@ -100,20 +100,20 @@ Problem scale_problem(const JsonNode& node, const KeySpec& key) {
 }
 
 Problem pair_problem(const JsonNode& node, const KeySpec& key) {
-    JsonNode mean = node;
+    const JsonNode* mean = &node;
     double spread = 0.0;
     if (const JsonNode::Array* items = node.array()) {
         if (items->size() != 2 || !(*items)[0].number() || !(*items)[1].number()) return found_expected(node, key);
-        mean = (*items)[0];
+        mean = items->data();
         spread = *(*items)[1].number();
         if (!(spread >= 0.0)) return fmt::format("found the spread {}, expected {}", spread, expectation(key));
     }
-    if (Problem problem = number_problem(mean, key)) return problem;
-    if (!std::isfinite(*mean.number() + spread) || spread > key.range.upper) {
+    if (Problem problem = number_problem(*mean, key)) return problem;
+    if (!std::isfinite(*mean->number() + spread) || spread > key.range.upper) {
         return fmt::format("found the spread {}, expected a smaller one", spread);
     }
-    if (key.low_end.contains(*mean.number() - spread)) return std::nullopt;
-    return fmt::format("found [{}, {}], so down to {}; expected {}", *mean.number(), spread, *mean.number() - spread,
+    if (key.low_end.contains(*mean->number() - spread)) return std::nullopt;
+    return fmt::format("found [{}, {}], so down to {}; expected {}", *mean->number(), spread, *mean->number() - spread,
                        expectation(key));
 }
 

@@ -73,6 +73,7 @@ std::string read_bytes(const fs::path& path, std::uint64_t largest) {
 void add_bytes(StateHash& hash, const fs::path& path) {
     if (const auto problem = file_problem(path)) throw InputError(*problem);
     std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(fmt::format("{} cannot be opened ({})", path.string(), std::strerror(errno)));
     std::vector<char> piece(std::size_t{1} << 16);
     std::uint64_t size = 0;
     while (file) {

@@ -1,5 +1,6 @@
 // The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code when it ran.
-// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh. Errors are one line on stderr.
+// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh, 128 + signal. Errors are one line on
+// stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -77,4 +79,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace ricochet
 
-int main(int argc, char** argv) { return ricochet::run(argc, argv); }
+int main(int argc, char** argv) {
+    ricochet::cli::end_at_interrupts();
+    return ricochet::run(argc, argv);
+}

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
@@ -124,12 +125,15 @@ struct RunPlan {
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
 };
 
-// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why.
-std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
+// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why. Only
+// when a step has been made there is something that a signal must not take away: the guard lives from then on.
+std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan,
+                                          std::optional<InterruptGuard>& guard) {
     RunProgress progress(plan.quiet);
     writer.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
+        if (!guard) guard.emplace();
         writer.add_step(simulation);
         progress.show(simulation, writer.output_seconds() / plan.seconds());
         return InterruptGuard::signal() == 0;
@@ -260,14 +264,14 @@ int run(const RunArguments& arguments) {
     for (const std::string& warning : simulation.warnings()) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
-    const InterruptGuard guard;
     using Earlier = OutputDirectory::Earlier;
     const OutputDirectory folder(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
     check_writable(arguments.output_state);
     RunPlan plan{.output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet};
     const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
     RunWriter writer(folder.path(), info, simulation, region, resumed);
-    const auto diverged = step_and_write(simulation, writer, plan);
+    std::optional<InterruptGuard> guard;
+    const auto diverged = step_and_write(simulation, writer, plan, guard);
     if (!diverged) settle_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
@@ -282,7 +286,7 @@ int run(const RunArguments& arguments) {
     if (!arguments.quiet) print_report(summary, arguments.output);
     if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
     if (print_violations(simulation)) return 1;
-    return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
+    return summary.interrupted ? cli::kSignalled + InterruptGuard::signal() : 0;
 }
 
 void add_options(cli::Command command, RunArguments& a) {

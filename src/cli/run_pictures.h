@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/core/unfinished_file.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/camera.h"
@@ -41,6 +42,7 @@ private:
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;
+    UnfinishedFile unfinished_;
     std::FILE* messages_ = nullptr;  // what ffmpeg says on stderr
     int pipe_ = -1;
     int process_ = -1;

@@ -11,6 +11,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
 namespace {
@@ -288,6 +289,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_springs(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
+    require_memory(setup);
     return setup;
 }
 

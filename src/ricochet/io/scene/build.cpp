@@ -335,6 +335,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");
     }
     scene.files = context.files();
+    check_memory(context, scene);
     return scene;
 }
 

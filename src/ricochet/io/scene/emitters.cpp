@@ -16,7 +16,7 @@
 namespace ricochet::detail {
 namespace {
 
-constexpr double kMostParticles = 4294967295.0;  // their indices in the arrays are 32-bit numbers
+constexpr double kMostBirths = 4294967295.0;  // their indices in the arrays are 32-bit numbers
 
 // What an emitter on a mesh says; the mesh itself comes from a file or a collider.
 struct MeshKeys {
@@ -261,6 +261,11 @@ double checked_births(const SceneContext& context, const SimulationSetup& setup,
         context.error(view, "stop",
                       fmt::format("found {} s, expected a time after start ({} s)", emitter.stop, emitter.start));
     }
+    if (emitter.burst > setup.options.most_particles) {
+        context.warn(view, "burst",
+                     fmt::format("found {}, more than the {} of simulation.most_particles: the others are not born",
+                                 emitter.burst, setup.options.most_particles));
+    }
     const double most = most_rate(context, setup, view, emitter);
     const double time = std::max(0.0, std::min(duration, emitter.stop) - emitter.start);
     const double births = static_cast<double>(emitter.burst) + most * time;
@@ -382,10 +387,10 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         } else {
             births += checked_births(context, setup, view, emitter);
         }
-        if (births > kMostParticles) {
+        if (births > kMostBirths) {
             context.error(
                 view, fmt::format("with this emitter the scene gives birth to {:.3g} particles, expected at most {}",
-                                  births, kMostParticles));
+                                  births, kMostBirths));
         }
         setup.emitters.push_back(std::move(emitter));
     }

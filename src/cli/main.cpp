@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
+
+constexpr const char* kOutOfMemory =
+    "out of memory: the work needs more than the machine, its control group or ulimit gives; make it smaller";
 
 /// Adds one subcommand; its callback sets exit_code and throws InputError or RunError.
 using AddCommand = void (*)(cli::Command program, int& exit_code);
@@ -70,7 +74,9 @@ int run(int argc, char** argv) {
     } catch (const InputError& error) {
         return report_error(error.what(), kWrongInput);
     } catch (const std::bad_alloc&) {
-        return report_error("out of memory", kFailed);
+        return report_error(kOutOfMemory, kFailed);
+    } catch (const std::length_error&) {  // of a container: more than there are addresses
+        return report_error(kOutOfMemory, kFailed);
     } catch (const std::exception& error) {
         return report_error(error.what(), kFailed);
     }

@@ -12,6 +12,7 @@
 #include "cli/run_pictures.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
@@ -180,6 +181,13 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
     }
 }
 
+void require_room(const PictureSize& size, bool has_sprites, bool film, const std::string& text) {
+    const double pixels = static_cast<double>(size.width) * static_cast<double>(size.height);
+    const double bytes =
+        picture_bytes(size.width, size.height, has_sprites) + (film ? pixels * Film::kBytesPerPixel : 0.0);
+    require_memory(bytes, fmt::format("--size {}", text));
+}
+
 void render(const RenderArguments& arguments) {
     const std::string extension = std::filesystem::path(arguments.output).extension().string();
     if (extension != ".png" && extension != ".mp4") {
@@ -197,6 +205,7 @@ void render(const RenderArguments& arguments) {
         chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame);
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
+    require_room(size, pictures.draws_sprites(), film, arguments.size);
     const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, arguments.night, {}};
     film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
     if (arguments.quiet) return;

@@ -182,7 +182,10 @@ void print_warnings(const SimulationStatistics& statistics) {
          "births were refused beyond most_particles (births_refused_by_population)");
     warn(statistics.births_refused_by_overlap,
          "births were refused: no free position for the sphere was found (births_refused_by_overlap)");
-    warn(statistics.lost_impulses, "impulses were too large to be added to a triangle's total (lost_impulses)");
+    warn(statistics.lost_impulses,
+         "impulses are not in the totals of the collider files: they have 6.7e7 N s and more along an axis, beyond "
+         "what a "
+         "total can hold; the motion itself is right (lost_impulses)");
 }
 
 void print_report(const RunSummary& summary, const std::string& output) {

@@ -104,7 +104,7 @@ void validate(const Material& material, std::size_t number) {
     subject.require_not_negative(material.restitution_threshold, "restitution_threshold", "m/s");
     subject.require_not_negative(material.friction, "friction", "");
     subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
-    subject.require_not_negative(material.spinning_friction, "spinning_friction", "m");
+    subject.require_in(material.spinning_friction, 0.0, kLargestCoordinate, "spinning_friction", "0 to 1e75 (m)");
     subject.require_in(material.diffuse, 0.0, 1.0, "diffuse", "a number from 0 to 1");
     subject.require_in(material.absorption, 0.0, 1.0, "absorption", "a number from 0 to 1");
     if (material.wall_temperature) subject.require_positive(*material.wall_temperature, "wall_temperature", "K");

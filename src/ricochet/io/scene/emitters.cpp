@@ -61,7 +61,7 @@ Fields<EmitterDescription> launch_fields() {
         {"mass", &E::mass, kPositive, "kg", "Mass of a particle.", LowEnd{kPositive}},
         {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
          LowEnd{kNotNegative}, Without{"for ever"}},
-        {"particle_radius", &E::radius, kNotNegative, "m", "Radius of a particle.", LowEnd{kNotNegative}},
+        {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},
         {"frame", ValueType::text,
          "One of the names in `frames`: shape, direction and velocity are in its coordinates, and particles are let go "
          "with its velocity at the time and position of their birth.",

@@ -275,7 +275,7 @@ const ObjectSpec& particle_spec() {
                       {{"position", &P::position, kCoordinate, "m", "Where it starts.", kRequired},
                        {"velocity", &P::velocity, kCoordinate, "m/s", "How it starts."},
                        {"mass", &P::mass, kPositive, "kg", "Its mass."},
-                       {"radius", &P::radius, kNotNegative, "m", "Its radius."},
+                       {"radius", &P::radius, kLengthOrZero, "m", "Its radius."},
                        {"spin", &P::spin, kCoordinate, "rad/s", "Its angular velocity; for particles with a radius."},
                        {"pinned", &P::pinned, "true: it never moves, for springs to hang on."}});
         for (KeySpec& key : particle_look_keys()) result.keys.push_back(std::move(key));

@@ -59,7 +59,7 @@ Field<Struct> breaking_stretch() {
 }
 template <class Struct>
 Field<Struct> radius() {
-    return {"radius", &Struct::radius, kNotNegative, "m", "Radius of its particles."};
+    return {"radius", &Struct::radius, kLengthOrZero, "m", "Radius of its particles."};
 }
 
 const ObjectSpec& spring_spec() {
@@ -297,12 +297,12 @@ private:
 
     // Reports for this key that a body of so many particles and springs does not fit beside what there is.
     [[nodiscard]] bool is_room(const ObjectView& view, std::string_view key, double particles, double springs) const {
-        const double bytes =
-            bytes_of_springs(particles + static_cast<double>(all_.particles.size()),
-                             springs + static_cast<double>(all_.springs.size()), integrator_);
+        const double bytes = bytes_of_springs(particles + static_cast<double>(all_.particles.size()),
+                                              springs + static_cast<double>(all_.springs.size()), integrator_);
         if (bytes <= limit_.bytes) return true;
-        context_.error(view, key, fmt::format("with its {:.0f} particles the scene {}", particles,
-                                              too_much_memory(bytes, limit_)));
+        context_.error(
+            view, key,
+            fmt::format("with its {:.0f} particles the scene {}", particles, too_much_memory(bytes, limit_)));
         return false;
     }
 

@@ -38,7 +38,7 @@ constexpr const char* kRope =
 
 TEST(MemoryOfScenes, RopesChainsAndSheetsAreRefusedByTheirNumbers) {
     expect_refused("\"springs\": [" + std::string(kRope) + "100000000}]",
-                   "s.json:1:113: springs[0].nodes: with its 100000000 particles the scene asks for about 100 GB");
+                   "s.json:1:118: springs[0].nodes: with its 100000000 particles the scene asks for about 100 GB");
     expect_refused(
         R"("springs": [{"type": "chain", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1, "stiffness": 1,
             "links": 100000000, "link_length": 1e-8}])",
@@ -118,7 +118,7 @@ TEST(MemoryOfScenes, ABurstBeyondMostParticlesIsWarnedOf) {
         "s.json");
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_EQ(scene.warnings[0],
-              "s.json:1:56: emitters[0].burst: found 11, more than the 10 of simulation.most_particles: the others are "
+              "s.json:1:57: emitters[0].burst: found 11, more than the 10 of simulation.most_particles: the others are "
               "not born");
 }
 

@@ -10,7 +10,8 @@
 
 namespace ricochet::test {
 
-/// While it lives, this process may take only so many bytes more (RLIMIT_DATA).
+/// While it lives, this process may take only so many bytes more, and one that it starts so many beside what this one
+/// holds (RLIMIT_DATA).
 class MemoryCeiling {
 public:
     explicit MemoryCeiling(double bytes) {

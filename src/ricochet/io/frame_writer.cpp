@@ -1,17 +1,27 @@
 #include "ricochet/io/frame_writer.h"
 
+#include <fmt/format.h>
+
 #include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <variant>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
 
 WriterThread::WriterThread(Mode mode) : mode_(mode) {
-    if (mode_ == Mode::background) thread_ = std::thread([this] { work(); });
+    if (mode_ != Mode::background) return;
+    try {
+        thread_ = std::thread([this] { work(); });
+    } catch (const std::system_error& error) {
+        throw RunError(fmt::format("the thread that writes files cannot be started: memory or threads are short ({})",
+                                   error.code().message()));
+    }
 }
 
 WriterThread::~WriterThread() {
@@ -189,16 +199,20 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
     VtkPolyData frame;
     frame.time = time;
     frame.points = std::move(columns.point);
-    frame.point_arrays = {{"time", std::move(columns.time)},
-                          {"particle", std::move(columns.particle)},
-                          {"collider", std::move(columns.collider)},
-                          {"triangle", std::move(columns.triangle)},
-                          {"barycentric", std::move(columns.barycentric)},
-                          {"normal", std::move(columns.normal)},
-                          {"velocity_before", std::move(columns.velocity_before)},
-                          {"velocity_after", std::move(columns.velocity_after)},
-                          {"impulse", std::move(columns.impulse)},
-                          {"radius", std::move(columns.radius)}};
+    // One by one: a list in braces would be copied.
+    const auto add = [&frame](const char* name, auto& column) {
+        frame.point_arrays.push_back({name, std::move(column)});
+    };
+    add("time", columns.time);
+    add("particle", columns.particle);
+    add("collider", columns.collider);
+    add("triangle", columns.triangle);
+    add("barycentric", columns.barycentric);
+    add("normal", columns.normal);
+    add("velocity_before", columns.velocity_before);
+    add("velocity_after", columns.velocity_after);
+    add("impulse", columns.impulse);
+    add("radius", columns.radius);
     return frame;
 }
 

@@ -157,8 +157,11 @@ Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
 
 // A simulation that keeps no totals per triangle gives none.
 std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
-    if (totals.hits.empty()) return {};
-    return {{"hits", as_signed(totals.hits)}, {"impulse", totals.impulse}};
+    std::vector<VtkArray> arrays;
+    if (totals.hits.empty()) return arrays;
+    arrays.push_back({"hits", as_signed(totals.hits)});
+    arrays.push_back({"impulse", totals.impulse});
+    return arrays;
 }
 
 // A shape with a formula is one surface: every triangle that shows it has the whole surface's totals.
@@ -237,7 +240,9 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
         stretches.push_back(std::max({stretch[a], stretch[b], stretch[c]}));
     }
     frame.has_vertices = !frame.triangles.empty();
-    frame.cell_arrays = {{"spring", std::move(numbers)}, {"stretch", std::move(stretches)}};
+    frame.cell_arrays.clear();
+    frame.cell_arrays.push_back({"spring", std::move(numbers)});
+    frame.cell_arrays.push_back({"stretch", std::move(stretches)});
 }
 
 VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time) {

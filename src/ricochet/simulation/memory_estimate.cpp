@@ -13,21 +13,21 @@ namespace ricochet {
 namespace {
 
 // Bytes, measured with runs of a million particles and meshes of two million triangles.
-constexpr double kProgram = 12e6;               // libraries, threads
-constexpr double kParticle = 380.0;             // in the arrays, in two frames, and as a value while it is born
-constexpr double kAttributeComponent = 32.0;    // of it the same
-constexpr double kOrigin = 64.0;                // of particles that have children
-constexpr double kSide = 16.0;                  // what penalty and its like remember of a collider
-constexpr double kVerifiedParticle = 90.0;      // by options.verify
-constexpr double kTriangle = 330.0;             // of a mesh with its search structures, while they are made
-constexpr double kVerifiedTriangle = 160.0;     // by options.verify
-constexpr double kContact = 412.0;              // a record, and its row in the log
-constexpr double kMostContacts = 500'000.0;     // rows that the log gathers at most beyond those of a step
-constexpr double kJoinedParticle = 800.0;       // as kParticle, with what its rope or cloth is made in
-constexpr double kSpring = 200.0;               // and what it is made in
-constexpr double kStandingTriangle = 190.0;     // as kTriangle, when the mesh has been read
-constexpr double kImplicitParticle = 390.0;     // in the matrix of implicit_euler
-constexpr double kImplicitSpring = 1200.0;      // the same, and its factors
+constexpr double kProgram = 12e6;             // libraries, threads
+constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value while it is born
+constexpr double kAttributeComponent = 32.0;  // of it the same
+constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
+constexpr double kSide = 16.0;                // what penalty and its like remember of a collider
+constexpr double kVerifiedParticle = 90.0;    // by options.verify
+constexpr double kTriangle = 330.0;           // of a mesh with its search structures, while they are made
+constexpr double kVerifiedTriangle = 160.0;   // by options.verify
+constexpr double kContact = 412.0;            // a record, and its row in the log
+constexpr double kMostContacts = 500'000.0;   // rows that the log gathers at most beyond those of a step
+constexpr double kJoinedParticle = 800.0;     // as kParticle, with what its rope or cloth is made in
+constexpr double kSpring = 200.0;             // and what it is made in
+constexpr double kStandingTriangle = 190.0;   // as kTriangle, when the mesh has been read
+constexpr double kImplicitParticle = 390.0;   // in the matrix of implicit_euler
+constexpr double kImplicitSpring = 1200.0;    // the same, and its factors
 
 double mean_of(const MeanSpread& pair) { return std::max(0.0, pair.mean); }
 
@@ -198,7 +198,7 @@ void require_memory(const SimulationSetup& setup) {
 
 double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
-    if (has_children(setup)) bytes += kOrigin;
+    if (has_children(setup)) bytes += kFamily;
     if (setup.options.verify) bytes += kVerifiedParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;

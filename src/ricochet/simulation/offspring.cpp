@@ -144,21 +144,20 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     return trajectory;
 }
 
-// Those beyond `most` are refused one and all, since the first ones, which come before them, take all the room: they are
-// one batch.
+// Those beyond `most` are refused one and all, since the first ones, which come before them, take all the room: they
+// are one batch.
 void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
                          std::uint64_t most, std::vector<SpawnBatch>& batches) const {
     thread_local ContactScratch scratch;
-    const LifeBirths births =
-        births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
+    const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
     for (const LifeBirth& birth : births.first) {
         batches.push_back(
             {birth.time, emitter.number(), birth.ordinal, 1, false, trajectory.at(birth.time, world, scratch)});
     }
     if (births.more == 0) return;
     const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
-    batches.push_back({time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false,
-                       trajectory.particle});
+    batches.push_back(
+        {time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false, trajectory.particle});
 }
 
 void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
@@ -241,6 +240,12 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     return spawn(batches, particles.size(), counts);
 }
 
+std::uint64_t Offspring::count_of(const std::vector<SpawnBatch>& batches) {
+    std::uint64_t count = 0;
+    for (const SpawnBatch& batch : batches) count += batch.count;
+    return count;
+}
+
 std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
                                        OffspringCounts& counts) const {
     std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
@@ -248,6 +253,8 @@ std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::si
                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
     });
     std::vector<Particle> children;
+    children.reserve(std::min({count_of(batches), room_below(limits_.most_particles, living) + batches.size(),
+                               room_below(most_that_fit_, living)}));
     for (const SpawnBatch& batch : batches) {
         if (batch.parent.origin.generation >= limits_.max_depth) {
             counts.refused_by_depth += batch.count;

@@ -28,7 +28,7 @@ namespace ricochet {
 
 /// Where hierarchies end.
 struct OffspringLimits {
-    std::uint32_t max_depth = 16;                ///< highest generation
+    std::uint32_t max_depth = 16;                          ///< highest generation
     std::uint64_t most_particles = kDefaultMostParticles;  ///< living at a time
 };
 
@@ -83,6 +83,7 @@ private:
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                      std::vector<SpawnBatch>& batches) const;
     void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
+    [[nodiscard]] static std::uint64_t count_of(const std::vector<SpawnBatch>& batches);
     [[nodiscard]] std::vector<Particle> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
                                               OffspringCounts& counts) const;
 

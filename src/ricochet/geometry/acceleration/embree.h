@@ -112,7 +112,7 @@ using Scene = Owned<RTCScene, rtcReleaseScene>;
 /// A new device, in Embree's own configuration language. Geometries and rays need mask -1: Embree 4 always masks.
 [[nodiscard]] inline Device make_device(const std::string& config = {}) {
     Device device(rtcNewDevice(config.c_str()));
-    if (device.get() == nullptr) throw RunError("Embree could not create a device");
+    if (device.get() == nullptr) throw RunError("Embree could not create a device: memory or threads are short");
     return device;
 }
 

@@ -7,23 +7,18 @@
 #include <string>
 
 #include "cli/run_program.h"
+#include "support/counts.h"
 #include "support/memory_ceiling.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {
 
+using test::kSanitized;
 using test::MemoryCeiling;
 using test::ProgramResult;
 using test::run_ricochet;
 using test::TemporaryFolder;
-
-// The sanitizers reserve terabytes for themselves, so that a program with a ceiling does not start.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kHasCeiling = false;
-#else
-constexpr bool kHasCeiling = true;
-#endif
 
 void expect_refused(const ProgramResult& result, const std::string& by) {
     EXPECT_EQ(result.exit_code, 2);
@@ -34,7 +29,7 @@ void expect_refused(const ProgramResult& result, const std::string& by) {
 }
 
 TEST(MemoryOfPrograms, EveryCommandRefusesASceneThatDoesNotFitByItsKey) {
-    if (!kHasCeiling) GTEST_SKIP() << "not with a sanitizer";
+    if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: a program with a ceiling does not start";
     const TemporaryFolder folder;
     const std::string scene =
         folder.write("s.json", R"({"ricochet": 1, "emitters": [{"type": "point", "burst": 4000000000}]})").string();
@@ -51,7 +46,7 @@ TEST(MemoryOfPrograms, EveryCommandRefusesASceneThatDoesNotFitByItsKey) {
 }
 
 TEST(MemoryOfPrograms, PicturesAndFilmsThatDoNotFitAreRefusedByTheirSize) {
-    if (!kHasCeiling) GTEST_SKIP() << "not with a sanitizer";
+    if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: a program with a ceiling does not start";
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("s.json", R"({"ricochet": 1, "simulation": {"duration": 0.01},
@@ -81,7 +76,7 @@ TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {
                                   .string();
     const std::string checked = run_ricochet({"check", scene}).output;
     EXPECT_NE(checked.find(", about 107 MB of memory\n"), std::string::npos) << checked;
-    if (!kHasCeiling) return;  // sanitizers take memory of their own
+    if (kSanitized) return;  // sanitizers take memory of their own
     ASSERT_EQ(run_ricochet({"run", scene, "--output", folder.path("out").string(), "--quiet"}).exit_code, 0);
     const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
     const auto peak = summary["peak_memory_bytes"].get<double>();
@@ -91,7 +86,7 @@ TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {
 
 // Whatever allocation fails: no crash, one line, and nothing under a final name that is not whole.
 TEST(MemoryOfPrograms, ARunThatRunsOutOfMemoryAnywhereEndsWithOneLine) {
-    if (!kHasCeiling) GTEST_SKIP() << "not with a sanitizer";
+    if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: a program with a ceiling does not start";
     const TemporaryFolder folder;
     std::string mesh;
     for (int i = 0; i < 100; ++i) {

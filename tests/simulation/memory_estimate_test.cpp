@@ -9,6 +9,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
+#include "support/counts.h"
 #include "support/memory_ceiling.h"
 #include "support/simple_meshes.h"
 
@@ -144,6 +145,7 @@ TEST(MemoryEstimate, ASimulationThatDoesNotFitIsRefusedByThePartThatAsksForMost)
 }
 
 TEST(MemoryEstimate, ParticlesThatAreAddedAndDoNotFitAreRefusedAllTogether) {
+    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
     const std::vector<Particle> many(200'000);
     const MemoryCeiling ceiling(60e6);
     Simulation simulation(setup_with(source("none")));
@@ -154,6 +156,7 @@ TEST(MemoryEstimate, ParticlesThatAreAddedAndDoNotFitAreRefusedAllTogether) {
 
 // Two children for every particle that dies, and so on: 2^17 and more would live. Nobody can count them beforehand.
 TEST(MemoryEstimate, ChildrenThatMultiplyBeyondTheMemoryEndTheRunWithALine) {
+    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
     EmitterDescription parents = source("parents");
     parents.burst = 100;
     parents.lifetime = {0.1, 0.0};
@@ -175,6 +178,7 @@ TEST(MemoryEstimate, ChildrenThatMultiplyBeyondTheMemoryEndTheRunWithALine) {
 }
 
 TEST(MemoryEstimate, BirthsThatAreNotCountedBeforehandEndTheRunWithALine) {
+    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
     EmitterDescription rate = source("tap");
     rate.rate = {1e6, 0.0};
     SimulationSetup setup = setup_with(rate);

@@ -175,7 +175,8 @@ void build_particles(SceneContext& context, SimulationSetup& setup);
                                                           const ObjectView& view);
 /// After the particles: adds those of ropes, chains and cloth behind them.
 void build_springs(SceneContext& context, SimulationSetup& setup);
-/// Sets what a run needs, and reports the part that asks for most where it is more than this process may have.
+/// Sets what a run needs, and reports the part that asks for most where it is more than this process may have, and
+/// bursts that are larger than the population may be.
 void check_memory(const SceneContext& context, SceneDescription& scene);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);

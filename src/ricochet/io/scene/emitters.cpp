@@ -261,11 +261,6 @@ double checked_births(const SceneContext& context, const SimulationSetup& setup,
         context.error(view, "stop",
                       fmt::format("found {} s, expected a time after start ({} s)", emitter.stop, emitter.start));
     }
-    if (emitter.burst > setup.options.most_particles) {
-        context.warn(view, "burst",
-                     fmt::format("found {}, more than the {} of simulation.most_particles: the others are not born",
-                                 emitter.burst, setup.options.most_particles));
-    }
     const double most = most_rate(context, setup, view, emitter);
     const double time = std::max(0.0, std::min(duration, emitter.stop) - emitter.start);
     const double births = static_cast<double>(emitter.burst) + most * time;

@@ -1,6 +1,8 @@
 // What a scene needs of memory, told before a run takes it.
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -22,8 +24,9 @@ std::string_view births_key(const ObjectView& view, const EmitterDescription& em
 void refuse(const SceneContext& context, const SceneDescription& scene, const MemoryNeed& need,
             const MemoryLimit& limit) {
     const auto error = [&](const ObjectView& view, std::string_view key, std::string_view what) {
-        context.error(view, key, fmt::format("with {} {} the scene {}", need.count, what,
-                                             too_much_memory(scene.memory_bytes, limit)));
+        context.error(
+            view, key,
+            fmt::format("with {} {} the scene {}", need.count, what, too_much_memory(scene.memory_bytes, limit)));
     };
     switch (need.part) {
         case MemoryNeed::Part::particles:
@@ -42,10 +45,21 @@ void refuse(const SceneContext& context, const SceneDescription& scene, const Me
     }
 }
 
+void warn_of_bursts(const SceneContext& context, const SimulationSetup& setup) {
+    const std::uint64_t most = setup.options.most_particles;
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        if (setup.emitters[k].burst <= most) continue;
+        context.warn(context.objects("emitters")[k], "burst",
+                     fmt::format("found {}, more than the {} of simulation.most_particles: the others are not born",
+                                 setup.emitters[k].burst, most));
+    }
+}
+
 }  // namespace
 
 void check_memory(const SceneContext& context, SceneDescription& scene) {
     if (context.failed()) return;
+    warn_of_bursts(context, scene.setup);
     const MemoryEstimate estimate = estimate_memory(scene.setup);
     scene.memory_bytes = estimate.bytes() + context.memory_bytes();
     const MemoryLimit limit = memory_limit();

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "bench/records.h"
 #include "cli/arguments.h"
 #include "cli/bench_files.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
@@ -29,8 +31,7 @@ namespace {
 
 using cli::InterruptGuard;
 
-constexpr int kSlower = 1;       // exit code when a ratio has fallen
-constexpr int kSignalled = 128;  // exit code of a program that a signal ended, plus the signal
+constexpr int kSlower = 1;  // exit code when a ratio has fallen
 
 // The arguments as they stand on the command line.
 struct BenchArguments {
@@ -48,6 +49,17 @@ struct BenchArguments {
 struct Measured {
     std::vector<bench::Row> rows;
     std::vector<bench::LoadRow> files;
+    // Once there are rows, a signal must not take them away.
+    std::optional<InterruptGuard> guard;
+
+    void add(std::span<const bench::Row> more) {
+        if (!guard) guard.emplace();
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    void add(std::span<const bench::LoadRow> more) {
+        if (!guard) guard.emplace();
+        files.insert(files.end(), more.begin(), more.end());
+    }
 
     [[nodiscard]] bool empty() const { return rows.empty() && files.empty(); }
     [[nodiscard]] std::vector<bench::Record> records() const {
@@ -107,7 +119,7 @@ void measure_files(const bench::MeasurementPlan& plan, Measured& measured) {
         progress.begin(i, 1);
         const auto rows = bench::measure_load(cases[i], plan, std::ref(progress));
         if (!rows) return;
-        measured.files.insert(measured.files.end(), rows->begin(), rows->end());
+        measured.add(*rows);
         bench::return_freed_memory();
     }
 }
@@ -119,20 +131,18 @@ void measure_cases(const std::string& suite, const bench::MeasurementPlan& plan,
         progress.begin(first, group.size());
         const auto rows = bench::measure_group(group, plan, std::ref(progress));
         if (!rows) return;
-        measured.rows.insert(measured.rows.end(), rows->begin(), rows->end());
+        measured.add(*rows);
         bench::return_freed_memory();
         first += group.size();
     }
 }
 
-Measured measure(const std::string& suite, const bench::MeasurementPlan& plan) {
-    Measured measured;
+void measure(const std::string& suite, const bench::MeasurementPlan& plan, Measured& measured) {
     if (suite == bench::kLoadSuite) {
         measure_files(plan, measured);
     } else {
         measure_cases(suite, plan, measured);
     }
-    return measured;
 }
 
 bench::MeasurementPlan plan_of(const BenchArguments& arguments) {
@@ -209,11 +219,11 @@ private:
 int run_bench(const BenchArguments& arguments) {
     bench::require_suite(arguments.suite);
     const bench::MeasurementPlan plan = plan_of(arguments);
-    const InterruptGuard guard;
     Outlets outlets(arguments);
-    const Measured measured = measure(arguments.suite, plan);
+    Measured measured;
+    measure(arguments.suite, plan, measured);
     if (!measured.empty()) cli::print_table(measured.table());
-    if (InterruptGuard::signal() != 0) return kSignalled + InterruptGuard::signal();
+    if (InterruptGuard::signal() != 0) return cli::kSignalled + InterruptGuard::signal();
     outlets.write(measured);
     return outlets.compare(measured);
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "bench/cases.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/compare/gnuplot.h"
 #include "ricochet/core/atomic_file.h"

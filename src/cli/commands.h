@@ -1,6 +1,6 @@
 /// \file
 /// The commands of the program. Each function adds its command, whose action sets exit_code and throws InputError and
-/// RunError; runs and pictures that a signal interrupts set it to 128 + signal.
+/// RunError; runs and measurements that a signal interrupts set it to kSignalled + signal (cli/interrupts.h).
 #pragma once
 
 #include "cli/command_line.h"

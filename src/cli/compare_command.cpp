@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +20,6 @@
 
 namespace ricochet {
 namespace {
-
-using cli::InterruptGuard;
-
-constexpr int kSignalled = 128;  // exit code of a program that a signal ended, plus the signal
 
 // The arguments as they stand on the command line.
 struct CompareArguments {
@@ -51,13 +46,14 @@ void check_setup(const cli::SceneArguments& arguments) {
     }
 }
 
-std::optional<Comparison> compare(SceneDescription& scene, const ComparisonPlan& plan, bool quiet) {
+Comparison compare(SceneDescription& scene, const ComparisonPlan& plan, bool quiet) {
     cli::ProgressLine line(quiet);
     try {
-        return compare_responses(std::move(scene.setup), plan, [&](const ComparisonProgress& progress) {
+        auto comparison = compare_responses(std::move(scene.setup), plan, [&](const ComparisonProgress& progress) {
             if (line.due()) line.show(progress_text(progress));
-            return InterruptGuard::signal() == 0;
+            return true;
         });
+        return std::move(comparison).value();
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", scene.file, error.what()));
     }
@@ -84,7 +80,7 @@ void write_numbers(const std::filesystem::path& folder, const Comparison& compar
 // Returns why there are no pictures; empty when there are.
 std::string draw(const std::filesystem::path& folder) {
     const std::vector<std::string> pictures(kComparisonPictures.begin(), kComparisonPictures.end());
-    return draw_with_gnuplot(folder, kComparisonScriptFile, pictures, [] { return InterruptGuard::signal() != 0; });
+    return draw_with_gnuplot(folder, kComparisonScriptFile, pictures);
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& comparison, const ComparisonSource& source,
@@ -116,22 +112,18 @@ void print_report(const Comparison& comparison, const CompareArguments& argument
     cli::print("  report in {}\n", (std::filesystem::path(arguments.output) / kComparisonHtmlFile).string());
 }
 
-int run_compare(const CompareArguments& arguments) {
+void run_compare(const CompareArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
     SceneDescription scene = cli::load_scene(arguments.scene);
     const ComparisonPlan plan = make_plan(arguments.request, scene.setup.options);
     check_setup(arguments.scene);
-    const InterruptGuard guard;
     const OutputDirectory folder(arguments.output);
     const ComparisonSource source = source_of(scene, arguments);
-    const std::optional<Comparison> comparison = compare(scene, plan, arguments.quiet);
-    if (!comparison) return kSignalled + InterruptGuard::signal();
-    write_numbers(folder.path(), *comparison, source);
+    const Comparison comparison = compare(scene, plan, arguments.quiet);
+    write_numbers(folder.path(), comparison, source);
     const std::string failure = draw(folder.path());
-    if (InterruptGuard::signal() != 0) return kSignalled + InterruptGuard::signal();
-    write_report(folder.path(), *comparison, source, failure);
-    if (!arguments.quiet) print_report(*comparison, arguments, failure);
-    return 0;
+    write_report(folder.path(), comparison, source, failure);
+    if (!arguments.quiet) print_report(comparison, arguments, failure);
 }
 
 void add_options(cli::Command command, CompareArguments& a) {
@@ -163,7 +155,10 @@ void add_compare_command(cli::Command program, int& exit_code) {
     cli::Command command =
         program.add_command("compare", "One scene with several answers to collisions: cost and errors");
     add_options(command, *arguments);
-    command.on_call([arguments, &exit_code] { exit_code = run_compare(*arguments); });
+    command.on_call([arguments, &exit_code] {
+        run_compare(*arguments);
+        exit_code = 0;
+    });
 }
 
 }  // namespace ricochet

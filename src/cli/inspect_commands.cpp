@@ -14,6 +14,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene_warnings.h"
@@ -144,6 +145,7 @@ void print_warnings(const std::string& file, const std::vector<std::string>& war
 
 void run_check(const cli::SceneArguments& arguments) {
     SceneDescription scene = cli::load_scene(arguments);
+    const std::string memory = memory_text(scene.memory_bytes);
     const std::string counts = fmt::format(
         "{} ({}), {}, {}, {}", counted(scene.setup.colliders.size(), "collider"),
         counted(triangle_count(scene.setup), "triangle"), counted(scene.setup.emitters.size(), "emitter"),
@@ -154,8 +156,8 @@ void run_check(const cli::SceneArguments& arguments) {
         const Simulation simulation(std::move(scene.setup));
         print_warnings(arguments.file, simulation.warnings());
         print_warnings(arguments.file, scene_warnings(simulation, emitters, fall));
-        cli::print("{}: ok: {}, {} of {:.6g} s\n", arguments.file, counts, counted(simulation.step_count(), "step"),
-                   simulation.options().time_step);
+        cli::print("{}: ok: {}, {} of {:.6g} s, about {} of memory\n", arguments.file, counts,
+                   counted(simulation.step_count(), "step"), simulation.options().time_step, memory);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", arguments.file, error.what()));
     }

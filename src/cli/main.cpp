@@ -1,5 +1,6 @@
 // The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code when it ran.
-// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh. Errors are one line on stderr.
+// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh, 128 + signal. Errors are one line on
+// stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +9,13 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -26,6 +29,9 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
+
+constexpr const char* kOutOfMemory =
+    "out of memory: the work needs more than the machine, its control group or ulimit gives; make it smaller";
 
 /// Adds one subcommand; its callback sets exit_code and throws InputError or RunError.
 using AddCommand = void (*)(cli::Command program, int& exit_code);
@@ -70,7 +76,9 @@ int run(int argc, char** argv) {
     } catch (const InputError& error) {
         return report_error(error.what(), kWrongInput);
     } catch (const std::bad_alloc&) {
-        return report_error("out of memory", kFailed);
+        return report_error(kOutOfMemory, kFailed);
+    } catch (const std::length_error&) {  // of a container: more than there are addresses
+        return report_error(kOutOfMemory, kFailed);
     } catch (const std::exception& error) {
         return report_error(error.what(), kFailed);
     }
@@ -88,7 +96,9 @@ const std::terminate_handler terminate_otherwise = std::get_terminate();
 // That is one line too.
 [[noreturn]] void terminate() {
     if (memory_has_run_out) {
-        (void)std::fputs("ricochet: out of memory\n", stderr);
+        (void)std::fputs("ricochet: ", stderr);
+        (void)std::fputs(kOutOfMemory, stderr);
+        (void)std::fputs("\n", stderr);
         std::_Exit(kFailed);
     }
     terminate_otherwise();
@@ -102,5 +112,6 @@ int main(int argc, char** argv) {
     std::set_new_handler(ricochet::remember_and_throw);
     std::set_terminate(ricochet::terminate);
     ricochet::cli::reserve_standard_streams();
+    ricochet::cli::end_at_interrupts();
     return ricochet::run(argc, argv);
 }

@@ -12,6 +12,7 @@
 #include "cli/run_pictures.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
@@ -41,11 +42,6 @@ struct RenderArguments {
     bool night = false;
     std::string threads;
     bool quiet = false;
-};
-
-// The first signal ends the work between two rows of a picture.
-struct Interrupted {
-    int signal;
 };
 
 [[noreturn]] void refuse(const std::string& message) { throw InputError(message); }
@@ -138,14 +134,13 @@ void check_numbers(const RenderArguments& arguments) {
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
 }
 
-// Shows how far the pictures are and listens to Ctrl-C.
+// Shows how far the pictures are.
 class Watch {
 public:
     Watch(std::size_t pictures, bool quiet) : line_(quiet), pictures_(pictures) {}
 
     [[nodiscard]] std::function<void(double)> callback(std::size_t picture) {
         return [this, picture](double part) {
-            if (const int signal = InterruptGuard::signal()) throw Interrupted{signal};
             if (!line_.due()) return;
             const double done = (static_cast<double>(picture) + part) / static_cast<double>(pictures_);
             const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -186,6 +181,13 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
     }
 }
 
+void require_room(const PictureSize& size, bool has_sprites, bool film, const std::string& text) {
+    const double pixels = static_cast<double>(size.width) * static_cast<double>(size.height);
+    const double bytes =
+        picture_bytes(size.width, size.height, has_sprites) + (film ? pixels * Film::kBytesPerPixel : 0.0);
+    require_memory(bytes, fmt::format("--size {}", text));
+}
+
 void render(const RenderArguments& arguments) {
     const std::string extension = std::filesystem::path(arguments.output).extension().string();
     if (extension != ".png" && extension != ".mp4") {
@@ -203,6 +205,7 @@ void render(const RenderArguments& arguments) {
         chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame);
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
+    require_room(size, pictures.draws_sprites(), film, arguments.size);
     const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, arguments.night, {}};
     film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
     if (arguments.quiet) return;
@@ -248,12 +251,8 @@ void add_render_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<RenderArguments>();
     add_options(command, *arguments);
     command.on_call([arguments, &exit_code] {
-        const InterruptGuard guard;
-        try {
-            render(*arguments);
-        } catch (const Interrupted& interrupted) {
-            exit_code = 128 + interrupted.signal;
-        }
+        render(*arguments);
+        exit_code = 0;
     });
 }
 

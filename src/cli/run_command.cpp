@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/interrupts.h"
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
@@ -134,12 +135,15 @@ struct RunPlan {
     [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
-// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why.
-std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
+// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why. Only
+// when a step has been made there is something that a signal must not take away: the guard lives from then on.
+std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan,
+                                          std::optional<InterruptGuard>& guard) {
     RunProgress progress(plan.quiet);
     writer.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
+        if (!guard) guard.emplace();
         writer.add_step(simulation);
         progress.show(simulation, plan.share(writer.output_seconds()));
         return InterruptGuard::signal() == 0;
@@ -184,7 +188,10 @@ void print_warnings(const SimulationStatistics& statistics) {
          "births were refused beyond most_particles (births_refused_by_population)");
     warn(statistics.births_refused_by_overlap,
          "births were refused: no free position for the sphere was found (births_refused_by_overlap)");
-    warn(statistics.lost_impulses, "impulses were too large to be added to a triangle's total (lost_impulses)");
+    warn(statistics.lost_impulses,
+         "impulses are not in the totals of the collider files: they have 6.7e7 N s and more along an axis, beyond "
+         "what a "
+         "total can hold; the motion itself is right (lost_impulses)");
 }
 
 void print_report(const RunSummary& summary, const std::string& output) {
@@ -266,14 +273,14 @@ int run(const RunArguments& arguments) {
     for (const std::string& warning : simulation.warnings()) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
-    const InterruptGuard guard;
     using Earlier = OutputDirectory::Earlier;
     const OutputDirectory folder(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
     check_writable(arguments.output_state);
     RunPlan plan{.output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet};
     const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
     RunWriter writer(folder.path(), info, simulation, region, resumed);
-    const auto diverged = step_and_write(simulation, writer, plan);
+    std::optional<InterruptGuard> guard;
+    const auto diverged = step_and_write(simulation, writer, plan, guard);
     const bool is_interrupted = !simulation.finished() && !diverged;
     if (is_interrupted) leave_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
@@ -291,7 +298,7 @@ int run(const RunArguments& arguments) {
     if (!arguments.quiet) print_report(summary, arguments.output);
     if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
     if (print_violations(simulation)) return 1;
-    return summary.interrupted ? 128 + InterruptGuard::signal() : 0;
+    return summary.interrupted ? cli::kSignalled + InterruptGuard::signal() : 0;
 }
 
 void add_options(cli::Command command, RunArguments& a) {

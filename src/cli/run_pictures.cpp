@@ -38,11 +38,14 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& output, i
             "-f", "mp4", "file:" + output.string()};
 }
 
+std::filesystem::path temporary_name(std::filesystem::path target) {
+    return target += fmt::format(".{}.partial", ::getpid());
+}
+
 }  // namespace
 
-Film::Film(std::filesystem::path target, int width, int height, int frames_per_second) : target_(std::move(target)) {
-    temporary_ = target_;
-    temporary_ += fmt::format(".{}.partial", ::getpid());
+Film::Film(std::filesystem::path target, int width, int height, int frames_per_second)
+    : target_(std::move(target)), temporary_(temporary_name(target_)), unfinished_(temporary_) {
     (void)std::signal(SIGPIPE, SIG_IGN);  // a dead ffmpeg shows in write()
     messages_ = std::tmpfile();
     if (messages_ == nullptr) throw RunError(fmt::format("no temporary file for ffmpeg ({})", std::strerror(errno)));
@@ -70,7 +73,10 @@ void Film::start(int width, int height, int frames_per_second) {
     posix_spawn_file_actions_destroy(&actions);
     ::close(ends[0]);
     pipe_ = ends[1];
-    if (error == 0) return;
+    if (error == 0) {
+        unfinished_.set_writer(process_);
+        return;
+    }
     ::close(pipe_);
     (void)std::fclose(messages_);
     throw RunError(fmt::format("{}: ffmpeg cannot be started ({}); install ffmpeg, or give --output a .png name",
@@ -92,6 +98,7 @@ int Film::wait() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
     process_ = -1;
+    unfinished_.set_writer(0);
     return status;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/core/unfinished_file.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/camera.h"
@@ -24,6 +25,9 @@ namespace ricochet::cli {
 /// without it nothing is left behind.
 class Film {
 public:
+    /// What ffmpeg holds of pictures that it compares, bytes a pixel; measured.
+    static constexpr double kBytesPerPixel = 200.0;
+
     /// Throws RunError when ffmpeg is not installed. width and height must be even.
     Film(std::filesystem::path target, int width, int height, int frames_per_second);
     ~Film();
@@ -41,6 +45,7 @@ private:
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;
+    UnfinishedFile unfinished_;
     std::FILE* messages_ = nullptr;  // what ffmpeg says on stderr
     int pipe_ = -1;
     int process_ = -1;
@@ -83,6 +88,10 @@ public:
     /// True when the frames themselves say the colours.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
+    /// True when particles are soft discs.
+    [[nodiscard]] bool draws_sprites() const {
+        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow;
+    }
 
 private:
     void survey(const std::vector<FrameFile>& chosen);
@@ -91,9 +100,6 @@ private:
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
     void choose_looks(const VtkPolyData& frame);
     [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame, const FrameFile& file) const;
-    [[nodiscard]] bool draws_sprites() const {
-        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow;
-    }
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
     [[nodiscard]] PreviewMoving moving(const VtkPolyData& frame, const FrameFile& file) const;

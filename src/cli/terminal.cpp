@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 
 namespace ricochet::cli {
@@ -33,6 +33,14 @@ void print_table(std::vector<std::vector<std::string>> table) {
     }
 }
 
+namespace {
+
+constexpr std::string_view kErase = "\r\033[K";
+
+std::atomic<bool> is_line_shown = false;  // on the terminal, by any ProgressLine
+
+}  // namespace
+
 ProgressLine::ProgressLine(bool quiet)
     : enabled_(!quiet && ::isatty(STDERR_FILENO) == 1), next_(std::chrono::steady_clock::now()) {}
 
@@ -53,14 +61,20 @@ void ProgressLine::show(const std::string& text) {
     (void)std::fputs(fmt::format("\r{}\033[K", printable(text)).c_str(), stderr);
     (void)std::fflush(stderr);
     shown_ = true;
+    is_line_shown = true;
 }
 
 void ProgressLine::erase() {
     const std::lock_guard lock(mutex_);
     if (!shown_) return;
-    (void)std::fputs("\r\033[K", stderr);
+    (void)std::fputs(kErase.data(), stderr);
     (void)std::fflush(stderr);
     shown_ = false;
+    is_line_shown = false;
+}
+
+void ProgressLine::erase_at_the_end() noexcept {
+    if (is_line_shown) (void)!::write(STDERR_FILENO, kErase.data(), kErase.size());
 }
 
 std::string duration_text(double seconds) {
@@ -117,34 +131,5 @@ std::vector<std::string> violation_lines(std::span<const Violation> violations, 
     if (count > lines.size()) lines.push_back(fmt::format("violations: and {} more", count - lines.size()));
     return lines;
 }
-
-namespace {
-
-volatile std::sig_atomic_t received = 0;
-
-void remember(int signal) { received = signal; }
-
-void catch_once(int signal) {
-    struct sigaction action {};
-    action.sa_handler = remember;
-    // The default comes back with the first one, so that the second ends the process; system calls go on.
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-    (void)::sigaction(signal, &action, nullptr);
-}
-
-}  // namespace
-
-InterruptGuard::InterruptGuard() {
-    received = 0;
-    catch_once(SIGINT);
-    catch_once(SIGTERM);
-}
-
-InterruptGuard::~InterruptGuard() {
-    (void)std::signal(SIGINT, SIG_DFL);
-    (void)std::signal(SIGTERM, SIG_DFL);
-}
-
-int InterruptGuard::signal() { return received; }
 
 }  // namespace ricochet::cli

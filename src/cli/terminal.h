@@ -1,4 +1,4 @@
-// What the tool says to a terminal, and hears from it.
+// What the tool says to a terminal.
 #pragma once
 
 #include <fmt/format.h>
@@ -70,6 +70,8 @@ public:
     [[nodiscard]] bool due();
     void show(const std::string& text);
     void erase();
+    /// Erases the line that is shown, if any. Safe in a signal handler, before the process ends.
+    static void erase_at_the_end() noexcept;
 
 private:
     bool shown_ = false;
@@ -90,19 +92,5 @@ inline constexpr std::size_t kMostListedViolations = 20;
 /// one with the number of those that are not listed. violations: the first of the `count` that there are.
 [[nodiscard]] std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
                                                        const std::vector<ColliderDescription>& colliders);
-
-// Ctrl-C and kill: the first one asks the work to end properly, the second one ends the process at once.
-
-/// Catches the first SIGINT or SIGTERM while it lives. One at a time.
-class InterruptGuard {
-public:
-    InterruptGuard();
-    ~InterruptGuard();
-    InterruptGuard(const InterruptGuard&) = delete;
-    InterruptGuard& operator=(const InterruptGuard&) = delete;
-
-    /// The signal that came in; 0 when none did.
-    [[nodiscard]] static int signal();
-};
 
 }  // namespace ricochet::cli

@@ -23,7 +23,7 @@ TEST(CheckCommand, SaysInALineWhatAGoodSceneHolds) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.output, scene +
                                  ": ok: 2 colliders (4 triangles), 6 emitters, 2 explicit particles, 2 forces, 200 "
-                                 "steps of 0.01 s\n");
+                                 "steps of 0.01 s, about 12 MB of memory\n");
     EXPECT_EQ(result.errors, "");
 }
 

@@ -63,6 +63,29 @@ TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
     EXPECT_EQ(summary["frames"].get<int>(), summary["steps"].get<int>() + 1);
 }
 
+TEST(RunCommand, SaysWhichImpulsesTheTotalsOfCollidersLeaveOut) {
+    const TemporaryFolder folder;
+    const std::string scene = folder
+                                  .write("heavy.json", R"({
+      "ricochet": 1,
+      "simulation": {"time_step": 0.1, "duration": 1},
+      "colliders": [{"name": "wall", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}],
+      "particles": [{"position": [0, 0, 0.5], "velocity": [0, 0, -1], "mass": 3.3e7},
+                    {"position": [1, 0, 0.5], "velocity": [0, 0, -1], "mass": 3.4e7}]
+    })")
+                                  .string();
+    const ProgramResult result = run_ricochet({"run", scene, "--output", folder.path("out").string()});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
+    EXPECT_EQ(summary["contacts"], 2);
+    EXPECT_EQ(summary["lost_impulses"], 1) << "6.6e7 N s are added, 6.8e7 are not";
+    EXPECT_NE(
+        result.output.find("  note: 1 impulses are not in the totals of the collider files: they have 6.7e7 N s and "
+                           "more along an axis"),
+        std::string::npos)
+        << result.output;
+}
+
 TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     const RunFiles files;
     const ProgramResult result = files.run({"--output-state", files.folder.path("state.csv").string()});

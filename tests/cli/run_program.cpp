@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -15,6 +17,8 @@ extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leav
 
 namespace ricochet::test {
 namespace {
+
+void pause_a_little() { (void)::usleep(2000); }
 
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     std::vector<char*> pointers;
@@ -68,6 +72,50 @@ void RunningProgram::send(int signal) const {
 bool RunningProgram::is_running() {
     if (!has_ended_) has_ended_ = ::waitpid(process_, &status_, WNOHANG) == process_;
     return !has_ended_;
+}
+
+bool RunningProgram::takes_signals() {
+    while (is_running()) {
+        std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+        std::string pending;
+        for (std::string line; std::getline(status, line);) {
+            if (line.starts_with("ShdPnd:")) pending = line;
+        }
+        if (!pending.empty() && pending.find_first_not_of("ShdPn: \t0") == std::string::npos) return true;
+        pause_a_little();
+    }
+    return false;
+}
+
+double RunningProgram::processor_seconds() const {
+    std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+    std::string stat;
+    std::getline(file, stat);
+    const std::size_t name_end = stat.rfind(')');
+    if (name_end == std::string::npos) return 0.0;
+    std::istringstream fields(stat.substr(name_end + 1));
+    std::string field;
+    for (int k = 3; k <= 13; ++k) fields >> field;
+    double ticks = 0.0;  // field 14, user time
+    fields >> ticks;
+    return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+bool RunningProgram::works(double seconds) {
+    const double begin = processor_seconds();
+    while (is_running()) {
+        if (processor_seconds() >= begin + seconds) return true;
+        pause_a_little();
+    }
+    return false;
+}
+
+bool RunningProgram::makes(const std::filesystem::path& file) {
+    while (!std::filesystem::exists(file)) {
+        if (!is_running()) return std::filesystem::exists(file);
+        pause_a_little();
+    }
+    return true;
 }
 
 ProgramResult RunningProgram::wait() {

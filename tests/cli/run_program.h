@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,18 @@ public:
     void send(int signal) const;
     /// Whether it still runs.
     [[nodiscard]] bool is_running();
+    /// Waits until it has taken all signals that were sent. False when it has ended.
+    [[nodiscard]] bool takes_signals();
+    /// Waits until it has worked for so many seconds of processor time more. False when it has ended.
+    [[nodiscard]] bool works(double seconds);
+    /// Waits for a file. False when the program has ended without it.
+    [[nodiscard]] bool makes(const std::filesystem::path& file);
     /// To be called once.
     [[nodiscard]] ProgramResult wait();
 
 private:
+    [[nodiscard]] double processor_seconds() const;
+
     TemporaryFolder folder_;
     pid_t process_ = -1;
     bool has_ended_ = false;

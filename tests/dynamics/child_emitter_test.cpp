@@ -38,11 +38,11 @@ TEST(ChildEmitter, BirthsOfALifeDoNotDependOnHowTimeIsCut) {
     const Emitter emitter = child_emitter({}, description);
     for (std::uint64_t lineage = 0; lineage < 50; ++lineage) {
         const Particle parent = parent_of(lineage);
-        const auto whole = births_in_life(emitter, parent, 0.25, 4.25);
+        const std::vector<LifeBirth> whole = births_in_life(emitter, parent, 0.25, 4.25).first;
         for (const double step : {0.01, 1.0 / 24.0, 0.3}) {
             std::vector<LifeBirth> parts;
             for (double from = 0.25; from < 4.25; from = std::min(4.25, from + step)) {
-                const auto some = births_in_life(emitter, parent, from, std::min(4.25, from + step));
+                const auto some = births_in_life(emitter, parent, from, std::min(4.25, from + step)).first;
                 parts.insert(parts.end(), some.begin(), some.end());
             }
             ASSERT_EQ(parts.size(), whole.size());
@@ -54,6 +54,25 @@ TEST(ChildEmitter, BirthsOfALifeDoNotDependOnHowTimeIsCut) {
     }
 }
 
+TEST(ChildEmitter, BirthsBeyondThoseThatAreListedAreCounted) {
+    EmitterDescription description;
+    description.rate = {40.0, 0.0};
+    const Emitter few = child_emitter({}, description);
+    const std::vector<LifeBirth> all = births_in_life(few, parent_of(1), 1.0, 2.0).first;
+    ASSERT_EQ(all.size(), 40U);
+    for (const std::size_t most : {0U, 1U, 39U, 40U, 41U}) {
+        const LifeBirths births = births_in_life(few, parent_of(1), 1.0, 2.0, most);
+        ASSERT_EQ(births.first.size(), std::min<std::size_t>(most, 40));
+        EXPECT_EQ(births.more, 40 - births.first.size());
+        for (std::size_t k = 0; k < births.first.size(); ++k) EXPECT_EQ(births.first[k].ordinal, all[k].ordinal);
+    }
+    // A list of these would take sixteen gigabytes, and time.
+    description.rate = {1e12, 0.0};
+    const LifeBirths many = births_in_life(child_emitter({}, description), parent_of(1), 0.25, 4.25, 3);
+    EXPECT_EQ(many.first.size(), 3U);
+    EXPECT_EQ(many.more, 1'000'000'000U - 3U);
+}
+
 TEST(ChildEmitter, EveryParentDrawsItsOwnRateAndTheMeanIsTheOneGiven) {
     EmitterDescription description;
     description.rate = {50.0, 20.0};
@@ -61,7 +80,8 @@ TEST(ChildEmitter, EveryParentDrawsItsOwnRateAndTheMeanIsTheOneGiven) {
     double sum = 0.0;
     const int parents = 2000;
     for (std::uint64_t lineage = 0; lineage < parents; ++lineage) {
-        const auto count = static_cast<double>(births_in_life(emitter, parent_of(lineage * 977), 0.25, 4.25).size());
+        const auto count =
+            static_cast<double>(births_in_life(emitter, parent_of(lineage * 977), 0.25, 4.25).first.size());
         EXPECT_GE(count, 4 * 30.0 - 1.0);
         EXPECT_LE(count, 4 * 70.0 + 1.0);
         sum += count;

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "ricochet/io/scene/context.h"
 #include "ricochet/io/scene/fields.h"
 
 namespace ricochet::detail {
@@ -68,6 +70,35 @@ const KeySpec& key(std::string_view name) { return *find_key(sample_spec(), null
 Sample read(const std::string& text) {
     const JsonNode node = parse_json_value(text, {}).value();
     return ObjectView(node, sample_spec(), "").read<Sample>();
+}
+
+/// Calls visit(path, key) for every key of an object and of the objects in it, each kind of object once.
+template <class Visit>
+void visit_keys(const ObjectSpec& spec, const std::string& path, std::set<const ObjectSpec*>& seen,
+                const Visit& visit) {
+    if (!seen.insert(&spec).second) return;
+    const auto visit_all = [&](const std::vector<KeySpec>& keys, const std::string& where) {
+        for (const KeySpec& key : keys) {
+            const std::string here = where + "." + std::string(key.name);
+            visit(here, key);
+            if (key.content != nullptr) visit_keys(*key.content, here, seen, visit);
+        }
+    };
+    visit_all(spec.keys, path);
+    for (const Variant& variant : spec.variants) visit_all(variant.keys, path + "." + std::string(variant.name));
+}
+
+TEST(Keys, EveryLengthOfASceneIsAtMostTheLargestCoordinate) {
+    std::set<const ObjectSpec*> seen;
+    int lengths = 0;
+    visit_keys(scene_spec(), "scene", seen, [&](const std::string& path, const KeySpec& key) {
+        // What is made of other keys has no range of its own.
+        if (key.unit != "m" || key.type == ValueType::object) return;
+        ++lengths;
+        EXPECT_LE(key.range.upper, kLargestCoordinate) << path;
+        EXPECT_GE(key.range.lower, -kLargestCoordinate) << path;
+    });
+    EXPECT_GT(lengths, 40);
 }
 
 TEST(Keys, TakeTypeAndDefaultFromTheMember) {

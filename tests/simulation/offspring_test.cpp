@@ -293,6 +293,26 @@ TEST(Offspring, ThePopulationLimitRefusesAndCountsAndStillConservesMass) {
     EXPECT_LT(length(momentum_of(simulation.particles()) - Vec3{20, 40, 60}), 1e-11);
 }
 
+// Millions of births in a step, of which few find room: the others are counted without being made.
+TEST(Offspring, BirthsOfALifeBeyondThePopulationLimitAreCountedOneByOne) {
+    for (const std::uint64_t most : {10U, 13U, 500U}) {
+        SimulationSetup setup = setup_of(0.1, 0.1);
+        setup.emitters = {parents(10, {0, 0, 1}, {1, 2, 3}), children(BirthEvent::life, false, {})};
+        setup.emitters[1].rate = {1e7, 0.0};
+        setup.options.most_particles = most;
+        const Simulation simulation = finished(std::move(setup));
+        EXPECT_EQ(simulation.particles().size(), most);
+        EXPECT_EQ(simulation.statistics().children, most - 10U);
+        EXPECT_EQ(simulation.statistics().births_refused_by_population, 10U * 1'000'000U - (most - 10U));
+    }
+    SimulationSetup setup = setup_of(0.1, 0.1);
+    setup.emitters = {parents(10, {0, 0, 1}, {1, 2, 3}), children(BirthEvent::life, false, {})};
+    setup.emitters[1].rate = {1e7, 0.0};
+    setup.options.most_particles = 20;
+    setup.options.max_depth = 0;
+    EXPECT_EQ(finished(std::move(setup)).statistics().births_refused_by_depth, 10'000'000U);
+}
+
 TEST(Offspring, ThePopulationLimitHoldsForEmittersToo) {
     SimulationSetup setup = setup_of(0.1, 1.0);
     setup.emitters = {parents(10, {0, 0, 1}, {1, 2, 3})};

@@ -12,8 +12,11 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <list>
 #include <system_error>
 #include <thread>
+
+#include "ricochet/core/unfinished_file.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
 
@@ -63,7 +66,9 @@ constexpr auto kPause = std::chrono::milliseconds(20);  // between two checks wh
 class UnfinishedPictures {
 public:
     UnfinishedPictures(std::filesystem::path folder, const std::vector<std::string>& names)
-        : folder_(std::move(folder)), names_(names), ending_(fmt::format(".{}-0.partial", ::getpid())) {}
+        : folder_(std::move(folder)), names_(names), ending_(fmt::format(".{}-0.partial", ::getpid())) {
+        for (const std::string& name : names_) noted_.emplace_back(folder_ / (name + ending_));
+    }
     ~UnfinishedPictures() {
         for (const std::string& name : names_) {
             std::error_code ignored;
@@ -74,6 +79,9 @@ public:
     UnfinishedPictures& operator=(const UnfinishedPictures&) = delete;
 
     [[nodiscard]] const std::string& ending() const { return ending_; }
+    void set_writer(pid_t process) {
+        for (UnfinishedFile& file : noted_) file.set_writer(process);
+    }
 
     // Gives them their names; false when one is missing or empty.
     [[nodiscard]] bool finish() const {
@@ -93,6 +101,7 @@ private:
     std::filesystem::path folder_;
     const std::vector<std::string>& names_;
     std::string ending_;
+    std::list<UnfinishedFile> noted_;
 };
 
 // Starts the program in the folder; its messages go to the file. Returns 0 or the system's error.
@@ -132,6 +141,13 @@ int wait_for(pid_t process, const std::function<bool()>& should_stop) {
     }
 }
 
+int draw_to_the_end(pid_t process, const std::function<bool()>& should_stop, UnfinishedPictures& unfinished) {
+    unfinished.set_writer(process);
+    const int status = wait_for(process, should_stop);
+    unfinished.set_writer(0);
+    return status;
+}
+
 // The first line that says something besides where in the script it happened.
 std::string first_words(std::FILE* messages) {
     std::array<char, 400> line{};
@@ -152,13 +168,13 @@ std::string draw_with_gnuplot(const std::filesystem::path& folder, const std::st
                               const std::vector<std::string>& pictures, const std::function<bool()>& should_stop) {
     std::FILE* const messages = std::tmpfile();
     if (messages == nullptr) return fmt::format("no temporary file for gnuplot ({})", std::strerror(errno));
-    const UnfinishedPictures unfinished(folder, pictures);
+    UnfinishedPictures unfinished(folder, pictures);
     pid_t process = -1;
     std::string failure;
     const std::string set_ending = fmt::format("ending = '{}'", unfinished.ending());
     if (const int error = start(process, folder, {"gnuplot", "-e", set_ending, script}, messages); error != 0) {
         failure = fmt::format("gnuplot cannot be started ({})", std::strerror(error));
-    } else if (wait_for(process, should_stop) != 0) {
+    } else if (draw_to_the_end(process, should_stop, unfinished) != 0) {
         failure = should_stop() ? "gnuplot was stopped" : fmt::format("gnuplot failed: {}", first_words(messages));
     } else if (!unfinished.finish()) {
         failure = "gnuplot has not written all pictures";

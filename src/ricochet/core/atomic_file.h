@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <string_view>
 
+#include "ricochet/core/unfinished_file.h"
+
 namespace ricochet {
 
 /// Writes to a temporary name beside the target and renames it in commit(); without commit() nothing is left behind and
-/// an older file of that name stays as it was. One thread at a time.
+/// an older file of that name stays as it was, also when a signal ends the process (core/unfinished_file.h). One thread
+/// at a time.
 class AtomicFile {
 public:
     /// Throws InputError when the target is a folder or a device, RunError when it cannot be created.
@@ -26,6 +29,7 @@ public:
 private:
     std::filesystem::path target_;
     std::filesystem::path temporary_;
+    UnfinishedFile unfinished_;
     std::FILE* file_ = nullptr;
     bool is_committed_ = false;
 };

@@ -129,8 +129,8 @@ inline constexpr double kMaxChordAngle = 0.01;
 /// spent. Larger: it starts later, by less than this part of the step.
 inline constexpr double kShortestRelease = 1.0 / 64.0;
 
-/// Part of a step below which a path along a wall that moves the particle by rounding only is not made. Smaller: what is
-/// left before a rim or a release is divided by times so short that velocities leave the range of the arithmetic.
+/// Part of a step below which a path along a wall that moves the particle by rounding only is not made. Smaller: what
+/// is left before a rim or a release is divided by times so short that velocities leave the range of the arithmetic.
 /// Larger: a particle lets go of a wall earlier, by less than a quarter of a contact offset of its way.
 inline constexpr double kNoProgress = 0x1p-20;
 

@@ -62,18 +62,27 @@ void share_momentum(const Vec3& velocity, double mass, std::vector<Particle>& fr
 
 }  // namespace
 
-std::vector<LifeBirth> births_in_life(const Emitter& emitter, const Particle& parent, double from, double to) {
+LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double from, double to, std::uint64_t most) {
     const std::uint64_t key = mixed_key(parent.origin.lineage, emitter.number(), 0xFFFFFFFFU);
     const double rate = emitter.draw_once(key, kLifeRatePurpose, emitter.description().rate);
-    std::vector<LifeBirth> births;
+    LifeBirths births;
     if (!(rate > 0.0)) return births;
     const auto time_of = [&](double ordinal) { return parent.birth_time + (ordinal + 0.5) / rate; };
-    const double most = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
-    // One early, for rounding: whether a birth counts is decided by its time alone.
-    double ordinal = std::max(0.0, std::floor((from - parent.birth_time) * rate - 0.5) - 1.0);
-    for (; ordinal < most && time_of(ordinal) < to; ordinal += 1.0) {
-        if (time_of(ordinal) >= from) births.push_back({time_of(ordinal), static_cast<std::uint32_t>(ordinal)});
+    // The first birth at or after a time: estimated, then corrected for rounding, since a birth's own time decides.
+    const double last = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
+    const auto first_from = [&](double time) {
+        double ordinal = std::clamp(std::floor((time - parent.birth_time) * rate - 0.5), 0.0, last);
+        while (ordinal > 0.0 && time_of(ordinal - 1.0) >= time) ordinal -= 1.0;
+        while (ordinal < last && time_of(ordinal) < time) ordinal += 1.0;
+        return ordinal;
+    };
+    const double begin = first_from(from);
+    const double count = std::max(0.0, first_from(to) - begin);
+    const double made = std::min(count, static_cast<double>(most));
+    for (double k = 0.0; k < made; k += 1.0) {
+        births.first.push_back({time_of(begin + k), static_cast<std::uint32_t>(begin + k)});
     }
+    births.more = static_cast<std::uint32_t>(count - made);
     return births;
 }
 

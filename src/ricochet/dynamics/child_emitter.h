@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "ricochet/dynamics/emitter.h"
@@ -18,10 +19,16 @@ struct LifeBirth {
     std::uint32_t ordinal = 0;  ///< among the parent's children of this emitter
 };
 
-/// Births of a parent's life in [from, to): child k is born at the age (k + 1/2) / rate, with one draw of the rate for
-/// each parent, and not past the emitter's limit.
-[[nodiscard]] std::vector<LifeBirth> births_in_life(const Emitter& emitter, const Particle& parent, double from,
-                                                    double to);
+/// Births in an interval of a parent's life.
+struct LifeBirths {
+    std::vector<LifeBirth> first;  ///< in the order of time
+    std::uint32_t more = 0;        ///< how many come after these
+};
+
+/// Births of a parent's life in [from, to), of which the first `most` are listed: child k is born at the age
+/// (k + 1/2) / rate, with one draw of the rate for each parent, and not past the emitter's limit.
+[[nodiscard]] LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double from, double to,
+                                        std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Children of one event. event: its number in the parent's life.
 [[nodiscard]] std::uint32_t children_of_event(const Emitter& emitter, const Particle& parent, std::uint32_t event);

@@ -1,17 +1,27 @@
 #include "ricochet/io/frame_writer.h"
 
+#include <fmt/format.h>
+
 #include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <variant>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
 
 WriterThread::WriterThread(Mode mode) : mode_(mode) {
-    if (mode_ == Mode::background) thread_ = std::thread([this] { work(); });
+    if (mode_ != Mode::background) return;
+    try {
+        thread_ = std::thread([this] { work(); });
+    } catch (const std::system_error& error) {
+        throw RunError(fmt::format("the thread that writes files cannot be started: memory or threads are short ({})",
+                                   error.code().message()));
+    }
 }
 
 WriterThread::~WriterThread() {

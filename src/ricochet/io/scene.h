@@ -38,6 +38,7 @@ struct SceneDescription {
     std::string file;                          ///< as it was named
     std::vector<std::string> warnings;         ///< one line each, with file and source location
     std::vector<std::filesystem::path> files;  ///< every file that it names and reads, each once
+    double memory_bytes = 0.0;                 ///< that a run of it needs at its peak, about
     /// Hash of all that decides the run (not of output and camera), what is in its files too: a run may be resumed
     /// where it is the same.
     std::uint64_t fingerprint = 0;
@@ -65,7 +66,7 @@ inline constexpr std::uint64_t kLargestSceneFile = std::uint64_t{64} << 20;
 /// Reads a scene with the meshes and tables that it names, relative to its folder. overrides: `PATH=VALUE` changes,
 /// applied in order before anything is checked, for example "simulation.time_step=0.01" or "colliders[0].scale=2".
 /// Throws SceneError with everything that is wrong: syntax (line and column), unknown keys, wrong types, values out of
-/// range, what is not built yet, missing or unreadable files.
+/// range, what is not built yet, missing or unreadable files, and what asks for more memory than this process may have.
 [[nodiscard]] SceneDescription read_scene(const std::filesystem::path& file,
                                           const std::vector<std::string>& overrides = {});
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/files.h"
 #include "ricochet/io/vtk_xml.h"
@@ -219,6 +220,8 @@ private:
         expect(array.tag, "type", {"Float32", "Float64"});
         expect(array.tag, "format", {"ascii", "binary", "appended"});
         const std::string& format = attribute_of(source_, array.tag, "format");
+        // The values, and twice the bytes that they are made from.
+        require_memory(3.0 * static_cast<double>(points_) * sizeof(Vec3), source_.path.string());
         std::vector<Vec3> values = format == "ascii" ? ascii_values(array)
                                    : attribute_of(source_, array.tag, "type") == "Float32"
                                        ? binary_values<float>(array)

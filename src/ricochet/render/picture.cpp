@@ -422,4 +422,11 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
     return image;
 }
 
+double picture_bytes(int width, int height, bool has_sprites) {
+    // The picture, the copy from which PNG is packed, and what it is packed into, which grows by doubling.
+    constexpr double kPixel = 5.0 * 3.0;
+    constexpr double kSprites = sizeof(Vec3) + sizeof(double);
+    return static_cast<double>(width) * static_cast<double>(height) * (kPixel + (has_sprites ? kSprites : 0.0));
+}
+
 }  // namespace ricochet

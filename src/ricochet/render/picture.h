@@ -56,4 +56,7 @@ struct PictureOptions {
 [[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                                    const Sprites& sprites = {});
 
+/// Memory that render_picture() and packing as PNG need together at their peak, bytes, without what they show.
+[[nodiscard]] double picture_bytes(int width, int height, bool has_sprites);
+
 }  // namespace ricochet

@@ -74,6 +74,8 @@ struct Simulation::Impl {
     void forget_queries();
 
     SimulationOptions options;
+    double particle_bytes;            ///< memory that one more takes
+    std::uint64_t most_that_fit = 0;  ///< particles that the memory holds: more end the run, they are not refused
     AccelerationSwitches acceleration;
     StepClock clock;
     std::vector<std::string> warnings;

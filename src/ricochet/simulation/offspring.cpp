@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
 namespace {
@@ -141,13 +144,20 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     return trajectory;
 }
 
+// Those beyond `most` are refused one and all, since the first ones, which come before them, take all the room: they
+// are one batch.
 void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
-                         std::vector<SpawnBatch>& batches) const {
+                         std::uint64_t most, std::vector<SpawnBatch>& batches) const {
     thread_local ContactScratch scratch;
-    for (const LifeBirth& birth : births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end())) {
+    const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
+    for (const LifeBirth& birth : births.first) {
         batches.push_back(
             {birth.time, emitter.number(), birth.ordinal, 1, false, trajectory.at(birth.time, world, scratch)});
     }
+    if (births.more == 0) return;
+    const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
+    batches.push_back(
+        {time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false, trajectory.particle});
 }
 
 void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
@@ -197,7 +207,11 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     };
     const std::size_t count = positions_.size();
     std::vector<std::vector<SpawnBatch>> blocks((count + kBlock - 1) / kBlock);
+    const std::uint64_t room = room_below(limits_.most_particles, particles.size());
+    const std::uint64_t fitting = room_below(most_that_fit_, particles.size());
+    std::atomic<std::uint64_t> gathered{0};
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        std::size_t counted = 0;
         for (std::size_t i = first_ + begin; i < first_ + end; ++i) {
             Origin& origin = particles.origin[i];
             if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty())
@@ -206,9 +220,16 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
             for (const std::uint32_t child : children_of_[origin.emitter]) {
                 const Emitter& emitter = emitters_[child];
                 const BirthEvent on = emitter.description().parent->on;
-                if (on == BirthEvent::life) add_life(world, emitter, trajectory, blocks[block]);
+                if (on == BirthEvent::life) {
+                    add_life(world, emitter, trajectory, std::min(room, fitting + 1), blocks[block]);
+                }
                 if (on == BirthEvent::impact) add_impacts(emitter, trajectory, origin, blocks[block]);
                 if (on == BirthEvent::death) add_death(emitter, trajectory, blocks[block]);
+            }
+            // A batch takes no more memory than the particle that it makes.
+            const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
+            if (gathered.fetch_add(more, std::memory_order_relaxed) + more > fitting + count) {
+                refuse_to_grow(particles.size(), bytes_each_);
             }
         }
     });
@@ -219,6 +240,12 @@ std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particl
     return spawn(batches, particles.size(), counts);
 }
 
+std::uint64_t Offspring::count_of(const std::vector<SpawnBatch>& batches) {
+    std::uint64_t count = 0;
+    for (const SpawnBatch& batch : batches) count += batch.count;
+    return count;
+}
+
 std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
                                        OffspringCounts& counts) const {
     std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
@@ -226,16 +253,19 @@ std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::si
                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
     });
     std::vector<Particle> children;
+    children.reserve(std::min({count_of(batches), room_below(limits_.most_particles, living) + batches.size(),
+                               room_below(most_that_fit_, living)}));
     for (const SpawnBatch& batch : batches) {
         if (batch.parent.origin.generation >= limits_.max_depth) {
             counts.refused_by_depth += batch.count;
             continue;
         }
         if (batch.share) --living;  // the parent makes room
-        const std::uint64_t room = limits_.most_particles - std::min<std::uint64_t>(limits_.most_particles, living);
+        const std::uint64_t room = room_below(limits_.most_particles, living);
         const auto allowed = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(batch.count, std::max<std::uint64_t>(room, batch.share ? 1 : 0)));
         counts.refused_by_population += batch.count - allowed;
+        if (allowed > room_below(most_that_fit_, living)) refuse_to_grow(living, bytes_each_);
         const Emitter& emitter = emitters_[batch.emitter];
         if (batch.share) {
             const auto fragments = make_fragments(emitter, batch.parent, allowed, batch.first_ordinal, batch.time);

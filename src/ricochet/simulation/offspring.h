@@ -7,6 +7,7 @@
 /// parent is in front of.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -16,13 +17,19 @@
 #include "ricochet/dynamics/child_emitter.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
+#include "ricochet/simulation/options.h"
 
 namespace ricochet {
 
+/// Room for more below a limit.
+[[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
+    return most - std::min(most, living);
+}
+
 /// Where hierarchies end.
 struct OffspringLimits {
-    std::uint32_t max_depth = 16;                ///< highest generation
-    std::uint64_t most_particles = 0xFFFFFFFFU;  ///< living at a time
+    std::uint32_t max_depth = 16;                          ///< highest generation
+    std::uint64_t most_particles = kDefaultMostParticles;  ///< living at a time
 };
 
 /// What a pass has spawned and refused.
@@ -41,6 +48,11 @@ public:
 
     /// True when no emitter has a parent.
     [[nodiscard]] bool empty() const { return empty_; }
+    /// Particles that the memory holds, of so many bytes each: where more would live, after_move() throws RunError.
+    void set_memory(std::uint64_t most_that_fit, double bytes_each) {
+        most_that_fit_ = most_that_fit;
+        bytes_each_ = bytes_each;
+    }
     /// N s: the impact that ends particle i; infinity when none does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
 
@@ -66,16 +78,19 @@ private:
 
     [[nodiscard]] Trajectory trajectory_of(const Particles& particles, std::size_t i, double from, double to,
                                            std::span<const ContactRecord> records) const;
-    void add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
+    void add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
                   std::vector<SpawnBatch>& batches) const;
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                      std::vector<SpawnBatch>& batches) const;
     void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
+    [[nodiscard]] static std::uint64_t count_of(const std::vector<SpawnBatch>& batches);
     [[nodiscard]] std::vector<Particle> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
                                               OffspringCounts& counts) const;
 
     const std::vector<Emitter>& emitters_;
     OffspringLimits limits_;
+    std::uint64_t most_that_fit_ = std::numeric_limits<std::uint64_t>::max();
+    double bytes_each_ = 0.0;
     std::vector<std::vector<std::uint32_t>> children_of_;  // emitters by the emitter of their parents
     bool empty_ = true;
     std::size_t first_ = 0;

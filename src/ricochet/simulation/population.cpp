@@ -8,10 +8,12 @@
 
 #include "ricochet/collision/overlap.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/impl.h"
+#include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/retirement.h"
 #include "ricochet/simulation/validation.h"
 
@@ -19,7 +21,8 @@ namespace ricochet {
 
 // Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
 void Simulation::Impl::emit_particles(const TimeSpan& step) {
-    const std::uint64_t room = options.most_particles - std::min<std::uint64_t>(options.most_particles, store.size());
+    const std::uint64_t room = room_below(options.most_particles, store.size());
+    const std::uint64_t fitting = room_below(most_that_fit, store.size());
     std::vector<Particle> born;
     std::uint64_t count = 0;
     std::uint64_t refused = 0;
@@ -27,9 +30,11 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     for (Emitter& emitter : emitters) {
         const std::uint64_t before = emitter.born();
         const std::uint64_t refused_before = emitter.refused();
-        std::vector<Particle> births = emitter.births(step.begin, step.end, room, test);
+        // One more than fits shows that too many are born, before there are so many.
+        std::vector<Particle> births = emitter.births(step.begin, step.end, std::min(room, fitting + 1), test);
         count += emitter.born() - before;
         refused += emitter.refused() - refused_before;
+        if (std::min(room, born.size() + births.size()) > fitting) refuse_to_grow(store.size(), particle_bytes);
         born.insert(born.end(), std::make_move_iterator(births.begin()), std::make_move_iterator(births.end()));
     }
     std::stable_sort(born.begin(), born.end(),
@@ -136,10 +141,14 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
         validate(particles[k], k, impl().particles().attributes.columns().size());
     }
     const std::uint64_t most = options().most_particles;
-    const std::uint64_t room = most - std::min<std::uint64_t>(most, impl().store.size());
+    const std::uint64_t room = room_below(most, impl().store.size());
     if (particles.size() > room) {
         throw InputError(fmt::format("add_particles: found {} particles, expected at most {}: most_particles is {}",
                                      particles.size(), room, most));
+    }
+    if (particles.size() > room_below(impl().most_that_fit, impl().store.size())) {
+        require_memory(impl().particle_bytes * static_cast<double>(particles.size()),
+                       fmt::format("add_particles: {} particles", particles.size()));
     }
     impl().reserve(particles.size());
     std::vector<std::uint64_t> ids;

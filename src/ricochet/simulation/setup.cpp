@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"
+#include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {
@@ -115,6 +117,11 @@ std::string named(const ColliderDescription& collider, std::size_t number) {
     return collider.name.empty() ? fmt::format("colliders[{}]", number) : fmt::format("'{}'", collider.name);
 }
 
+/// What the machine can hold decides only whether a run goes on, never what it does.
+std::uint64_t particles_that_fit(double bytes_each) {
+    return static_cast<std::uint64_t>(std::min(memory_limit().bytes / bytes_each, 0x1p63));
+}
+
 }  // namespace
 
 std::optional<std::string> Simulation::Impl::overlap_warning() const {
@@ -145,6 +152,7 @@ std::optional<std::string> Simulation::Impl::overlap_warning() const {
 
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
+      particle_bytes(bytes_per_particle(setup)),
       acceleration(setup.acceleration),
       clock(options.time_step, options.duration),
       warnings(warnings_of(setup)),
@@ -174,6 +182,8 @@ Simulation::Impl::Impl(SimulationSetup setup)
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
     if (coupled.is_active()) coupled.bind(particles());
+    most_that_fit = store.size() + particles_that_fit(particle_bytes);
+    if (offspring) offspring->set_memory(most_that_fit, particle_bytes);
 }
 
 }  // namespace ricochet

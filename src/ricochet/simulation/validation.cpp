@@ -11,6 +11,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
 namespace {
@@ -103,7 +104,7 @@ void validate(const Material& material, std::size_t number) {
     subject.require_not_negative(material.restitution_threshold, "restitution_threshold", "m/s");
     subject.require_not_negative(material.friction, "friction", "");
     subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
-    subject.require_not_negative(material.spinning_friction, "spinning_friction", "m");
+    subject.require_in(material.spinning_friction, 0.0, kLargestCoordinate, "spinning_friction", "0 to 1e75 (m)");
     subject.require_in(material.diffuse, 0.0, 1.0, "diffuse", "a number from 0 to 1");
     subject.require_in(material.absorption, 0.0, 1.0, "absorption", "a number from 0 to 1");
     if (material.wall_temperature) subject.require_positive(*material.wall_temperature, "wall_temperature", "K");
@@ -288,6 +289,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_springs(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
+    require_memory(setup);
     return setup;
 }
 

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -97,6 +98,7 @@ FileBytes read_regular_file(const std::filesystem::path& path) {
 
     FileBytes bytes;
     bytes.size = static_cast<std::size_t>(status.st_size);
+    require_memory(static_cast<double>(bytes.size), path.string());
     bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size);
     std::size_t done = 0;
     while (done < bytes.size) {

@@ -206,7 +206,7 @@ std::vector<KeySpec> emitter_look_keys() {
         {"opacity", ValueType::pair, kFraction, "",
          "How much it covers what is behind, 0 to 1; what spreads beyond is clamped.",
          Without{"1 where others have one; no column otherwise"}},
-        {"particle_size", ValueType::pair, kNotNegative, "m", "Radius that is drawn; collisions use particle_radius.",
+        {"particle_size", ValueType::pair, kLengthOrZero, "m", "Radius that is drawn; collisions use particle_radius.",
          LowEnd{kNotNegative}, Without{"particle_radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
          Without{"their defaults"}},
@@ -222,7 +222,7 @@ std::vector<KeySpec> particle_look_keys() {
          Without{"[1, 1, 1] where others have colours"}},
         {"opacity", ValueType::number, kFraction, "", "How much it covers what is behind.",
          Without{"1 where others have one"}},
-        {"size", ValueType::number, kNotNegative, "m", "Radius that is drawn.", Without{"its radius"}},
+        {"size", ValueType::number, kLengthOrZero, "m", "Radius that is drawn.", Without{"its radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "",
          "Values of the scene's `attributes`, by name; no spread.", Without{"their defaults"}}};
     return {fields.begin(), fields.end()};

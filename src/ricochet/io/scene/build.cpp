@@ -22,7 +22,7 @@ struct OutputKeys : OutputOptions {
     bool contacts = false;
 };
 
-constexpr Range kTolerance{.lower = kSmallestTolerance};
+constexpr Range kTolerance = between(kSmallestTolerance, kLargestCoordinate);
 
 const ObjectSpec& tolerance_spec() {
     using T = ErrorTolerance;
@@ -134,7 +134,9 @@ Fields<SimulationKeys> rule_fields() {
         {"max_depth", &S::max_depth, kCount, "",
          "Highest generation of particles born of particles; births beyond are refused and counted."},
         {"most_particles", &S::most_particles, kCount, "",
-         "Most particles alive at a time; births beyond are refused and counted."},
+         "Most particles alive at a time; births beyond are refused and counted. A fixed number, so that a run is the "
+         "same "
+         "on every machine; it must fit the memory all the same."},
         {"bounce_budget", &S::bounce_budget, between(1.0, 4294967295.0), "",
          "Most impacts of one particle in one step. A particle that spends it stays where it is for the rest of the "
          "step, and the time left out is counted."},
@@ -335,6 +337,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");
     }
     scene.files = context.files();
+    check_memory(context, scene);
     return scene;
 }
 

@@ -200,7 +200,7 @@ const ObjectSpec& material_spec() {
                    {"friction", &M::friction, kNotNegative, "", "Coulomb's coefficient, for impacts and for sliding."},
                    {"rolling_friction", &M::rolling_friction, kNotNegative, "",
                     "Moment that resists rolling, over radius times normal force; for particles with a radius."},
-                   {"spinning_friction", &M::spinning_friction, kNotNegative, "m",
+                   {"spinning_friction", &M::spinning_friction, kLengthOrZero, "m",
                     "Moment that resists spinning about the normal, over normal force; for particles with a radius."},
                    {"diffuse", &M::diffuse, kFraction, "",
                     "Accommodation: fraction of the impacts that are reflected by the cosine law."},

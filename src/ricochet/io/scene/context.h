@@ -47,6 +47,10 @@ public:
 
     /// The path that the key "file" means; noted among files().
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
+    /// Notes memory that the scene itself holds, bytes.
+    void add_memory(double bytes) const { memory_bytes_ += bytes; }
+    /// All that was noted.
+    [[nodiscard]] double memory_bytes() const { return memory_bytes_; }
     /// Every path that file_of() has given, each once.
     [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
     /// The mesh that the key "file" names; null pointer after reporting why there is none.
@@ -68,6 +72,7 @@ private:
     Diagnostics& diagnostics_;
     MeshLibrary meshes_;
     mutable std::set<std::filesystem::path> files_;
+    mutable double memory_bytes_ = 0.0;
 };
 
 /// `there is no material "ruber"; did you mean "rubber"?`
@@ -170,6 +175,9 @@ void build_particles(SceneContext& context, SimulationSetup& setup);
                                                           const ObjectView& view);
 /// After the particles: adds those of ropes, chains and cloth behind them.
 void build_springs(SceneContext& context, SimulationSetup& setup);
+/// Sets what a run needs, and reports the part that asks for most where it is more than this process may have, and
+/// bursts that are larger than the population may be.
+void check_memory(const SceneContext& context, SceneDescription& scene);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 

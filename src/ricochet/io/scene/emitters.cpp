@@ -16,7 +16,7 @@
 namespace ricochet::detail {
 namespace {
 
-constexpr double kMostParticles = 4294967295.0;  // their indices in the arrays are 32-bit numbers
+constexpr double kMostBirths = 4294967295.0;  // their indices in the arrays are 32-bit numbers
 
 // What an emitter on a mesh says; the mesh itself comes from a file or a collider.
 struct MeshKeys {
@@ -61,7 +61,7 @@ Fields<EmitterDescription> launch_fields() {
         {"mass", &E::mass, kPositive, "kg", "Mass of a particle.", LowEnd{kPositive}},
         {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
          LowEnd{kNotNegative}, Without{"for ever"}},
-        {"particle_radius", &E::radius, kNotNegative, "m", "Radius of a particle.", LowEnd{kNotNegative}},
+        {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},
         {"frame", ValueType::text,
          "One of the names in `frames`: shape, direction and velocity are in its coordinates, and particles are let go "
          "with its velocity at the time and position of their birth.",
@@ -382,10 +382,10 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         } else {
             births += checked_births(context, setup, view, emitter);
         }
-        if (births > kMostParticles) {
+        if (births > kMostBirths) {
             context.error(
                 view, fmt::format("with this emitter the scene gives birth to {:.3g} particles, expected at most {}",
-                                  births, kMostParticles));
+                                  births, kMostBirths));
         }
         setup.emitters.push_back(std::move(emitter));
     }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/scene/diagnostics.h"
 
@@ -61,6 +62,7 @@ std::string read_bytes(const fs::path& path, std::uint64_t largest) {
     if (size > largest) {
         throw InputError(fmt::format("{} has {} bytes, expected at most {}", path.string(), size, largest));
     }
+    require_memory(static_cast<double>(size), path.string());
     std::ifstream file(path, std::ios::binary);
     std::string bytes(size, '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(size));

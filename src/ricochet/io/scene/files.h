@@ -56,7 +56,7 @@ struct TriangleMaterials {
 /// one.
 [[nodiscard]] std::optional<std::string> file_problem(const std::filesystem::path& path);
 
-/// The bytes of a file. Throws InputError when it cannot be read or is larger than the limit.
+/// The bytes of a file. Throws InputError when it cannot be read or is larger than the limit or the memory.
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::uint64_t largest);
 
 /// Adds what is in a file. Throws InputError when it cannot be read.

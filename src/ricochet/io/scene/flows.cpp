@@ -149,7 +149,9 @@ FlowLaw grid_flow() {
                 if (!view.has("file")) return nullptr;
                 const Grid grid = view.read<Grid>();
                 try {
-                    return make_grid_flow(read_vti(context.file_of(view), grid.array), grid.outside);
+                    VectorGrid samples = read_vti(context.file_of(view), grid.array);
+                    context.add_memory(static_cast<double>(samples.values.size() * sizeof(Vec3)));
+                    return make_grid_flow(std::move(samples), grid.outside);
                 } catch (const InputError& problem) {
                     context.error(view, "file", problem.what());
                     return nullptr;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/io/scene/context.h"
@@ -278,7 +279,7 @@ const ObjectSpec& particle_spec() {
                       {{"position", &P::position, kCoordinate, "m", "Where it starts.", kRequired},
                        {"velocity", &P::velocity, kCoordinate, "m/s", "How it starts."},
                        {"mass", &P::mass, kPositive, "kg", "Its mass."},
-                       {"radius", &P::radius, kNotNegative, "m", "Its radius."},
+                       {"radius", &P::radius, kLengthOrZero, "m", "Its radius."},
                        {"spin", &P::spin, kCoordinate, "rad/s", "Its angular velocity; for particles with a radius."},
                        {"pinned", &P::pinned, "true: it never moves, for springs to hang on."}});
         for (KeySpec& key : particle_look_keys()) result.keys.push_back(std::move(key));
@@ -310,7 +311,10 @@ ParticleTable read_particle_table(const std::filesystem::path& path, std::vector
         throw InputError(not_built(fmt::format("a {} file of particles", ending)) + ", expected a .csv file");
     }
     if (ending != ".csv") throw InputError(fmt::format("found {}, expected a .csv file", path.string()));
-    return parse_particle_table(read_bytes(path, kLargestTable), path.string(), std::move(declared));
+    const std::string text = read_bytes(path, kLargestTable);
+    const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n'));
+    require_memory(lines * sizeof(Particle), fmt::format("{}: {:.0f} lines", path.string(), lines));
+    return parse_particle_table(text, path.string(), std::move(declared));
 }
 
 void build_particles(SceneContext& context, SimulationSetup& setup) {

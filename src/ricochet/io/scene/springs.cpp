@@ -8,10 +8,12 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/scene/context.h"
+#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet::detail {
 namespace {
@@ -57,7 +59,7 @@ Field<Struct> breaking_stretch() {
 }
 template <class Struct>
 Field<Struct> radius() {
-    return {"radius", &Struct::radius, kNotNegative, "m", "Radius of its particles."};
+    return {"radius", &Struct::radius, kLengthOrZero, "m", "Radius of its particles."};
 }
 
 const ObjectSpec& spring_spec() {
@@ -188,7 +190,10 @@ Vec3 fall_of(const SimulationSetup& setup) {
 class SpringBuilder {
 public:
     SpringBuilder(SceneContext& context, const SimulationSetup& setup)
-        : context_(context), all_{setup.particles, {}, {}}, fall_(fall_of(setup)) {
+        : context_(context),
+          integrator_(setup.options.integrator.kind),
+          all_{setup.particles, {}, {}},
+          fall_(fall_of(setup)) {
         for (std::size_t i = 0; i < all_.particles.size(); ++i) all_.particles[i].id = i;
     }
 
@@ -239,6 +244,8 @@ private:
         if (!view.has("sag")) rope.sag = fall_;
         rope.pin_from = rope.pinned == PinnedEnds::from || rope.pinned == PinnedEnds::both;
         rope.pin_to = rope.pinned == PinnedEnds::to || rope.pinned == PinnedEnds::both;
+        const auto nodes = static_cast<double>(rope.nodes);
+        if (!is_room(view, count, nodes, nodes - 1.0)) return {};
         return make_rope(rope);
     }
 
@@ -252,13 +259,17 @@ private:
         if (vertices > kMostVertices) {
             throw InputError(fmt::format("{:.3g} vertices, expected at most {:.3g}", vertices, kMostVertices));
         }
+        if (!is_room(view, "cells_u", vertices, springs_of(3.0 * vertices, sheet))) return {};
         return cloth_of(view, sheet_mesh(sheet.corner, sheet.side_u, sheet.side_v, sheet.cells_u, sheet.cells_v));
     }
 
     SpringBody cloth_of(const ObjectView& view) {
         const auto mesh = context_.load_mesh(view);
         if (!mesh || !is_complete(view, {"stiffness"}, "mass", "mass_per_area")) return {};
-        const auto world = context_.placed_mesh(view, "file", *mesh, view.read<ClothKeys>().placement);
+        const auto keys = view.read<ClothKeys>();
+        const double edges = 1.5 * static_cast<double>(mesh->triangles.size());
+        if (!is_room(view, "file", static_cast<double>(mesh->vertices.size()), springs_of(edges, keys))) return {};
+        const auto world = context_.placed_mesh(view, "file", *mesh, keys.placement);
         return world ? cloth_of(view, *world) : SpringBody{};
     }
 
@@ -278,6 +289,21 @@ private:
         }
         for (const ObjectView& box : view.objects("pin_boxes")) pin_in_box(box, mesh, cloth);
         return make_cloth(mesh, cloth);
+    }
+
+    static double springs_of(double edges, const ClothKeys& cloth) {
+        return cloth.bending_stiffness > 0.0 ? 2.0 * edges : edges;
+    }
+
+    // Reports for this key that a body of so many particles and springs does not fit beside what there is.
+    [[nodiscard]] bool is_room(const ObjectView& view, std::string_view key, double particles, double springs) const {
+        const double bytes = bytes_of_springs(particles + static_cast<double>(all_.particles.size()),
+                                              springs + static_cast<double>(all_.springs.size()), integrator_);
+        if (bytes <= limit_.bytes) return true;
+        context_.error(
+            view, key,
+            fmt::format("with its {:.0f} particles the scene {}", particles, too_much_memory(bytes, limit_)));
+        return false;
     }
 
     void pin_in_box(const ObjectView& view, const TriangleMesh& mesh, ClothSettings& cloth) const {
@@ -322,6 +348,8 @@ private:
     }
 
     SceneContext& context_;
+    IntegratorKind integrator_;
+    MemoryLimit limit_ = memory_limit();
     SpringBody all_;
     Vec3 fall_;
     bool is_complete_ = true;  // no body has been refused

@@ -1,0 +1,148 @@
+#include "ricochet/core/memory_limit.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Version 1 writes "no limit" as the largest whole number of pages.
+constexpr double kNoGroupLimit = 0x1p60;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+std::optional<double> number_of(std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{}) return std::nullopt;
+    return static_cast<double>(value);
+}
+
+/// The first number of a file; nothing where there is none ("max").
+std::optional<double> number_in(const fs::path& file) {
+    std::string word;
+    std::ifstream(file) >> word;
+    return number_of(word);
+}
+
+/// The least limit of a group and of those above it. Where the group itself is not to be seen, as in a container, its
+/// root may be the group under which the container sees it.
+double group_limit(const fs::path& mount, fs::path group, const char* file) {
+    double least = kUnlimited;
+    for (group = group.relative_path();; group = group.parent_path()) {
+        const std::optional<double> limit = number_in(mount / group / file);
+        if (limit && *limit < kNoGroupLimit) least = std::min(least, *limit);
+        if (group.empty()) return least;
+    }
+}
+
+bool names_memory(std::string_view controllers) {
+    while (!controllers.empty()) {
+        const std::size_t comma = controllers.find(',');
+        if (controllers.substr(0, comma) == "memory") return true;
+        if (comma == std::string_view::npos) break;
+        controllers.remove_prefix(comma + 1);
+    }
+    return false;
+}
+
+/// Lines are "number:controllers:group"; version 2 has none of its controllers there.
+double limit_of_groups(const MemoryFiles& files) {
+    double least = kUnlimited;
+    std::ifstream groups(files.process / "cgroup");
+    for (std::string line; std::getline(groups, line);) {
+        const std::size_t first = line.find(':');
+        const std::size_t second = line.find(':', first + 1);
+        if (first == std::string::npos || second == std::string::npos) continue;
+        const std::string_view controllers = std::string_view(line).substr(first + 1, second - first - 1);
+        const std::string group = line.substr(second + 1);
+        if (controllers.empty()) {
+            least = std::min(least, group_limit(files.control_groups, group, "memory.max"));
+            least = std::min(least, group_limit(files.control_groups / "unified", group, "memory.max"));
+        } else if (names_memory(controllers)) {
+            least = std::min(least, group_limit(files.control_groups / "memory", group, "memory.limit_in_bytes"));
+        }
+    }
+    return least;
+}
+
+/// Pages in use: in all, and of data.
+std::array<double, 2> pages_in_use(const MemoryFiles& files) {
+    std::ifstream statm(files.process / "statm");
+    std::array<double, 6> pages{};
+    for (double& count : pages) statm >> count;
+    return {pages[0], pages[5]};
+}
+
+double limit_of_resource(__rlimit_resource resource, double pages_used) {
+    rlimit limit{};
+    if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+    const double used = pages_used * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
+}
+
+/// Lines are "MemAvailable:   16203452 kB".
+double memory_of_machine(const MemoryFiles& files) {
+    double available = 0.0;
+    bool is_known = false;
+    std::ifstream info(files.system / "meminfo");
+    for (std::string line; std::getline(info, line);) {
+        for (const std::string_view key : {"MemAvailable:", "SwapFree:"}) {
+            if (!line.starts_with(key)) continue;
+            const std::size_t digits = line.find_first_of("0123456789");
+            if (digits == std::string::npos) continue;
+            available += 1024.0 * number_of(std::string_view(line).substr(digits)).value_or(0.0);
+            is_known = is_known || key.starts_with("Mem");
+        }
+    }
+    if (is_known) return available;
+    const auto pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
+    return pages > 0.0 ? pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) : kUnlimited;
+}
+
+}  // namespace
+
+MemoryLimit memory_limit(const MemoryFiles& files) {
+    const auto [all, data] = pages_in_use(files);
+    const std::array limits{
+        MemoryLimit{memory_of_machine(files), "what the machine has free"},
+        MemoryLimit{limit_of_groups(files), "the limit of its control group"},
+        MemoryLimit{limit_of_resource(RLIMIT_AS, all), "what `ulimit -v` leaves"},
+        MemoryLimit{limit_of_resource(RLIMIT_DATA, data), "what `ulimit -d` leaves"},
+    };
+    return *std::min_element(limits.begin(), limits.end(),
+                             [](const MemoryLimit& a, const MemoryLimit& b) { return a.bytes < b.bytes; });
+}
+
+std::string memory_text(double bytes) {
+    constexpr std::array kUnits{"kB", "MB", "GB", "TB", "PB", "EB"};
+    if (bytes < 1000.0) return fmt::format("{:.0f} B", bytes);
+    std::size_t unit = 0;
+    double value = bytes / 1000.0;
+    for (; value >= 999.5 && unit + 1 < kUnits.size(); ++unit) value /= 1000.0;
+    return fmt::format("{:.3g} {}", value, kUnits[unit]);
+}
+
+std::string too_much_memory(double bytes, const MemoryLimit& limit) {
+    return fmt::format("asks for about {} of memory, expected at most {} ({})", memory_text(bytes),
+                       memory_text(limit.bytes), limit.source);
+}
+
+void require_memory(double bytes, std::string_view what) {
+    const MemoryLimit limit = memory_limit();
+    if (bytes > limit.bytes) throw InputError(fmt::format("{}: {}", what, too_much_memory(bytes, limit)));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,221 @@
+#include "ricochet/simulation/memory_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
+
+namespace ricochet {
+namespace {
+
+// Bytes, measured with runs of a million particles and meshes of two million triangles.
+constexpr double kProgram = 12e6;             // libraries, threads
+constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value while it is born
+constexpr double kAttributeComponent = 32.0;  // of it the same
+constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
+constexpr double kSide = 16.0;                // what penalty and its like remember of a collider
+constexpr double kVerifiedParticle = 90.0;    // by options.verify
+constexpr double kTriangle = 330.0;           // of a mesh with its search structures, while they are made
+constexpr double kVerifiedTriangle = 160.0;   // by options.verify
+constexpr double kContact = 412.0;            // a record, and its row in the log
+constexpr double kMostContacts = 500'000.0;   // rows that the log gathers at most beyond those of a step
+constexpr double kJoinedParticle = 800.0;     // as kParticle, with what its rope or cloth is made in
+constexpr double kSpring = 200.0;             // and what it is made in
+constexpr double kStandingTriangle = 190.0;   // as kTriangle, when the mesh has been read
+constexpr double kImplicitParticle = 390.0;   // in the matrix of implicit_euler
+constexpr double kImplicitSpring = 1200.0;    // the same, and its factors
+
+double mean_of(const MeanSpread& pair) { return std::max(0.0, pair.mean); }
+
+double triangles_of(const ColliderShape& shape) {
+    const auto* const mesh = std::get_if<MeshShape>(&shape);
+    return mesh != nullptr && mesh->mesh ? static_cast<double>(mesh->mesh->triangles.size()) : 0.0;
+}
+
+/// What of the estimate a setup itself holds already, or was held while it was made.
+double bytes_taken(const SimulationSetup& setup) {
+    constexpr double kStillToCome = kParticle - static_cast<double>(sizeof(Particle));
+    const double particles = static_cast<double>(setup.particles.size());
+    double bytes = particles * ((setup.springs.empty() ? kParticle : kJoinedParticle) - kStillToCome);
+    bytes += static_cast<double>(setup.springs.size()) * (kSpring - static_cast<double>(sizeof(Spring)));
+    for (const ColliderDescription& collider : setup.colliders) {
+        bytes += triangles_of(collider.shape) * (kTriangle - kStandingTriangle);
+    }
+    return kProgram + bytes;
+}
+
+/// Whether something can end particles before their time.
+bool may_retire_early(const SimulationSetup& setup) {
+    return setup.bounds.has_value() ||
+           std::any_of(setup.materials.begin(), setup.materials.end(),
+                       [](const Material& material) { return material.absorption > 0.0; }) ||
+           std::any_of(setup.emitters.begin(), setup.emitters.end(),
+                       [](const EmitterDescription& emitter) { return emitter.parent && emitter.parent->share; });
+}
+
+/// Particles a second, on average.
+double rate_of(const EmitterDescription& emitter, const SimulationSetup& setup) {
+    double per_frame = mean_of(emitter.rate_per_frame);
+    if (mean_of(emitter.rate_per_area) > 0.0 && setup.reference_camera) {
+        per_frame += mean_of(emitter.rate_per_area) * screen_area(emitter.shape, *setup.reference_camera);
+    }
+    return mean_of(emitter.rate) + per_frame * setup.options.frame_rate;
+}
+
+/// Its particles that are sure to live at one time. How many children there will be nobody knows.
+double sure_population(const EmitterDescription& emitter, const SimulationSetup& setup) {
+    const SimulationOptions& options = setup.options;
+    if (emitter.parent || !(emitter.start < options.duration)) return 0.0;
+    const double time = std::max(0.0, std::min(options.duration, emitter.stop) - emitter.start);
+    const double life = may_retire_early(setup) ? options.time_step : emitter.lifetime.mean;
+    const double rate = rate_of(emitter, setup);
+    const double by_rate = rate > 0.0 ? rate * std::min(time, life) : 0.0;
+    return std::min(static_cast<double>(emitter.burst) + by_rate, static_cast<double>(emitter.limit));
+}
+
+double columns_of(const SimulationSetup& setup) {
+    double columns = 0.0;
+    for (const AttributeDescription& attribute : setup.attributes) columns += attribute.components;
+    return columns;
+}
+
+bool has_children(const SimulationSetup& setup) {
+    return std::any_of(setup.emitters.begin(), setup.emitters.end(),
+                       [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
+}
+
+/// The needs of a setup, one after the other.
+class Estimator {
+public:
+    explicit Estimator(const SimulationSetup& setup)
+        : setup_(setup),
+          per_particle_(bytes_per_particle(setup)),
+          room_(static_cast<double>(setup.options.most_particles)) {}
+
+    MemoryEstimate estimate() {
+        add_explicit();
+        for (std::size_t k = 0; k < setup_.emitters.size(); ++k) {
+            add_particles({MemoryNeed::Part::emitter, k}, sure_population(setup_.emitters[k], setup_));
+        }
+        add_colliders();
+        if (setup_.options.record_contacts) {
+            const double living = static_cast<double>(setup_.options.most_particles) - room_;
+            add({MemoryNeed::Part::contacts}, std::min(living, kMostContacts), kContact);
+        }
+        return std::move(estimate_);
+    }
+
+private:
+    void add(MemoryNeed need, double count, double bytes_each) {
+        if (!(count >= 1.0)) return;
+        need.count = static_cast<std::uint64_t>(count);
+        need.bytes = count * bytes_each;
+        estimate_.needs.push_back(need);
+    }
+
+    // No more live than may.
+    void add_particles(const MemoryNeed& need, double count) {
+        const double living = std::min(count, room_);
+        room_ -= living;
+        add(need, living, per_particle_);
+    }
+
+    void add_explicit() {
+        const auto count = static_cast<double>(setup_.particles.size());
+        const auto springs = static_cast<double>(setup_.springs.size());
+        if (setup_.springs.empty()) return add_particles({MemoryNeed::Part::particles}, count);
+        room_ -= std::min(room_, count);
+        add({MemoryNeed::Part::springs}, springs,
+            bytes_of_springs(count, springs, setup_.options.integrator.kind) / springs);
+    }
+
+    void add_colliders() {
+        const double each = kTriangle + (setup_.options.verify ? kVerifiedTriangle : 0.0);
+        for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
+            add({MemoryNeed::Part::collider, k}, triangles_of(setup_.colliders[k].shape), each);
+        }
+    }
+
+    const SimulationSetup& setup_;
+    double per_particle_;
+    double room_;
+    MemoryEstimate estimate_;
+};
+
+template <class Named>
+std::string name_of(const std::vector<Named>& all, std::size_t number, const char* kind) {
+    const std::string& name = all[number].name;
+    return name.empty() ? fmt::format("{} {}", kind, number) : fmt::format("{} \"{}\"", kind, name);
+}
+
+std::string name_of(const MemoryNeed& need, const SimulationSetup& setup) {
+    switch (need.part) {
+        case MemoryNeed::Part::particles:
+            return fmt::format("particles: {} of them", need.count);
+        case MemoryNeed::Part::springs:
+            return fmt::format("springs: {} of them", need.count);
+        case MemoryNeed::Part::emitter:
+            return fmt::format("{}: {} particles", name_of(setup.emitters, need.number, "emitter"), need.count);
+        case MemoryNeed::Part::collider:
+            return fmt::format("{}: {} triangles", name_of(setup.colliders, need.number, "collider"), need.count);
+        case MemoryNeed::Part::contacts:
+            break;
+    }
+    return fmt::format("contacts: {} records", need.count);
+}
+
+}  // namespace
+
+double MemoryEstimate::bytes() const {
+    double sum = kProgram;
+    for (const MemoryNeed& need : needs) sum += need.bytes;
+    return sum;
+}
+
+const MemoryNeed& MemoryEstimate::largest() const {
+    return *std::max_element(needs.begin(), needs.end(),
+                             [](const MemoryNeed& a, const MemoryNeed& b) { return a.bytes < b.bytes; });
+}
+
+MemoryEstimate estimate_memory(const SimulationSetup& setup) {
+    MemoryEstimate estimate = Estimator(setup).estimate();
+    estimate.taken = bytes_taken(setup);
+    return estimate;
+}
+
+void require_memory(const SimulationSetup& setup) {
+    const MemoryEstimate estimate = estimate_memory(setup);
+    const double bytes = estimate.bytes_to_come();
+    const MemoryLimit limit = memory_limit();
+    if (estimate.needs.empty() || !(bytes > limit.bytes)) return;
+    throw InputError(fmt::format("{}: with them the simulation {}", name_of(estimate.largest(), setup),
+                                 too_much_memory(bytes, limit)));
+}
+
+double bytes_per_particle(const SimulationSetup& setup) {
+    double bytes = kParticle + kAttributeComponent * columns_of(setup);
+    if (has_children(setup)) bytes += kFamily;
+    if (setup.options.verify) bytes += kVerifiedParticle;
+    if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
+    return bytes;
+}
+
+void refuse_to_grow(std::uint64_t living, double bytes_each) {
+    const MemoryLimit limit = memory_limit();
+    throw RunError(fmt::format(
+        "more particles are born than memory holds: {} live, at about {} each, and {} are left ({}); ask for fewer, or "
+        "lower simulation.most_particles, beyond which births are refused",
+        living, memory_text(bytes_each), memory_text(limit.bytes), limit.source));
+}
+
+double bytes_of_springs(double particles, double springs, IntegratorKind integrator) {
+    const bool is_implicit = integrator == IntegratorKind::implicit_euler;
+    return particles * (kJoinedParticle + (is_implicit ? kImplicitParticle : 0.0)) +
+           springs * (kSpring + (is_implicit ? kImplicitSpring : 0.0));
+}
+
+}  // namespace ricochet

@@ -105,7 +105,7 @@ void Advector::advance() {
 void Advector::answer(const Contact& contact) {
     ++step_.outcome().bounces;
     manifold_.remember(contact.all());
-    manifold_.replace(contact.all(), touch_rule());
+    manifold_.replace(contact.all(), touch_rule(), flow_.free_velocity());
     const Vec3 arriving = state_.velocity;
     watch_progress();
     state_.velocity = is_stopped() ? Vec3{} : flow_.velocity();
@@ -116,8 +116,7 @@ void Advector::answer(const Contact& contact) {
 }
 
 /// In a blunt valley the other face is reached far beyond the rim of the first: a particle that is passed to and fro
-/// looks further, until both hold it. Among more faces than the manifold holds it is passed round for ever: that is a
-/// pit, and it stays there.
+/// looks further, until both hold it. What is passed round all the same stays where it is to the end of the step.
 void Advector::watch_progress() {
     const double elapsed = remaining_at_contact_ - step_.remaining();
     const bool is_quick = quick_contacts_ > 0 && elapsed <= kQuickContact * step_.duration();
@@ -133,7 +132,7 @@ void Advector::watch_progress() {
         here_ = state_.position;
         remaining_here_ = step_.remaining();
     }
-    is_stuck_ = ++contacts_here_ > kMaxSlowContacts;
+    is_stuck_ = ++contacts_here_ > kMaxSlowContacts && widening_ == kMostWidening;
 }
 
 /// The velocity that the particle goes on with, and what it is pressed onto.

@@ -3,7 +3,8 @@
 ///
 /// Of the surfaces touched those hold the particle that the flow presses it onto (see normal_accelerations()). A path
 /// follows the flow without its part along their normals and ends where the flow turns away from one of them, where
-/// the first of them ends, or where a curved one has turned by kMaxChordAngle.
+/// the first of them ends, or where a curved one has turned by kMaxChordAngle; by more where the step has seen many
+/// such chords already.
 #pragma once
 
 #include <array>
@@ -41,6 +42,8 @@ public:
     ConstrainedFlow(const ResponseRules& rules, const ForceInput& state, ContactManifold& manifold, double step)
         : rules_(rules), flow_(*rules.settings.flow), state_(state), manifold_(manifold), step_(step) {}
 
+    /// The flow's velocity where the particle is, m/s.
+    [[nodiscard]] Vec3 free_velocity() const { return flow_.velocity(state_.position, state_.time); }
     /// The flow's velocity without its part into the surfaces touched, m/s.
     [[nodiscard]] Vec3 velocity() const;
     /// True when the flow presses the particle onto a surface, or would lead it into one within kShortestRelease of the
@@ -71,7 +74,7 @@ private:
     [[nodiscard]] std::size_t weakest(const Vec3& g) const;
     [[nodiscard]] Part until_rim(const Path& path, double reach) const;
     [[nodiscard]] Path lifted(Path path) const;
-    [[nodiscard]] Path along_curved(const ContactSurface& support, Path path) const;
+    [[nodiscard]] Path along_curved(const ContactSurface& support, Path path);
     [[nodiscard]] bool is_no_progress(const Path& path) const;
 
     const ResponseRules& rules_;
@@ -81,6 +84,7 @@ private:
     double step_;
     double next_duration_ = 0.0;  // s, of an adaptive method
     Holders holders_;             // of the last path
+    int chords_ = 0;              // along curved surfaces so far
 };
 
 }  // namespace ricochet

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/held_motion.h"
@@ -23,14 +24,14 @@ TouchRule TouchRule::at(const Vec3& position) {
     return {reach, reach, reach};
 }
 
-bool ContactManifold::is_same_point(std::size_t k, const ContactSurface& surface) const {
-    const double turn = 1.0 - dot(normals_[k], surface.normal);
-    return !(turn > kSameNormal) || (flat_[k] != surface.flat && turn <= seam_turn(particle_));
+bool ContactManifold::is_same_point(const ContactSurface& known, const ContactSurface& surface) const {
+    const double turn = 1.0 - dot(known.normal, surface.normal);
+    return !(turn > kSameNormal) || (known.flat != surface.flat && turn <= seam_turn(particle_));
 }
 
 void ContactManifold::add(const ContactSurface& surface) {
     for (std::size_t k = 0; k < count_; ++k) {
-        if (!is_same_point(k, surface)) continue;
+        if (!is_same_point((*this)[k], surface)) continue;
         if (surface.flat && !flat_[k]) set(k, surface);
         return;
     }
@@ -72,6 +73,61 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
     for (const ContactSurface& surface : surfaces) add(surface);
     for (std::size_t k = 0; k < std::min(recent_count_, kMostRecent); ++k) {
         if (const auto surface = touched(recent_[k], rule)) add(*surface);
+    }
+}
+
+void ContactManifold::replace(std::span<const ContactSurface> surfaces, const TouchRule& rule, const Vec3& pull) {
+    std::array<ContactSurface, kMostCandidates> all;
+    std::size_t count = 0;
+    const auto consider = [&](const ContactSurface& surface) {
+        for (ContactSurface& known : std::span(all).first(count)) {
+            if (!is_same_point(known, surface)) continue;
+            if (surface.flat && !known.flat) known = surface;
+            return;
+        }
+        if (count < all.size()) all[count++] = surface;
+    };
+    for (const ContactSurface& surface : surfaces) consider(surface);
+    for (std::size_t k = 0; k < std::min(recent_count_, kMostRecent); ++k) {
+        if (const auto surface = touched(recent_[k], rule)) consider(*surface);
+    }
+    const std::span<const ContactSurface> candidates = std::span(all).first(count);
+    clear();
+    if (count > kMostPoints) add_holding(candidates, pull);
+    for (const ContactSurface& surface : candidates) add(surface);
+}
+
+/// The first one, two or three that leave nothing of a pull into any of the others.
+void ContactManifold::add_holding(std::span<const ContactSurface> candidates, const Vec3& pull) {
+    const double rounding = kProjectionRounding * length(pull);
+    std::array<Vec3, kMostPoints> normals;
+    const auto is_enough = [&](std::initializer_list<std::size_t> chosen) {
+        std::size_t count = 0;
+        for (const std::size_t k : chosen) normals[count++] = candidates[k].normal;
+        const Vec3 left = project_off(pull, std::span(normals).first(count));
+        const bool enough = std::all_of(candidates.begin(), candidates.end(), [&](const ContactSurface& surface) {
+            return dot(left, surface.normal) >= -rounding;
+        });
+        for (const std::size_t k : chosen) {
+            if (enough) add(candidates[k]);
+        }
+        return enough;
+    };
+    const std::size_t n = candidates.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (is_enough({i})) return;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            if (is_enough({i, j})) return;
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            for (std::size_t k = j + 1; k < n; ++k) {
+                if (is_enough({i, j, k})) return;
+            }
+        }
     }
 }
 

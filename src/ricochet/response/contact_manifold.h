@@ -67,6 +67,8 @@ public:
     void remember(std::span<const ContactSurface> surfaces);
     /// The surfaces of an impact, then the latest others that are still touched. They replace what was touched before.
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule);
+    /// The same; of more than three those come first that leave nothing of `pull` into any of them.
+    void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule, const Vec3& pull);
     /// Of the surfaces kept those that are still touched, as they are touched now. They replace what was touched
     /// before.
     void touch_again(const KeptContact& kept, const TouchRule& rule);
@@ -97,10 +99,12 @@ public:
 private:
     static constexpr std::size_t kMostPoints = kMostHolding;
     static constexpr std::size_t kMostRecent = 6;
+    static constexpr std::size_t kMostCandidates = 16;  // of contact points, before three are chosen
 
     void set(std::size_t k, const ContactSurface& surface);
     void remember(SurfaceId surface);
-    [[nodiscard]] bool is_same_point(std::size_t k, const ContactSurface& surface) const;
+    void add_holding(std::span<const ContactSurface> candidates, const Vec3& pull);
+    [[nodiscard]] bool is_same_point(const ContactSurface& known, const ContactSurface& surface) const;
     [[nodiscard]] std::optional<ContactSurface> touched(SurfaceId surface, const TouchRule& rule) const;
 
     const SurfaceGeometry& geometry_;

@@ -6,6 +6,8 @@
 // begin with "golden,"). Nothing writes it by itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +15,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -193,6 +196,31 @@ TEST_P(ShippedSceneLong, LosesNoTime) {
     simulation.advance(simulation.step_count());
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
     EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+}
+
+/// Saved two fifths of the way, with one thread, and finished with several.
+TEST_P(ShippedSceneLong, GoesOnFromASavedStateWithOtherThreadsToTheSameBits) {
+    const auto make = [] { return read_scene(kRoot / "scenes" / (std::string(GetParam().name) + ".json")).setup; };
+    std::vector<std::byte> saved;
+    Simulation whole(make());
+    {
+        const ThreadLimit one(1);
+        whole.advance(whole.step_count() * 2 / 5);
+        whole.save([&](std::span<const std::byte> bytes) { saved.insert(saved.end(), bytes.begin(), bytes.end()); });
+        whole.advance(whole.step_count());
+    }
+    const ThreadLimit several(5);
+    Simulation resumed(make());
+    std::size_t read = 0;
+    resumed.restore([&](std::span<std::byte> bytes) {
+        ASSERT_LE(bytes.size(), saved.size() - read);
+        std::copy_n(saved.begin() + static_cast<std::ptrdiff_t>(read), bytes.size(), bytes.begin());
+        read += bytes.size();
+    });
+    EXPECT_EQ(resumed.step_index(), whole.step_count() * 2 / 5);
+    resumed.advance(resumed.step_count());
+    EXPECT_EQ(resumed.state_hash(), whole.state_hash());
+    EXPECT_EQ(resumed.statistics().contacts, whole.statistics().contacts);
 }
 
 std::string shipped_name(const ::testing::TestParamInfo<ShippedScene>& info) {

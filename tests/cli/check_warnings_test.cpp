@@ -168,6 +168,21 @@ TEST_F(CheckWarnings, TellsOfRadiiThatCoordinatesHardlyResolve) {
     EXPECT_EQ(warnings(floor + far("1e6")), "");
 }
 
+TEST_F(CheckWarnings, TellsOfMeshesThatCoordinatesHardlyResolve) {
+    const auto far = [](const std::string& x) {
+        return collider(R"("type": "mesh", "file": "hull.obj", "scale": 1e-6, "position": [)" + x + ", 0, 0]") +
+               emitter(R"("type": "point", "center": [0, 0, 3])");
+    };
+    const std::string text = warnings(far("24000"));
+    EXPECT_EQ(
+        text.rfind("colliders[0] 'c': edges of 2.4e-07 m on average at coordinates of 2.4e+04 m, where 4e-12 m lie "
+                   "between one number and the next",
+                   0),
+        0U)
+        << text;
+    EXPECT_EQ(warnings(far("100")), "");
+}
+
 TEST_F(CheckWarnings, TellsOfNothingToHitWhereImpactsAreAskedFor) {
     const std::string sparks = R"("emitters": [{"name": "e", "type": "point", "burst": 10},
         {"name": "sparks", "type": "child", "parent": "e", "on": "impact", "count": 3}])";

@@ -22,16 +22,15 @@ struct MemoryFiles {
 };
 
 /// The smallest of:
-/// - what the control group of the process and those above it may hold: `memory.max` of version 2 (the group is named
-/// by
-///   the line "0::" of /proc/self/cgroup), `memory.limit_in_bytes` of version 1 (the line with the controller
-///   "memory"). What other processes of the group hold is not taken off: most of it is usually cache. Sources:
-///   Documentation/ admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst of the Linux kernel.
-/// - RLIMIT_AS less the address space in use, RLIMIT_DATA less the data in use (getrlimit(2); /proc/self/statm,
-/// proc(5)).
-/// - MemAvailable and SwapFree of /proc/meminfo together: what programs can be given without any being killed
-/// (proc(5));
-///   where there is no such file, the physical memory (sysconf(3)).
+/// - what the control group of the process and those above it may hold: `memory.max` of version 2 (the line "0::" of
+///   /proc/self/cgroup names the group), `memory.limit_in_bytes` of version 1 (the line with the controller "memory").
+///   What other processes of the group hold is not taken off: most of it is usually cache. Sources: the Linux kernel's
+///   Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst.
+/// - RLIMIT_AS less the address space in use, RLIMIT_DATA less the data in use (getrlimit(2); /proc/self/statm, see
+///   proc(5)).
+/// - MemAvailable and SwapFree of /proc/meminfo together: what programs can be given without any being killed, see
+///   proc(5); where there is no such file, the physical memory (sysconf(3)).
+///
 /// It decides only whether something is refused, never a result.
 [[nodiscard]] MemoryLimit memory_limit(const MemoryFiles& files = {});
 

@@ -220,7 +220,12 @@ std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactA
     way.jams = end.jams;
     if (!(end.time > 0.0) && !way.jams) return std::nullopt;
     lead_until(end.time, arc, way);
-    if (!(end.time > 0.0)) return way;  // it jams at once, and has no path
+    if (end.time > 0.0) keep_to_pieces(arc, way);  // else it jams at once, and has no path
+    return way;
+}
+
+/// Shortens the way to where another part of a surface begins.
+void ContactFollower::keep_to_pieces(const ContactArc& arc, ArcWay& way) const {
     way.turning_point = way.path.end;
     // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
     for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(way.path.end)); ++k) {
@@ -231,7 +236,6 @@ std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactA
         way.leaves_surface = held_.has_left_face(way.turning_point);
         lead_until(on, arc, way);
     }
-    return way;
 }
 
 void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way) const {
@@ -242,11 +246,16 @@ void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way
     if (state_.radius == 0.0) held_.lift_middle(way.path);
 }
 
-/// The time on the path, s, from which another part of a surface is touched.
+/// The time on the path, s, from which another part of a surface is touched, if only for a while.
 double ContactFollower::time_on_pieces(const Path& path) const {
+    constexpr int kLooks = 4;
     constexpr int kHalvings = 32;
     const auto has_passed = [&](double time) { return held_.touches_next_part(path.position(time)); };
-    return has_passed(path.duration) ? first_change(path.duration, kHalvings, has_passed).from : path.duration;
+    for (int k = 1; k <= kLooks; ++k) {
+        const double time = k < kLooks ? (static_cast<double>(k) / kLooks) * path.duration : path.duration;
+        if (has_passed(time)) return first_change(time, kHalvings, has_passed).from;
+    }
+    return path.duration;
 }
 
 /// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
@@ -257,8 +266,8 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
         const double off = length(there - tried.position(time));
         if (!(off > kTouchingOffsets * contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
         way.leaves_surface = way.jams = false;
-        way.turning_point = there;
         lead_until(time, arc, way);
+        keep_to_pieces(arc, way);
         return way.path;
     };
     const std::optional<Contact> contact = step_.follow(way.path, held_.all(), closer);

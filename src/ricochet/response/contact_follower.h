@@ -65,6 +65,7 @@ private:
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
     [[nodiscard]] std::optional<ArcWay> way_along(const ContactArc& arc) const;
     void lead_until(double time, const ContactArc& arc, ArcWay& way) const;
+    void keep_to_pieces(const ContactArc& arc, ArcWay& way) const;
     [[nodiscard]] double time_on_pieces(const Path& path) const;
     [[nodiscard]] std::optional<Contact> move_along(ArcWay& way, const ContactArc& arc);
     [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;

@@ -1,0 +1,79 @@
+// Does a sphere that rolls along a ridge, and for a while over onto one of its faces, stay out of that face, also where
+// something stops it there?
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "claims/contact_scene.h"
+#include "ricochet/collision_queries.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kSlope = 20.0;  // degrees, of both faces
+constexpr double kRadius = 1.0;
+
+/// Two faces that fall off to both sides of the ridge y = z = 0.
+ColliderDescription ridge() {
+    const double drop = -20.0 * std::tan(radians(kSlope));
+    TriangleMesh mesh;
+    mesh.vertices = {{-20, 0, 0}, {20, 0, 0}, {0, -20, drop}, {0, 20, drop}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}};
+    return mesh_collider(mesh);
+}
+
+/// A sphere on the ridge, all but as far over as the ridge reaches, on its way over the face with y > 0; gravity pulls
+/// it back with 1.3 m/s^2, so that it is over the face until 2 `speed` / 1.3 s.
+ContactScene over_and_back(double speed) {
+    const double s = std::sin(radians(kSlope) - 1e-4);
+    const double c = std::cos(radians(kSlope) - 1e-4);
+    ContactScene scene;
+    scene.colliders = {ridge()};
+    scene.materials = {{"", 0.0, 0.0}};
+    scene.gravity = {0, -5, -10};
+    const double height = kRadius * (1.0 + 1e-13);
+    scene.particle = particle_of({0, height * s, height * c}, {2, speed * c, -speed * s}, kRadius);
+    return scene;
+}
+
+/// The scene at its end: its sphere is no deeper in the ridge than rounding.
+void expect_free_at_end(const ContactScene& scene) {
+    const Particle end = end_of(scene);
+    const auto nearest = CollisionQueries({ridge()}).closest_point(end.position, 2.0 * kRadius);
+    ASSERT_TRUE(nearest);
+    EXPECT_GE(nearest->distance, kRadius * (1.0 - 1e-12)) << "at " << end.position.x;
+    EXPECT_LE(nearest->distance, kRadius * (1.0 + 1e-9)) << "at " << end.position.x;
+}
+
+TEST(ARidge, IsLeftForAFaceAndComeBackToWithoutOverlap) {
+    for (const double speed : {0.0, 0.03, 0.1, 0.3}) {
+        for (const double time : {0.001, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2}) {
+            ContactScene scene = over_and_back(speed);
+            scene.time_step = scene.duration = time;
+            SCOPED_TRACE(::testing::Message() << speed << " m/s, " << time << " s");
+            expect_free_at_end(scene);
+        }
+    }
+}
+
+TEST(ARidge, IsNotOverlappedWhereAWallStopsASphereOnItsWayOverAFace) {
+    for (const double speed : {0.03, 0.1, 0.2, 0.3}) {
+        for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+            ContactScene scene = over_and_back(speed);
+            const double wall = part * 2.0 * speed / 1.3;  // s, until it is there
+            scene.colliders.push_back(plane_collider({2.0 * wall + kRadius, 0, 0}, {-1, 0, 0}));
+            scene.materials.push_back(scene.materials[0]);
+            scene.time_step = scene.duration = 4.0 * speed / 1.3;
+            // The step before its end, too: the way along the wall begins where the wall is met.
+            for (const double until : {1.001 * wall, scene.duration}) {
+                scene.duration = until;
+                SCOPED_TRACE(::testing::Message() << speed << " m/s, wall at " << part << ", until " << until << " s");
+                expect_free_at_end(scene);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

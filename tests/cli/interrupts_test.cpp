@@ -10,7 +10,6 @@
 
 #include "cli/held_file.h"
 #include "cli/run_program.h"
-#include "support/counts.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {
@@ -43,7 +42,6 @@ std::vector<std::string> unfinished_files_in(const std::filesystem::path& folder
 
 /// The program ends by each of the signals while the file is being opened, and only then can it be opened.
 void expect_ended_while_it_reads(const std::filesystem::path& held, const std::vector<std::string>& arguments) {
-    if (test::kSanitized) GTEST_SKIP() << "the thread sanitizer keeps signals back until a call returns";
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         SCOPED_TRACE(arguments.front() + ", signal " + std::to_string(signal));
         const HeldFile file(held);

@@ -49,6 +49,7 @@ AttributeTable Simulation::shown_attributes() const {
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
 const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().world.colliders(); }
+std::span<const Material> Simulation::materials() const { return impl().materials; }
 const SpringNetwork& Simulation::springs() const { return impl().coupled.springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
     require_index(i, impl().world.colliders().size(), "collider");

@@ -168,6 +168,8 @@ public:
     [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
+    /// Of the setup, in its order.
+    [[nodiscard]] std::span<const Material> materials() const;
     /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
     /// triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;

@@ -66,7 +66,7 @@ TEST(EnergyOfImpacts, CountsWhatTurnsASolidSphere) {
 
 TEST(EnergyOfImpacts, OfAWallOfItsOwnTemperatureMayGrow) {
     MotionPart part = impact({0, 0, -1}, {0, 0, 100});
-    part.kind = Kind::heat;
+    part.kind = Kind::driven;
     EXPECT_FALSE(gains(part));
 }
 

@@ -25,7 +25,7 @@ struct MotionPart {
         flight,   ///< nothing touches it: its motion is the integrator's
         impact,   ///< at one time, or what else surfaces change at one time
         contact,  ///< an interval in which surfaces hold it
-        heat,     ///< an impact on a wall of its own temperature, which may give it energy
+        driven,   ///< an impact on or contact with surfaces that may give it energy: they move or are hot
     };
 
     Kind kind = Kind::flight;

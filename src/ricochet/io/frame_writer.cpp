@@ -1,6 +1,7 @@
 #include "ricochet/io/frame_writer.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <mutex>
 #include <stdexcept>
@@ -193,6 +194,7 @@ void ContactColumns::resize(std::size_t rows) {
     velocity_after.resize(rows);
     impulse.resize(rows);
     radius.resize(rows);
+    if (surface_velocity) surface_velocity->resize(rows);
 }
 
 VtkPolyData contact_frame(ContactColumns columns, double time) {
@@ -206,6 +208,9 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
                 VtkArray{"velocity_before", std::move(columns.velocity_before)},
                 VtkArray{"velocity_after", std::move(columns.velocity_after)},
                 VtkArray{"impulse", std::move(columns.impulse)}, VtkArray{"radius", std::move(columns.radius)});
+    if (columns.surface_velocity) {
+        frame.point_arrays.push_back({"surface_velocity", std::move(*columns.surface_velocity)});
+    }
     return frame;
 }
 
@@ -230,6 +235,10 @@ void ContactLog::add_step(const Simulation& simulation) {
     step_ = simulation.step_index();
     const std::vector<ContactRecord>& records = simulation.contact_records();
     const std::size_t first = columns_.size();
+    const auto materials = simulation.materials();
+    if (std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); })) {
+        if (!columns_.surface_velocity) columns_.surface_velocity.emplace();
+    }
     columns_.resize(first + records.size());
     parallel_for_blocks(records.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) set_row(first + i, records[i], simulation);
@@ -251,6 +260,7 @@ void ContactLog::set_row(std::size_t row, const ContactRecord& record, const Sim
     columns_.velocity_after[row] = record.velocity_after;
     columns_.impulse[row] = record.mass * (record.velocity_before - record.velocity_after);
     columns_.radius[row] = record.radius;
+    if (columns_.surface_velocity) (*columns_.surface_velocity)[row] = record.surface_velocity;
 }
 
 void ContactLog::write(const Simulation& simulation) {

@@ -103,6 +103,8 @@ struct ContactColumns {
     std::vector<Vec3> velocity_after;    ///< m/s
     std::vector<Vec3> impulse;           ///< N s, given to the surface
     std::vector<double> radius;          ///< of the particle, m
+    /// Of the surface's own material, m/s; only where materials move.
+    std::optional<std::vector<Vec3>> surface_velocity;
 
     [[nodiscard]] std::size_t size() const { return time.size(); }
     void resize(std::size_t rows);

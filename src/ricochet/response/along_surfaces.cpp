@@ -12,29 +12,47 @@ void add_multiple(MotionVector& a, double factor, const MotionVector& b) {
     for (std::size_t c = 0; c < a.size(); ++c) a[c] += factor * b[c];
 }
 
-/// Takes the parts along directions out of a motion. Method: modified Gram-Schmidt, twice.
+/// Takes the parts along directions out of a motion, but for what is to be left of them. Method: modified
+/// Gram-Schmidt, twice.
 class Remover {
 public:
-    void add(MotionVector direction) {
+    /// left_along: what the product of the direction and the motion is to be.
+    void add(MotionVector direction, double left_along = 0.0) {
         const double whole = std::sqrt(dot(direction, direction));
         for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(direction, -dot(direction, basis_[k]), basis_[k]);
+            for (std::size_t k = 0; k < count_; ++k) {
+                const double along = dot(direction, basis_[k]);
+                add_multiple(direction, -along, basis_[k]);
+                left_along -= along * left_[k];
+            }
         }
         const double left = std::sqrt(dot(direction, direction));
         if (count_ == basis_.size() || !(left > kDependentDirection * whole)) return;
         for (double& x : direction) x /= left;
+        left_[count_] = left_along / left;
         basis_[count_++] = direction;
     }
     void remove_from(MotionVector& motion) const {
         for (int pass = 0; pass < 2; ++pass) {
-            for (std::size_t k = 0; k < count_; ++k) add_multiple(motion, -dot(motion, basis_[k]), basis_[k]);
+            for (std::size_t k = 0; k < count_; ++k) {
+                add_multiple(motion, left_[k] - dot(motion, basis_[k]), basis_[k]);
+            }
         }
     }
 
 private:
     std::array<MotionVector, 6> basis_{};
+    std::array<double, 6> left_{};
     std::size_t count_ = 0;
 };
+
+/// That of the first moving surface on which the motion sticks; else zero.
+Vec3 carrying_velocity(std::span<const HoldingSurface> surfaces, const StuckSurfaces& stuck) {
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        if (stuck[k].to_slip && surfaces[k].velocity != Vec3{}) return surfaces[k].velocity;
+    }
+    return {};
+}
 
 }  // namespace
 
@@ -74,21 +92,27 @@ Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) 
 Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
                       const StuckSurfaces& stuck) {
     const bool is_sphere = radius > 0.0;
+    // As it is seen from a surface that carries it: what stands still there does so exactly.
+    const Vec3 carried = carrying_velocity(surfaces, stuck);
     Remover remover;
-    for (const HoldingSurface& surface : surfaces) remover.add(normal_direction(surface.normal));
+    for (const HoldingSurface& surface : surfaces) {
+        remover.add(normal_direction(surface.normal), -dot(carried, surface.normal));
+    }
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         const Vec3& n = surfaces[k].normal;
         for (const Vec3& t : tangent_frame(n)) {
-            if (stuck[k].to_slip) remover.add(sliding_direction(t, n, is_sphere));
-            if (stuck[k].to_turning) remover.add(turning_direction(t));
+            if (stuck[k].to_slip)
+                remover.add(sliding_direction(t, n, is_sphere), dot(surfaces[k].velocity - carried, t));
+            if (stuck[k].to_turning) remover.add(turning_direction(t), radius * dot(surfaces[k].angular_velocity, t));
         }
-        if (stuck[k].to_spinning) remover.add(turning_direction(n));
+        if (stuck[k].to_spinning) remover.add(turning_direction(n), radius * dot(surfaces[k].angular_velocity, n));
     }
-    MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
+    MotionVector all = motion_vector(motion.velocity - carried, (radius / kTurning) * motion.spin);
     const double before = std::sqrt(dot(all, all));
     remover.remove_from(all);
-    if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
-    return {velocity_of(all), is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
+    if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {carried, {}};
+    const Vec3 velocity = carried == Vec3{} ? velocity_of(all) : velocity_of(all) + carried;
+    return {velocity, is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }
 
 double twice_kinetic(const Motion& motion, double radius) {

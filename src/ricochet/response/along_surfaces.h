@@ -14,14 +14,22 @@ namespace ricochet {
 /// Surfaces that hold a particle at one time, at most.
 inline constexpr std::size_t kMostHolding = 3;
 
+struct SurfaceMotion;
+
 /// A surface that holds a particle.
 struct HoldingSurface {
     Vec3 normal;                     ///< unit, towards the particle
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
     double spinning_friction = 0.0;  ///< m, see Material
+    /// Of the surface's own material, at the contact and along the surface, m/s: slip is relative to it; and of its
+    /// turning, rad/s: so are rolling and spinning. 0 where the surface does not grip.
+    Vec3 velocity{};
+    Vec3 angular_velocity{};
+    const SurfaceMotion* motion = nullptr;  ///< what says the velocity elsewhere; null where it is 0 everywhere
     /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip; and to those of radius
-    /// times angular velocity, along the surface and about its normal, since the normal turns.
+    /// times angular velocity, along the surface and about its normal, since the normal turns. The change of `velocity`
+    /// is part of that of the slip.
     double bend = 0.0;
     Vec3 slip_bend{};
     Vec3 turning_bend{};
@@ -35,6 +43,11 @@ struct Stuck {
     bool to_spinning = false;  ///< resistance to spinning about the normal holds it
 };
 using StuckSurfaces = std::array<Stuck, kMostHolding>;
+
+/// The slip of a motion on a surface, see slip_velocity(): relative to the surface's material.
+[[nodiscard]] inline Vec3 slip_on(const HoldingSurface& surface, const Motion& motion, double radius) {
+    return slip_velocity(motion, radius, surface.normal) - surface.velocity;
+}
 
 /// The vector nearest to v that is at right angles to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);

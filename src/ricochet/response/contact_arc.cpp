@@ -93,7 +93,9 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
     const bool are_steady = !start.has_forces || forces.is_uniform_for(particle);
     has_potential_ = !are_steady && forces.is_conservative_for(particle);
-    keeps_energy_ = (are_steady || has_potential_) && !dissipates();
+    is_driven_ = std::any_of(materials.surfaces.begin(), materials.surfaces.begin() + materials.count,
+                             [](const HoldingSurface& surface) { return surface.motion != nullptr; });
+    keeps_energy_ = (are_steady || has_potential_) && !is_driven_ && !dissipates();
     friction_turns_fast_ = plan_.is_stiff || ends_a_slip() || begins_to_slip(now) || may_jam();
 }
 
@@ -103,6 +105,7 @@ ContactArc::State ContactArc::at(double t) const {
     state.turned = std::max(turned_at(state.position), turned_at(straight_on));
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
+    if (is_driven_) return state;
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
     const double offset = length(forces(state, t)) * contact_offset(state.position);
     limit_energy(state.motion, particle_.radius, most, offset);
@@ -225,6 +228,10 @@ double ContactArc::longest() const {
         speed > 0.0 ? begin.motion.velocity / speed : (acceleration > 0.0 ? first.acceleration / acceleration : Vec3{});
     double turning = 0.0;  // by metre
     for (std::size_t k = 0; k < materials_.count; ++k) {
+        if (const SurfaceMotion* motion = materials_.surfaces[k].motion) {
+            const double rate = length(motion->angular_velocity);
+            if (rate > 0.0) duration = std::min(duration, kMaxArcAngle / rate);
+        }
         const CollisionWorld::Nearest touched = nearest(k, begin.position);
         turning = std::max(
             turning, length(normal_rate(geometry_, particle_.radius, surfaces_[k], touched, begin.position, heading)));
@@ -261,10 +268,15 @@ ContactArc::Holding ContactArc::holding(const State& state) const {
         const Vec3 turn =
             normal_rate(geometry_, particle_.radius, surfaces_[k], touched, state.position, state.motion.velocity);
         surface.bend = dot(turn, state.motion.velocity);
-        const Vec3 turning = particle_.radius * state.motion.spin;
-        surface.slip_bend = -cross(turning, turn);
+        const Vec3 turning = particle_.radius * (state.motion.spin - surface.angular_velocity);
+        surface.slip_bend = -cross(particle_.radius * state.motion.spin, turn);
         surface.turning_bend = -dot(turning, surface.normal) * turn;
         surface.spinning_bend = dot(turning, turn);
+        if (surface.motion == nullptr) continue;
+        const Vec3 foot = state.position - particle_.radius * surface.normal;
+        surface.velocity = surface.motion->at(foot, surface.normal);
+        const Vec3 contact_velocity = state.motion.velocity - particle_.radius * turn;
+        surface.slip_bend -= surface.motion->rate(foot, surface.normal, contact_velocity, turn);
     }
     return result;
 }
@@ -347,17 +359,19 @@ bool ContactArc::may_jam() const {
 /// Slip, rolling or spinning is about to begin somewhere against what resists it.
 bool ContactArc::begins_to_slip(const ContactInterval& now) const {
     const double radius = particle_.radius;
-    const Vec3& spin = now.motion.spin;
-    const double slow = kSlowSlip * (length(now.motion.velocity) + radius * length(spin));
+    double scale = length(now.motion.velocity) + radius * length(now.motion.spin);
+    for (const HoldingSurface& surface : materials_.all()) scale += length(surface.velocity);
+    const double slow = kSlowSlip * scale;
     const auto begins = [&](double resistance, bool is_stuck, const Vec3& rate) {
         return resistance > 0.0 && !is_stuck && length(rate) <= slow;
     };
     for (std::size_t k = 0; k < materials_.count; ++k) {
         const HoldingSurface& surface = materials_.surfaces[k];
         if (!holds_[k]) continue;
-        const Vec3 spinning = dot(spin, surface.normal) * surface.normal;
-        if (begins(surface.friction, stuck_[k].to_slip, slip_velocity(now.motion, radius, surface.normal))) return true;
+        if (begins(surface.friction, stuck_[k].to_slip, slip_on(surface, now.motion, radius))) return true;
         if (radius == 0.0) continue;
+        const Vec3 spin = now.motion.spin - surface.angular_velocity;
+        const Vec3 spinning = dot(spin, surface.normal) * surface.normal;
         if (begins(surface.rolling_friction, stuck_[k].to_turning, radius * (spin - spinning))) return true;
         if (begins(surface.spinning_friction, stuck_[k].to_spinning, radius * spinning)) return true;
     }

@@ -106,6 +106,7 @@ private:
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
     bool has_potential_ = false;              // of forces that vary
+    bool is_driven_ = false;                  // by a surface that moves
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
 };

@@ -73,7 +73,7 @@ ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
     manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
-    if (!manifold_.bends()) {
+    if (!manifold_.bends() && !manifold_.is_turned(impact_)) {
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
             particle_.spin = interval.motion.spin;
@@ -126,10 +126,13 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
-    limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
+    const bool is_driven = manifold_.is_driven(impact_);
+    if (!is_driven) {
+        limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
+    }
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    step_.log().note_contact(pull.forces, pull.acts);
+    step_.log().note_contact(pull.forces, pull.acts, is_driven);
     held_.meet(stop.contact);
     return stop;
 }
@@ -198,7 +201,7 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
     std::optional<Contact> contact = move_along(*way, arc);
-    step_.log().note_contact(pull.forces, pull.acts);
+    step_.log().note_contact(pull.forces, pull.acts, manifold_.is_driven(impact_));
     const double elapsed = before - step_.remaining();
     const Vec3 forces_after = pull.acts ? rules_.forces.acceleration(state_) : Vec3{};
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);

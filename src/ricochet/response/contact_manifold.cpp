@@ -186,10 +186,27 @@ ContactManifold::Holding ContactManifold::holding(const ImpactAnswer& impact) co
     Holding holding;
     for (std::size_t k = 0; k < count_; ++k) {
         const Material& material = impact.material_of(surfaces_[k]);
-        holding.surfaces[holding.count++] = {normals_[k], material.friction, material.rolling_friction,
-                                             material.spinning_friction};
+        holding.surfaces[holding.count++] = {normals_[k],
+                                             material.friction,
+                                             material.rolling_friction,
+                                             material.spinning_friction,
+                                             impact.velocity_of((*this)[k]),
+                                             impact.angular_velocity_of(surfaces_[k]),
+                                             material.drives() ? &material.motion : nullptr};
     }
     return holding;
+}
+
+bool ContactManifold::is_driven(const ImpactAnswer& impact) const {
+    return std::any_of(surfaces_.begin(), surfaces_.begin() + count_,
+                       [&](SurfaceId surface) { return impact.material_of(surface).drives(); });
+}
+
+bool ContactManifold::is_turned(const ImpactAnswer& impact) const {
+    return std::any_of(surfaces_.begin(), surfaces_.begin() + count_, [&](SurfaceId surface) {
+        const Material& material = impact.material_of(surface);
+        return material.drives() && material.motion.angular_velocity != Vec3{};
+    });
 }
 
 Grip ContactManifold::grip(double pressure, double step) const {

@@ -47,6 +47,10 @@ public:
     [[nodiscard]] bool bends() const {
         return !std::all_of(flat_.begin(), flat_.begin() + count_, [](bool flat) { return flat; });
     }
+    /// True when one of the surfaces moves and grips.
+    [[nodiscard]] bool is_driven(const ImpactAnswer& impact) const;
+    /// True when the velocity of one that does is not the same everywhere.
+    [[nodiscard]] bool is_turned(const ImpactAnswer& impact) const;
     /// What the next step begins with.
     [[nodiscard]] KeptContact kept() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// What the last step has kept, without normals yet: touch_again() has to follow.

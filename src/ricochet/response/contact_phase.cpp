@@ -109,7 +109,13 @@ void ContactPhase::land(const Motion& arriving) {
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
         const Material& material = impact_.material_of(surface.surface);
-        surfaces[k] = {surface.normal, 0.0, material.friction, material.rolling_friction, material.spinning_friction};
+        surfaces[k] = {surface.normal,
+                       0.0,
+                       material.friction,
+                       material.rolling_friction,
+                       material.spinning_friction,
+                       impact_.velocity_of(surface),
+                       impact_.angular_velocity_of(surface.surface)};
     }
     Motion after = solve_impact(arriving, state_.radius, std::span(surfaces).first(manifold_.size())).after;
     const auto speed = [&](const Motion& motion) {

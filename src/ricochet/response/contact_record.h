@@ -16,12 +16,13 @@ struct ContactRecord {
     double time = 0.0;  ///< s, simulation time
     std::uint64_t particle = 0;
     SurfaceId surface = 0;
-    Vec3 position;         ///< of the particle's centre: the safe position, m
-    Vec3 normal;           ///< unit, from the surface to the particle
-    Vec3 velocity_before;  ///< m/s
-    Vec3 velocity_after;   ///< m/s
-    double mass = 0.0;     ///< kg
-    double radius = 0.0;   ///< m
+    Vec3 position;            ///< of the particle's centre: the safe position, m
+    Vec3 normal;              ///< unit, from the surface to the particle
+    Vec3 velocity_before;     ///< m/s
+    Vec3 velocity_after;      ///< m/s
+    double mass = 0.0;        ///< kg
+    double radius = 0.0;      ///< m
+    Vec3 surface_velocity{};  ///< m/s, of the surface's own material there, see SurfaceMotion; 0 where it does not grip
 };
 
 }  // namespace ricochet

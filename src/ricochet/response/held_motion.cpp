@@ -72,7 +72,7 @@ public:
         return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
             StuckSurfaces stuck = interval.stuck;
             return r.speed == 0.0 && r.rate != Vec3{} && is_stuck(stuck[r.surface], r.kind) &&
-                   length(r.rate) > kStopRounding * (length(motion_.velocity) + radius_ * length(motion_.spin));
+                   length(r.rate) > kStopRounding * speed_scale();
         });
     }
 
@@ -80,10 +80,18 @@ private:
     using Kind = Resistance::Kind;
 
     [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
+    /// The speeds that slips are made of, m/s.
+    [[nodiscard]] double speed_scale() const {
+        double scale = length(motion_.velocity) + radius_ * length(motion_.spin);
+        for (const HoldingSurface& surface : seen_) {
+            scale += length(surface.velocity) + radius_ * length(surface.angular_velocity);
+        }
+        return scale;
+    }
     [[nodiscard]] std::span<Resistance> resistances() { return {resistances_.data(), count_}; }
 
     void find_resistances(StuckSurfaces stuck) {
-        const double scale = length(motion_.velocity) + radius_ * length(motion_.spin);
+        const double scale = speed_scale();
         const auto add = [&](std::size_t surface, Kind kind, const Vec3& rate) {
             const double speed = length(rate);
             Resistance& added = resistances_[count_++];
@@ -96,10 +104,11 @@ private:
             const HoldingSurface& surface = surfaces_[k];
             const Vec3& n = seen_[k].normal;
             const auto carried = [&](const Vec3& rate) { return turned_with(rate, n, surface.normal); };
-            if (surface.friction > 0.0) add(k, Kind::slip, carried(slip_velocity(motion_, radius_, n)));
+            if (surface.friction > 0.0) add(k, Kind::slip, carried(slip_on(seen_[k], motion_, radius_)));
             if (!is_sphere()) continue;
-            const Vec3 spinning = dot(motion_.spin, n) * n;
-            if (surface.rolling_friction > 0.0) add(k, Kind::turning, carried(radius_ * (motion_.spin - spinning)));
+            const Vec3 spin = motion_.spin - surface.angular_velocity;
+            const Vec3 spinning = dot(spin, n) * n;
+            if (surface.rolling_friction > 0.0) add(k, Kind::turning, carried(radius_ * (spin - spinning)));
             if (surface.spinning_friction > 0.0) add(k, Kind::spinning, carried(radius_ * spinning));
         }
     }

@@ -54,7 +54,7 @@ void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_be
     if (!scratch_.record_contacts) return;
     scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position,
                                 surface.normal, velocity_before, particle_.state.velocity, particle_.state.mass,
-                                particle_.state.radius});
+                                particle_.state.radius, velocity_of(surface)});
 }
 
 /// What one bounce does not answer is answered by all surfaces together.
@@ -108,7 +108,8 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
             const Material& material = material_of(met[k].surface);
             const double speed = std::max(0.0, -dot(particle_.state.velocity, met[k].normal));
             const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
-            all[k] = {met[k].normal, restitution, material.friction};
+            all[k] = {met[k].normal, restitution, material.friction, 0.0, 0.0, velocity_of(met[k])};
+            scratch_.driven = scratch_.driven || all[k].velocity != Vec3{};
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
                                                  std::span(all).first(met.size()));
@@ -178,24 +179,30 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
 void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound) {
     const double approach = -dot(particle_.state.velocity, surface.normal);
     const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
-    const Motion motion{particle_.state.velocity, particle_.spin};
-    const Motion after = material.is_random()
-                             ? random_reflection(surface, material, restitution)
-                             : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
-    particle_.state.velocity = after.velocity;
-    particle_.spin = after.spin;
+    // As it is seen from the surface's own material.
+    const Vec3 carried = velocity_of(surface);
+    const bool is_driven = carried != Vec3{};
+    Motion motion{particle_.state.velocity, particle_.spin};
+    if (is_driven) motion.velocity -= carried;
+    motion = material.is_random()
+                 ? random_reflection(motion, surface, material, restitution)
+                 : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
+    if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
+    scratch_.driven = scratch_.driven || is_driven;
+    particle_.state.velocity = motion.velocity;
+    particle_.spin = motion.spin;
 }
 
 /// Absorbs, or reflects by the cosine law or as a mirror, as this particle's own random numbers say (Maxwell's model:
 /// J. C. Maxwell, "On stresses in rarified gases", Phil. Trans. 170, 1879).
-Motion ImpactAnswer::random_reflection(const ContactSurface& surface, const Material& material, double restitution) {
+Motion ImpactAnswer::random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
+                                       double restitution) {
     RandomSequence random(rules_.settings.seed, kImpactStream, particle_.id, particle_.draws);
-    Motion motion{particle_.state.velocity, particle_.spin};
     if (material.absorption > 0.0 && random.uniform() < material.absorption) {
         outcome_.end = MoveEnd::absorbed;
         motion = {};
     } else if (material.diffuse > 0.0 && random.uniform() < material.diffuse) {
-        scratch_.heated = scratch_.heated || material.wall_temperature.has_value();
+        scratch_.driven = scratch_.driven || material.wall_temperature.has_value();
         motion.velocity =
             material.wall_temperature
                 ? thermal_velocity(surface.normal,

@@ -36,6 +36,21 @@ public:
     [[nodiscard]] const Material& material_of(SurfaceId surface) const {
         return rules_.materials[rules_.world.material_of(surface)];
     }
+    /// m/s, of the surface's own material where it is touched, as far as it grips; see SurfaceMotion.
+    [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
+        return velocity_of(surface, particle_.state.position);
+    }
+    /// The same where the particle's centre is elsewhere.
+    [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface, const Vec3& center) const {
+        const Material& material = material_of(surface.surface);
+        if (!material.drives()) return {};
+        return material.motion.at(center - particle_.state.radius * surface.normal, surface.normal);
+    }
+    /// rad/s, of the turning of that material.
+    [[nodiscard]] Vec3 angular_velocity_of(SurfaceId surface) const {
+        const Material& material = material_of(surface);
+        return material.drives() ? material.motion.angular_velocity : Vec3{};
+    }
 
 private:
     enum class Rebound { by_material, none };
@@ -51,7 +66,8 @@ private:
     [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
     void stop_approach(std::span<const ContactSurface> surfaces);
     void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
-    [[nodiscard]] Motion random_reflection(const ContactSurface& surface, const Material& material, double restitution);
+    [[nodiscard]] Motion random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
+                                           double restitution);
     void push_out_of_corner(std::span<const ContactSurface> surfaces);
 
     const ResponseRules& rules_;

@@ -36,6 +36,8 @@ private:
             if (length(surfaces_[surface_of_[c]].normal - n) <= kSameDirection) return;
         }
         surface_of_[count_++] = surface;
+        is_driven_ =
+            is_driven_ || surfaces_[surface].velocity != Vec3{} || surfaces_[surface].angular_velocity != Vec3{};
         if (dot(before_.velocity, n) < 0.0) restitution_ = std::min(restitution_, surfaces_[surface].restitution);
     }
 
@@ -48,7 +50,7 @@ private:
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             if (surface.friction == 0.0) continue;
-            const Vec3 slip = slip_velocity(before_, radius_, surface.normal);
+            const Vec3 slip = slip_velocity(before_, radius_, surface.normal) - surface.velocity;
             problem_.add(
                 sliding_friction(static_cast<std::uint32_t>(c), surface.normal, surface.friction, radius_ > 0.0, slip));
         }
@@ -59,7 +61,7 @@ private:
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             const auto contact = static_cast<std::uint32_t>(c);
-            const Vec3 turning = radius_ * before_.spin;
+            const Vec3 turning = radius_ * (before_.spin - surface.angular_velocity);
             if (surface.rolling_friction > 0.0) {
                 problem_.add(rolling_resistance(contact, surface.normal, surface.rolling_friction, turning));
             }
@@ -117,11 +119,21 @@ private:
     }
 
     [[nodiscard]] bool gains(const ImpactResult& result) const {
-        return twice_kinetic(result.after, radius_) > twice_kinetic(before_, radius_) + rounding(result);
+        return twice_kinetic(result.after, radius_) > most_allowed(result) + rounding(result);
+    }
+
+    /// Twice the energy over the mass before the impact, and what moving surfaces have added to it.
+    [[nodiscard]] double most_allowed(const ImpactResult& result) const {
+        double sum = twice_kinetic(before_, radius_);
+        for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+            if (surfaces_[k].velocity != Vec3{}) sum += 2.0 * dot(result.push[k], surfaces_[k].velocity);
+        }
+        return sum;
     }
 
     /// Without the energy that rounding has let in; without losses with all of it.
     [[nodiscard]] ImpactResult kept(ImpactResult result) const {
+        if (is_driven_) return result;
         const double is = twice_kinetic(result.after, radius_);
         const double was = twice_kinetic(before_, radius_);
         const bool loses_none = restitution_ == 1.0 && was - is <= rounding(result) &&
@@ -139,7 +151,8 @@ private:
     double radius_;
     std::span<const ImpactSurface> surfaces_;
     double restitution_ = 1.0;
-    std::size_t count_ = 0;  // different normals
+    bool is_driven_ = false;  // by a surface that moves
+    std::size_t count_ = 0;   // different normals
     std::array<std::size_t, ImpactResult::kMostSurfaces> surface_of_{};
     CoulombProblem problem_;
 };

@@ -19,6 +19,10 @@ struct ImpactSurface {
     /// As those of Material; only where the particle lands without a rebound.
     double rolling_friction = 0.0;
     double spinning_friction = 0.0;  ///< m
+    /// Of its material at the contact, along the surface, m/s, and of the material's turning, rad/s; see SurfaceMotion.
+    /// What it does by that is no gain.
+    Vec3 velocity{};
+    Vec3 angular_velocity{};
 };
 
 /// What an impact does.

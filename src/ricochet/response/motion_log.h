@@ -25,16 +25,16 @@ public:
     /// It has met surfaces, or has been let go by them, or nothing has happened; without time.
     void note_impact() {
         if (!scratch_.record_motions) return;
-        const bool is_heated = std::exchange(scratch_.heated, false);
+        const bool is_driven = std::exchange(scratch_.driven, false);
         if (motion() == last_) return;
-        add(is_heated ? MotionPart::Kind::heat : MotionPart::Kind::impact, {}, true);
+        add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
     /// Surfaces have held it. force: over the mass at the begin, m/s^2; acts: false where forces have been in the
-    /// velocity from the step's start on.
-    void note_contact(const Vec3& force, bool acts) {
+    /// velocity from the step's start on. driven: one of the surfaces moves.
+    void note_contact(const Vec3& force, bool acts, bool driven = false) {
         if (!scratch_.record_motions) return;
         const Vec3 now = acts ? rules_.forces.acceleration(particle_.state) : Vec3{};
-        add(MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
+        add(driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
             !acts || rules_.forces.is_uniform_for(particle_.state));
     }
 

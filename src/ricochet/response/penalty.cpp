@@ -74,7 +74,7 @@ private:
     std::optional<BodyState> rk4(const BodyState& now, double h);
     bool find_contacts(const Vec3& position, std::vector<Proximity>& out);
     ContactPush push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts, double weight);
-    [[nodiscard]] PenaltyContact contact_of(const Proximity& view) const;
+    [[nodiscard]] PenaltyContact contact_of(const Proximity& view, const Vec3& center) const;
     void begin_contacts();
 
     const ResponseRules& rules_;
@@ -209,7 +209,7 @@ bool PenaltyMover::find_contacts(const Vec3& position, std::vector<Proximity>& o
     return true;
 }
 
-PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
+PenaltyContact PenaltyMover::contact_of(const Proximity& view, const Vec3& center) const {
     const std::uint32_t index = rules_.world.material_of(view.surface);
     const Material& material = rules_.materials[index];
     const double mass = state_.mass;
@@ -223,6 +223,8 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view) const {
     contact.rolling_friction = material.rolling_friction;
     contact.spinning_friction = material.spinning_friction;
     contact.mass = mass;
+    contact.velocity = impact_.velocity_of({view.surface, view.normal, true}, center);
+    contact.angular_velocity = impact_.angular_velocity_of(view.surface);
     return contact;
 }
 
@@ -236,8 +238,8 @@ ContactPush PenaltyMover::push_at(const BodyState& body, double time, const std:
     ContactPush push{rules_.forces.acceleration(input), {}};
     const double inertia = 0.4 * state_.mass * state_.radius * state_.radius;  // solid sphere
     for (const Proximity& view : contacts) {
-        const ContactForce force =
-            force_of(contact_of(view), body.motion, state_.radius, {rules_.settings.penalty.friction_speed, substep_});
+        const ContactForce force = force_of(contact_of(view, body.position), body.motion, state_.radius,
+                                            {rules_.settings.penalty.friction_speed, substep_});
         const Vec3 acceleration = force.force / state_.mass;
         push.acceleration += acceleration;
         if (inertia > 0.0) push.spin_acceleration += force.torque / inertia;
@@ -312,7 +314,7 @@ ContactForce force_of(const PenaltyContact& contact, const Motion& motion, doubl
     const double inertial = contact.mass / limits.step;  // kg/s
     const double damping = std::min(contact.damping, inertial);
     const double normal_force = std::max(0.0, contact.stiffness * contact.depth - damping * dot(motion.velocity, n));
-    const Vec3 slip = slip_velocity(motion, radius, n);
+    const Vec3 slip = slip_velocity(motion, radius, n) - contact.velocity;
     const double stopping = radius > 0.0 ? kSlipShare * inertial : inertial;
     const Vec3 friction = brake(slip, contact.friction * normal_force, limits.friction_speed, stopping);
     ContactForce result;
@@ -321,9 +323,9 @@ ContactForce force_of(const PenaltyContact& contact, const Motion& motion, doubl
     const auto resistance = [&](const Vec3& spin, double coefficient) {
         return brake(radius * spin, coefficient * normal_force, limits.friction_speed, kSphereInertia * inertial);
     };
-    const Vec3 spinning = dot(motion.spin, n) * n;
-    result.torque =
-        cross(-radius * n, friction) + radius * resistance(motion.spin - spinning, contact.rolling_friction);
+    const Vec3 spin = motion.spin - contact.angular_velocity;
+    const Vec3 spinning = dot(spin, n) * n;
+    result.torque = cross(-radius * n, friction) + radius * resistance(spin - spinning, contact.rolling_friction);
     if (contact.spinning_friction > 0.0) {
         result.torque += radius * resistance(spinning, contact.spinning_friction / radius);
     }

@@ -60,6 +60,8 @@ struct PenaltyContact {
     double rolling_friction = 0.0;
     double spinning_friction = 0.0;  ///< m
     double mass = 1.0;               ///< kg, of the particle
+    Vec3 velocity{};                 ///< m/s, of the surface's own material, see SurfaceMotion
+    Vec3 angular_velocity{};         ///< rad/s, of the same
 };
 
 /// Force of one contact, N, on the particle.

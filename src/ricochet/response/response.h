@@ -41,7 +41,7 @@ struct MoveScratch {
     bool record_segments = false;
     bool record_flown = false;
     bool record_motions = false;
-    bool heated = false;  ///< a wall of its own temperature has answered the impact that is not recorded yet
+    bool driven = false;  ///< a surface that moves or has a temperature has answered what is not recorded yet
 };
 
 /// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.

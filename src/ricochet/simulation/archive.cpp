@@ -72,6 +72,8 @@ std::uint64_t Simulation::Impl::settings_hash() const {
     for (const Material& m : materials) {
         add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.spinning_friction, m.diffuse,
             m.wall_temperature.value_or(0.0), m.absorption);
+        if (m.motion.is_none()) continue;
+        for (const Vec3& v : {m.motion.velocity, m.motion.angular_velocity, m.motion.center}) hash.add(v);
     }
     if (bounds) {
         hash.add(bounds->lower);

@@ -50,11 +50,15 @@ public:
                    fmt::format("a finite number of at least 0{}", unit.empty() ? "" : fmt::format(" ({})", unit)));
         }
     }
-    /// Every component finite and at most kLargestCoordinate.
-    void require_coordinates(const Vec3& value, std::string_view what, std::string_view unit) const {
-        if (is_finite(value) && max_abs(value) <= kLargestCoordinate) return;
+    /// Every component finite and at most `most`.
+    void require_size(const Vec3& value, double most, std::string_view what, std::string_view unit) const {
+        if (is_finite(value) && max_abs(value) <= most) return;
         refuse(what, fmt::format("[{}, {}, {}]", value.x, value.y, value.z),
-               fmt::format("finite numbers of at most {:g} {}", kLargestCoordinate, unit));
+               fmt::format("finite numbers of at most {:g} {}", most, unit));
+    }
+    /// The same with kLargestCoordinate.
+    void require_coordinates(const Vec3& value, std::string_view what, std::string_view unit) const {
+        require_size(value, kLargestCoordinate, what, unit);
     }
     void require_direction(const Vec3& value, std::string_view what) const {
         if (is_finite(value) && length(value) > 0.0 && std::isfinite(length(value))) return;
@@ -108,6 +112,10 @@ void validate(const Material& material, std::size_t number) {
     subject.require_in(material.diffuse, 0.0, 1.0, "diffuse", "a number from 0 to 1");
     subject.require_in(material.absorption, 0.0, 1.0, "absorption", "a number from 0 to 1");
     if (material.wall_temperature) subject.require_positive(*material.wall_temperature, "wall_temperature", "K");
+    const SurfaceMotion& motion = material.motion;
+    subject.require_size(motion.velocity, kMaxSpeed, "surface_motion.velocity", "m/s");
+    subject.require_size(motion.angular_velocity, kMaxSpeed, "surface_motion.angular_velocity", "rad/s");
+    subject.require_coordinates(motion.center, "surface_motion.center", "m");
 }
 
 void validate(const Placement& placement, const Subject& subject) {
@@ -200,6 +208,16 @@ void validate_emitters(const SimulationSetup& setup) {
     }
 }
 
+/// What flows carry has the flow's velocity and no friction.
+void validate_flow_walls(const SimulationSetup& setup) {
+    if (setup.options.flow == nullptr) return;
+    for (std::size_t k = 0; k < setup.materials.size(); ++k) {
+        if (!setup.materials[k].drives()) continue;
+        Subject("material", k, setup.materials[k].name)
+            .refuse("surface_motion", "a velocity", "none: walls do not carry what a flow carries");
+    }
+}
+
 void validate_springs(const SimulationSetup& setup) {
     if (setup.options.flow != nullptr && !setup.springs.empty()) {
         Subject("springs").refuse("number", setup.springs.size(), "none: a flow carries the particles");
@@ -286,6 +304,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
     validate_emitters(setup);
+    validate_flow_walls(setup);
     validate_springs(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);

@@ -35,7 +35,7 @@ double longest_way(const MotionPart& part, double largest_force) {
 }  // namespace
 
 bool gains_energy(const MotionPart& part) {
-    if (part.kind == MotionPart::Kind::flight || part.kind == MotionPart::Kind::heat) return false;
+    if (part.kind == MotionPart::Kind::flight || part.kind == MotionPart::Kind::driven) return false;
     const Long before = kinetic(part.begin, part.radius);
     const Long after = kinetic(part.end, part.radius);
     const auto& [first, last] = part.forces;

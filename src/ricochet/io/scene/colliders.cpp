@@ -55,6 +55,24 @@ std::vector<Variant> shapes() {
                                     {{"size", &CuboidShape::size, kLength, "m", "Full edge lengths.", kRequired}})};
 }
 
+constexpr Range kSurfaceSpeed = between(-kMaxSpeed, kMaxSpeed);
+
+const ObjectSpec& surface_motion_spec() {
+    using S = SurfaceMotion;
+    static const ObjectSpec spec =
+        object<S>("surface motion",
+                  "How the material of the surface moves while its geometry stands still: a belt, or the wall of a "
+                  "drum that turns "
+                  "about its own axis. Friction and diffuse reflection are relative to it; only the part of the "
+                  "velocity along the "
+                  "surface counts. Without friction and diffuse reflection nothing comes of it.",
+                  {{"velocity", &S::velocity, kSurfaceSpeed, "m/s", "The same everywhere."},
+                   {"angular_velocity", &S::angular_velocity, kSurfaceSpeed, "rad/s",
+                    "Turning by the right-hand rule about an axis through `center`, added to `velocity`."},
+                   {"center", &S::center, kCoordinate, "m", "A point of the axis, in world coordinates."}});
+    return spec;
+}
+
 class ColliderBuilder {
 public:
     ColliderBuilder(SceneContext& context, SimulationSetup& setup) : context_(context), setup_(setup) {}
@@ -76,9 +94,20 @@ private:
     void build_materials() {
         for (const NamedObject& named : context_.root().named_objects("materials")) {
             setup_.materials.push_back(named.view.read<Material>());
+            if (named.view.has("surface_motion")) {
+                setup_.materials.back().motion = named.view.object("surface_motion").read<SurfaceMotion>();
+                warn_about_idle_motion(named.view, setup_.materials.back());
+            }
             setup_.materials.back().name = named.name;
         }
         used_.resize(setup_.materials.size(), false);
+    }
+
+    void warn_about_idle_motion(const ObjectView& view, const Material& material) {
+        if (material.motion.is_none() || material.drives()) return;
+        context_.diagnostics().warning(view.location_of("surface_motion"), view.path_of("surface_motion"),
+                                       "nothing comes of it without friction, resistance to rolling or spinning, or "
+                                       "diffuse reflection");
     }
 
     // Index of a collider's material; colliders without one share a perfect one after those of the scene.
@@ -207,7 +236,9 @@ const ObjectSpec& material_spec() {
                    {"wall_temperature", &M::wall_temperature, kPositive, "K",
                     "Diffuse reflections leave with the thermal speeds of a wall of this temperature.",
                     Without{"diffuse reflections keep the speed of arrival"}},
-                   {"absorption", &M::absorption, kFraction, "", "Fraction of the impacts that remove the particle."}});
+                   {"absorption", &M::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
+                   {"surface_motion", ValueType::object, "How the surface's own material moves.",
+                    Without{"the material is at rest"}, &surface_motion_spec()}});
     return spec;
 }
 

@@ -35,6 +35,7 @@ bool is_ignored(int signal) {
 }  // namespace
 
 void end_at_interrupts() {
+    (void)std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more shows in write()
     struct sigaction action {};
     action.sa_handler = handle;
     // System calls go on after a signal that is only noted.

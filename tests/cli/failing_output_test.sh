@@ -31,10 +31,9 @@ cat >"$folder/scene.json" <<'SCENE'
 SCENE
 
 # The frames after the burst are larger than any file may be: a full disk, as the program sees it. The signal that comes
-# with this limit is ignored, so that the write fails instead.
+# with this limit does not end it.
 code=0
 (
-    trap '' XFSZ
     ulimit -f 64
     exec "$ricochet" run "$folder/scene.json" --output "$folder/full" --quiet
 ) >"$folder/full.out" 2>"$folder/full.err" || code=$?

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -219,6 +220,9 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     expect_refused(files.run({"--resume"}), 2, "a checkpoint of another version");
     (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
+    std::filesystem::remove(files.folder.path("out/checkpoint.bin"));
+    ASSERT_EQ(::mkfifo(files.folder.path("out/checkpoint.bin").c_str(), 0600), 0);
+    expect_refused(files.run({"--resume"}), 2, "found no regular file, expected a checkpoint");
 }
 
 TEST(RunCommand, NeverWritesTheFinalStateOverWhatItReadsOrWrites) {

@@ -52,6 +52,12 @@ using OpenFile = std::unique_ptr<std::FILE, Close>;
 }
 
 OpenFile open_checkpoint(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    // A pipe would be waited for.
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        refuse(file, "found no regular file, expected a checkpoint");
+    }
     OpenFile opened(std::fopen(file.c_str(), "rb"));
     if (opened) return opened;
     if (errno != ENOENT) fail_to_read(file);

@@ -30,7 +30,7 @@ public:
           state_(particle.state),
           step_(rules, particle, duration, scratch),
           manifold_(step_.geometry(), state_),
-          flow_(rules, state_, manifold_, duration) {}
+          flow_(rules, step_.geometry(), state_, manifold_, duration) {}
 
     MoveOutcome run();
 
@@ -88,12 +88,13 @@ void Advector::advance() {
     surface_segments_ += flow_.is_held() ? 1 : 0;
     int halvings = 0;
     double duration = path.duration;
-    const auto contact = step_.follow(path, {}, [&](double time, const Path& tried) -> std::optional<Path> {
-        if (!flow_.dips(tried, time) || halvings++ == kMostHalvings) return std::nullopt;
-        const Path shorter = flow_.next_path(0.5 * tried.duration, reach());
-        duration = shorter.duration;
-        return shorter;
-    });
+    const auto contact =
+        step_.follow(path, flow_.followed(), [&](double time, const Path& tried) -> std::optional<Path> {
+            if (!flow_.dips(tried, time) || halvings++ == kMostHalvings) return std::nullopt;
+            const Path shorter = flow_.next_path(0.5 * tried.duration, reach());
+            duration = shorter.duration;
+            return shorter;
+        });
     if (step_.outcome().is_frozen()) return;
     surface_segments_ += halvings > 0 && !flow_.is_held() ? 1 : 0;
     longest_ = halvings > 0 ? 2.0 * duration : 2.0 * longest_;
@@ -124,9 +125,11 @@ void Advector::watch_progress() {
     remaining_at_contact_ = step_.remaining();
     if (!is_quick) widening_ = 1.0;
     if (quick_contacts_ % kContactsToWiden == 0) widening_ = std::min(2.0 * widening_, kMostWidening);
-    const bool is_here = contacts_here_ > 0 &&
-                         max_abs(state_.position - here_) <= kEdgeOffsets * contact_offset(state_.position) &&
-                         remaining_here_ - step_.remaining() <= kNoProgress * step_.duration();
+    // Next to the origin positions are rounded by less and less: what the flow does in a step counts, too.
+    const double next_to_nothing = std::max(kEdgeOffsets * contact_offset(state_.position),
+                                            kNoProgress * step_.duration() * length(flow_.free_velocity()));
+    const bool is_here = contacts_here_ > 0 && max_abs(state_.position - here_) <= next_to_nothing &&
+                         remaining_here_ - step_.remaining() <= kQuickContact * step_.duration();
     if (!is_here) {
         contacts_here_ = 0;
         here_ = state_.position;

@@ -6,13 +6,66 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/held_surfaces.h"
 #include "ricochet/response/impact_answer.h"
+#include "ricochet/response/normal_rate.h"
 
 namespace ricochet {
 namespace {
 
+/// Part of a flow's speed that counts as its speed along a round surface at least: next to where it stops there, it is
+/// soon faster.
+constexpr double kSlowFlow = 0.1;
+
 /// Halvings in search of the time at which the flow turns away from a wall: to the last bit of the time.
 constexpr int kReleaseHalvings = 60;
+
+/// The normal of a round shape at a position, on the side that one of its normals says.
+Vec3 round_normal(const SurfaceGeometry& geometry, const ContactSurface& surface, const Vec3& position) {
+    const Vec3 normal = geometry.unit_normal_of(surface.surface, position);
+    return dot(normal, surface.normal) < 0.0 ? -normal : normal;
+}
+
+/// A flow without its part along the normals of surfaces, as they are at each position: round ones turn.
+class FlowAlongRound final : public FlowField {
+public:
+    FlowAlongRound(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces)
+        : flow_(flow), geometry_(geometry), surfaces_(surfaces) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        std::array<Vec3, kMostHolding> normals;
+        return along_all(flow_.velocity(position, time), normals_at(position, normals));
+    }
+    [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
+    /// Shifted onto the surfaces, so that it keeps this distance from each.
+    [[nodiscard]] Vec3 put_on(Vec3 position, double distance) const {
+        constexpr int kCorrections = 3;
+        for (int k = 0; k < kCorrections; ++k) {
+            std::array<Vec3, kMostHolding> normals;
+            std::array<double, kMostHolding> lifts{};
+            const auto at = normals_at(position, normals);
+            for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+                const SurfaceId surface = surfaces_[i].surface;
+                const double side = dot(geometry_.unit_normal_of(surface, position), at[i]) < 0.0 ? -1.0 : 1.0;
+                lifts[i] = distance - side * geometry_.signed_distance_from(surface, position);
+            }
+            position += shift_by(at, {lifts.data(), surfaces_.size()});
+        }
+        return flush_tiny(position);
+    }
+
+private:
+    std::span<const Vec3> normals_at(const Vec3& position, std::array<Vec3, kMostHolding>& normals) const {
+        for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+            const ContactSurface& surface = surfaces_[i];
+            normals[i] = surface.flat ? surface.normal : round_normal(geometry_, surface, position);
+        }
+        return {normals.data(), surfaces_.size()};
+    }
+
+    const FlowField& flow_;
+    const SurfaceGeometry& geometry_;
+    std::span<const ContactSurface> surfaces_;
+};
 
 /// A flow without its part along normals.
 class FlowAlong final : public FlowField {
@@ -104,9 +157,10 @@ double ConstrainedFlow::time_to_release(double remaining) const {
 
 Path ConstrainedFlow::next_path(double duration, double reach) {
     for (holders_ = holders_now();;) {
+        find_followed();
         const Path path = free_path(duration);
         if (holders_.empty() || !can_be_followed(path)) return path;
-        const Part held = until_release(path);
+        const Part held = followed_count_ > 0 ? along_round(duration) : until_release(path);
         if (is_no_progress(held.path)) {  // the flow turns away here
             holders_.remove(held.ended_by);
             continue;
@@ -117,6 +171,7 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
             holders_ = holders_now();
             continue;
         }
+        if (followed_count_ > 0) return part.path;
         for (std::size_t k = 0; k < holders_.size(); ++k) {
             const ContactSurface support = manifold_[holders_.point(k)];
             if (!support.flat) return along_curved(support, part.path);
@@ -152,6 +207,81 @@ Path ConstrainedFlow::free_path(double duration) {
         flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration, next_duration_);
     next_duration_ = free.next_duration;
     return free.path;
+}
+
+/// Arcs are for round shapes, off their rims, with nothing else but flat surfaces.
+void ConstrainedFlow::find_followed() {
+    followed_count_ = 0;
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        const ContactSurface support = manifold_[holders_.point(k)];
+        if (support.flat) continue;
+        const SurfaceId surface = support.surface;
+        if (!rules_.world.is_shape(surface) || geometry_.nearest(surface, state_.position).rim) {
+            followed_count_ = 0;
+            return;
+        }
+        followed_[followed_count_++] = surface;
+    }
+}
+
+/// The arc up to where a holder lets go, or ends.
+ConstrainedFlow::Part ConstrainedFlow::along_round(double duration) {
+    Part part{arc(longest_arc(duration)), 0};
+    const auto let_go = let_go_by(part.path.end, state_.time + part.path.duration);
+    if (!let_go) return part;
+    part.ended_by = *let_go;
+    const double until = last_time(part.path.duration, [&](double s) {
+        const std::optional<std::size_t> by = s > 0.0 ? let_go_by(arc(s).end, state_.time + s) : std::nullopt;
+        if (by) part.ended_by = *by;
+        return !by;
+    });
+    part.path = arc(until);
+    return part;
+}
+
+/// The way of so many seconds along the holders, as the cubic through its ends.
+Path ConstrainedFlow::arc(double duration) {
+    std::array<ContactSurface, kMostHolding> surfaces;
+    for (std::size_t k = 0; k < holders_.size(); ++k) surfaces[k] = manifold_[holders_.point(k)];
+    const FlowAlongRound along(flow_, geometry_, std::span(surfaces).first(holders_.size()));
+    const Vec3& from = state_.position;
+    const FlowPath way = flow_path(rules_.settings.integrator, along, from, state_.time, duration, duration);
+    const double passed = way.path.duration;
+    const Vec3 end = along.put_on(way.path.end, state_.radius + contact_offset(way.path.end));
+    Path path =
+        hermite_path(from, along.velocity(from, state_.time), end, along.velocity(end, state_.time + passed), passed);
+    lift_middle(geometry_, manifold_, state_.radius, path);
+    return path;
+}
+
+/// The holder that the flow no longer presses the particle onto there, or whose rim it has come to.
+std::optional<std::size_t> ConstrainedFlow::let_go_by(const Vec3& position, double time) const {
+    std::array<Vec3, kMostHolding> normals;
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        const ContactSurface support = manifold_[holders_.point(k)];
+        if (!support.flat && geometry_.nearest(support.surface, position).rim) return k;
+        normals[k] = support.flat ? support.normal : round_normal(geometry_, support, position);
+    }
+    const auto loads = normal_accelerations(flow_.velocity(position, time), std::span(normals).first(holders_.size()));
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        if (!(loads[k] > 0.0)) return k;
+    }
+    return std::nullopt;
+}
+
+/// s, until a holder's normal has turned by kMaxArcAngle; about, where the flow is about to be faster.
+double ConstrainedFlow::longest_arc(double duration) const {
+    const Vec3 free = free_velocity();
+    const double speed = std::max(length(along_all(free, holders_.normals())), kSlowFlow * length(free));
+    const Vec3 heading = normalized(along_all(free, holders_.normals()));
+    if (!(speed > 0.0) || !is_finite(heading)) return duration;
+    for (const SurfaceId surface : followed()) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+        const double turning =
+            speed * length(normal_rate(geometry_, state_.radius, surface, nearest, state_.position, heading));
+        if (turning * duration > kMaxArcAngle) duration = kMaxArcAngle / turning;
+    }
+    return duration;
 }
 
 /// The holder that a flow presses on least.
@@ -226,15 +356,14 @@ Path ConstrainedFlow::lifted(Path path) const {
     return path;
 }
 
-/// A straight part of a path along a curved surface that turns by at most kMaxChordAngle: a tangent where the surface
+/// A straight part of a path round an edge or a rim that turns by at most kMaxChordAngle: a tangent where the surface
 /// bends away, from whose end the flow presses the particle on again; a chord where it bends towards the particle.
 Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
-    const CollisionWorld& world = rules_.world;
-    const double size = world.size_of(support.surface);
-    const double bend = state_.radius > 0.0 ? std::min(size, state_.radius) : size;
-    const double speed = length(path.c[1]);
-    if (speed > 0.0) path = cut(path, chord_angle(chords_++) * bend / speed);
-    const CollisionWorld::Nearest there = world.nearest(support.surface, path.end);
+    const CollisionWorld::Nearest here = geometry_.nearest(support.surface, state_.position);
+    const double turning =
+        length(normal_rate(geometry_, state_.radius, support.surface, here, state_.position, path.c[1]));
+    if (turning > 0.0) path = cut(path, chord_angle(chords_++) / turning);
+    const CollisionWorld::Nearest there = geometry_.nearest(support.surface, path.end);
     const double side = dot(there.normal, support.normal) < 0.0 ? -1.0 : 1.0;
     const double offset = contact_offset(path.end);
     const double lift = state_.radius + offset - side * there.distance;

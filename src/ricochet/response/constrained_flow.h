@@ -3,12 +3,14 @@
 ///
 /// Of the surfaces touched those hold the particle that the flow presses it onto (see normal_accelerations()). A path
 /// follows the flow without its part along their normals and ends where the flow turns away from one of them, where
-/// the first of them ends, or where a curved one has turned by kMaxChordAngle; by more where the step has seen many
+/// the first of them ends, or where a curved one has turned: by kMaxArcAngle along the side of a ball or a cylinder,
+/// where it is an arc with the method's order; by kMaxChordAngle round edges, and by more where the step has seen many
 /// such chords already.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "ricochet/geometry/sweep/path.h"
@@ -39,8 +41,14 @@ private:
 class ConstrainedFlow {
 public:
     /// All must outlive it. step: duration of the whole step, s.
-    ConstrainedFlow(const ResponseRules& rules, const ForceInput& state, ContactManifold& manifold, double step)
-        : rules_(rules), flow_(*rules.settings.flow), state_(state), manifold_(manifold), step_(step) {}
+    ConstrainedFlow(const ResponseRules& rules, const SurfaceGeometry& geometry, const ForceInput& state,
+                    ContactManifold& manifold, double step)
+        : rules_(rules),
+          flow_(*rules.settings.flow),
+          geometry_(geometry),
+          state_(state),
+          manifold_(manifold),
+          step_(step) {}
 
     /// The flow's velocity where the particle is, m/s.
     [[nodiscard]] Vec3 free_velocity() const { return flow_.velocity(state_.position, state_.time); }
@@ -57,6 +65,8 @@ public:
     [[nodiscard]] Path next_path(double duration, double reach);
     /// True when the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
+    /// The round shapes along which the last path bends: it does not hit those, see ContactQuery::held.
+    [[nodiscard]] std::span<const SurfaceId> followed() const { return {followed_.data(), followed_count_}; }
     /// True when a path is back, after this time along it, at a flat surface that the particle has just left: the
     /// cubic dips into the surface where the flow does not.
     [[nodiscard]] bool dips(const Path& path, double time) const;
@@ -70,6 +80,11 @@ private:
 
     [[nodiscard]] Holders holders_now() const;
     [[nodiscard]] Path free_path(double duration);
+    void find_followed();
+    [[nodiscard]] Part along_round(double duration);
+    [[nodiscard]] Path arc(double duration);
+    [[nodiscard]] std::optional<std::size_t> let_go_by(const Vec3& position, double time) const;
+    [[nodiscard]] double longest_arc(double duration) const;
     [[nodiscard]] Part until_release(const Path& path) const;
     [[nodiscard]] std::size_t weakest(const Vec3& g) const;
     [[nodiscard]] Part until_rim(const Path& path, double reach) const;
@@ -79,12 +94,15 @@ private:
 
     const ResponseRules& rules_;
     const FlowField& flow_;
+    const SurfaceGeometry& geometry_;
     const ForceInput& state_;
     ContactManifold& manifold_;
     double step_;
     double next_duration_ = 0.0;  // s, of an adaptive method
     Holders holders_;             // of the last path
-    int chords_ = 0;              // along curved surfaces so far
+    std::array<SurfaceId, kMostHolding> followed_{};
+    std::size_t followed_count_ = 0;
+    int chords_ = 0;  // round edges so far
 };
 
 }  // namespace ricochet

@@ -18,10 +18,6 @@
 
 namespace ricochet {
 
-/// The part of a surface that is nearest to a position: 0 the inside of a triangle or a surface without parts; else bit
-/// k stands for corner k of its edge or vertex.
-[[nodiscard]] int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position);
-
 /// What an arc starts from, besides the particle.
 struct ArcStart {
     Vec3 spin;                   ///< rad/s

@@ -246,7 +246,7 @@ void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way
     if (!(time > 0.0)) return;
     way.path = hermite_path(arc.start().position, arc.start().motion.velocity, way.end.position,
                             way.end.motion.velocity, time);
-    if (state_.radius == 0.0) held_.lift_middle(way.path);
+    lift_middle(step_.geometry(), manifold_, state_.radius, way.path);
 }
 
 /// The time on the path, s, from which another part of a surface is touched, if only for a while.

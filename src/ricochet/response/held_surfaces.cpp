@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/normal_rate.h"
 
 namespace ricochet {
 
@@ -75,18 +75,23 @@ bool HeldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const 
     return geometry_.nearest(surface, position - height).distance > kEdgeOffsets * contact_offset(position);
 }
 
-void HeldSurfaces::lift_middle(Path& path) const {
-    for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        const ContactSurface surface = manifold_[k];
+void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path) {
+    for (std::size_t k = 0; k < manifold.size(); ++k) {
+        const ContactSurface surface = manifold[k];
         if (surface.flat) continue;
-        const auto normal_at = [&](const Vec3& p) { return geometry_.unit_normal_of(surface.surface, p); };
+        // Round an edge or a rim a sphere is no way above the surface's own continuation.
+        const bool is_round =
+            geometry.world().is_shape(surface.surface) && !geometry.nearest(surface.surface, path.c[0]).rim;
+        if (radius > 0.0 && !is_round) continue;
+        const auto normal_at = [&](const Vec3& p) { return geometry.unit_normal_of(surface.surface, p); };
         const double side = dot(normal_at(path.c[0]), surface.normal) < 0.0 ? -1.0 : 1.0;
         double behind = 0.0;
         for (const double part : {0.25, 0.5, 0.75}) {
             const Vec3 p = path.position(part * path.duration);
-            behind = std::max(behind, contact_offset(p) - side * geometry_.signed_distance_from(surface.surface, p));
+            const double distance = side * geometry.signed_distance_from(surface.surface, p);
+            behind = std::max(behind, radius + contact_offset(p) - distance);
         }
-        if (behind == 0.0) continue;
+        if (behind <= 0.5 * radius) continue;
         const Vec3 middle = path.position(0.5 * path.duration);
         const Vec3 lift = (4.0 * (behind + contact_offset(middle)) * side / path.duration) * normal_at(middle);
         path.c[1] += lift;

@@ -32,10 +32,6 @@ public:
     /// True where a face of the manifold has ended.
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
 
-    /// Between its ends a point's path along a curved surface can be behind it by the cubic's error, where it would be
-    /// stopped: lifts it, by 3 s (1 - s) of a height over the path's duration, where the error is 16 s^2 (1 - s)^2.
-    void lift_middle(Path& path) const;
-
     /// A contact at the end of the way. With what continues the surfaces, such as the next triangle of a plane, it is
     /// none, and that holds the particle too from now on; in an impact on something else they take part.
     void meet(std::optional<Contact>& contact);
@@ -64,5 +60,10 @@ private:
     bool crosses_seam_ = false;  // the next way begins there
     int seams_ = 0;              // at which the step has met the next part of a surface
 };
+
+/// Between its ends the path of a point, or of a sphere that is small next to what it touches, can be behind curved
+/// surfaces by the cubic's error, where it would be stopped: lifts it, by 3 s (1 - s) of a height over the path's
+/// duration, where the error is 16 s^2 (1 - s)^2.
+void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path);
 
 }  // namespace ricochet

@@ -83,21 +83,25 @@ void ParticleStep::stop_at_contact(const ContactQuery& query, Travel& travel) {
     contact = contact_with_blocker(near, query.path, {safe.position, safe.time, safe.blocker});
 }
 
-/// Along a surface that bends away every chord of the path is blocked, and its control polygon is free.
+/// Along a surface that bends away every chord of a point's path is blocked, or of a small sphere's, and its control
+/// polygon is free.
 CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const ContactQuery& query) {
     const Path& path = query.path;
     std::vector<Vec3>& chain = scratch_.contacts.chain;
-    if (!query.held.empty() && query.radius == 0.0 && path.degree == 3) {
+    const auto is_free_outside = [&] {
+        if (query.held.empty() || path.degree != 3) return false;
         ControlPoints outside = path.control_points();
         outside.point[3] = path.end;
-        bool is_free = true;
-        for (std::size_t k = 1; k < 4; ++k) is_free = is_free && near.is_free(outside.point[k - 1], outside.point[k]);
-        if (is_free) {
-            chain.assign(outside.begin(), outside.end());
-            return {path.end, path.duration, std::nullopt};
+        for (std::size_t k = 1; k < 4; ++k) {
+            if (!near.is_free(outside.point[k - 1], outside.point[k])) return false;
         }
-    }
-    return follow_path(near, path, path.duration, path.end, chain);
+        chain.assign(outside.begin(), outside.end());
+        return true;
+    };
+    const CertifiedPath whole{path.end, path.duration, std::nullopt};
+    if (query.radius == 0.0 && is_free_outside()) return whole;
+    const CertifiedPath followed = follow_path(near, path, path.duration, path.end, chain);
+    return query.radius > 0.0 && followed.blocker && is_free_outside() ? whole : followed;
 }
 
 void ParticleStep::wait(double duration) {

@@ -1,0 +1,64 @@
+#include "ricochet/response/normal_rate.h"
+
+#include <algorithm>
+
+namespace ricochet {
+namespace {
+
+/// Step along a shape that its curvature is taken over, as a fraction of its size.
+constexpr double kCurvatureStep = 1e-4;
+
+/// Derivative of a shape's normal: by the difference of its normals along the motion. A side goes on beyond its rim.
+Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                       const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
+    const double speed = length(velocity);
+    if (speed == 0.0) return {};
+    const double size = geometry.world().size_of(surface);
+    const double step = kCurvatureStep * (radius > 0.0 ? std::min(size, radius) : size);
+    const Vec3 heading = velocity / speed;
+    // A tangent soon comes out on the other side of a surface that bends towards it.
+    const auto normal_at = [&](double distance) {
+        const Vec3 beside = position + distance * heading;
+        const Vec3 there =
+            nearest.rim ? geometry.nearest(surface, beside).normal : geometry.unit_normal_of(surface, beside);
+        return dot(there, nearest.normal) < 0.0 ? -there : there;
+    };
+    const Vec3 ahead = normal_at(step) - nearest.normal;
+    const Vec3 behind = nearest.normal - normal_at(-step);
+    // Next to a rim one of the two reaches over it.
+    const double difference = length(ahead - behind);
+    if (difference > 0.5 * std::max(length(ahead), length(behind))) {
+        return (speed / step) * (length(ahead) < length(behind) ? ahead : behind);
+    }
+    return (speed / (2.0 * step)) * (ahead + behind);
+}
+
+}  // namespace
+
+int touched_feature(const SurfaceGeometry& geometry, SurfaceId surface, const Vec3& position) {
+    const CollisionWorld& world = geometry.world();
+    if (!geometry.nearest(surface, position).rim) return 0;
+    if (world.is_shape(surface)) return geometry.world().rim_of(surface, position);
+    const Vec3 weights = world.closest_point_on(surface, position).barycentric;
+    int feature = 0;
+    for (int k = 0; k < 3; ++k) feature |= (weights[k] > 0.0 ? 1 : 0) << k;
+    return feature;
+}
+
+Vec3 normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
+                 const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
+    const CollisionWorld& world = geometry.world();
+    if (nearest.flat || (nearest.rim && radius == 0.0)) return {};
+    if (world.is_shape(surface)) return shape_normal_rate(geometry, radius, surface, nearest, position, velocity);
+    Vec3 across = velocity - dot(velocity, nearest.normal) * nearest.normal;
+    const auto triangle = world.triangle_of(surface);
+    const int corners = touched_feature(geometry, surface, position);
+    if (triangle && (corners == 3 || corners == 5 || corners == 6)) {
+        const auto [a, b, c] = world.corners_of_triangle(*triangle);
+        const Vec3 edge = normalized(corners == 3 ? b - a : (corners == 5 ? c - a : c - b));
+        across -= dot(across, edge) * edge;
+    }
+    return nearest.distance > 0.0 ? across / nearest.distance : Vec3{};
+}
+
+}  // namespace ricochet

@@ -49,6 +49,27 @@ TEST(FrameScene, MakesFramesAndLaunchesAsTheirKeysSay) {
     }
 }
 
+TEST(FrameScene, MakesMotionsWithoutKeys) {
+    const SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
+        "frames": {"f": {"motions": [{"type": "spin", "axis": [0, 1, 0], "rate": 90},
+            {"type": "swing", "axis": [1, 0, 0], "amplitude": 30, "frequency": 0.5, "phase": 20},
+            {"type": "oscillation", "amplitude": [0, 0, 2], "frequency": 3}]}},
+        "emitters": [{"type": "point", "frame": "f", "rate": 1}]})",
+                                               "s.json");
+    const FrameTree expected(
+        {{"f",
+          "",
+          {},
+          {0, 0, 1},
+          0.0,
+          {Spin{{0, 1, 0}, 90.0}, Swing{{1, 0, 0}, 30.0, 0.5, 20.0}, Oscillation{{0, 0, 2}, 3.0, 0.0}}}});
+    for (const double time : {0.0, 0.4, 7.3}) {
+        const MovingPose pose = scene.setup.emitters.at(0).frames->at(0, time);
+        EXPECT_EQ(pose.world_from_frame.point({1, 2, 3}), expected.at(0, time).world_from_frame.point({1, 2, 3}));
+        EXPECT_EQ(pose.velocity_of({1, 2, 3}), expected.at(0, time).velocity_of({1, 2, 3}));
+    }
+}
+
 TEST(FrameScene, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(error_of(R"("parent": "arm")", R"("parent": "amr")"),
               "frames.hand.parent: there is no frame \"amr\"; did you mean \"arm\"?");
@@ -65,7 +86,7 @@ TEST(FrameScene, SaysWhatIsWrongAndWhere) {
               "frames.arm.motions[0].axis: missing, expected [x, y, z], not all zero");
     EXPECT_EQ(error_of(R"("spline")", R"("splines")"),
               "frames.arm.motions[0].angle.interpolation: found \"splines\", expected one of \"linear\", "
-              "\"slow_in_slow_out\", \"spline\"; did you mean \"spline\"?");
+              "\"slow_in_slow_out\", \"spline\", \"cubic_spline\"; did you mean \"spline\"?");
     EXPECT_EQ(error_of(R"({"time": 0.5, "value": 90})", R"({"time": 0.5})"),
               "frames.arm.motions[0].angle.keys[1].value: missing, expected a number");
 }

@@ -185,6 +185,26 @@ TEST(Scene, DefaultsAreTheLibrarys) {
     EXPECT_FALSE(scene.camera->up.has_value());
 }
 
+TEST(Scene, ReadsHowTheMaterialOfASurfaceMoves) {
+    const auto scene = [](const std::string& material) {
+        return parse_scene(scene_of(R"("materials": {"belt": )" + material + R"(},
+            "particles": [{"position": [0, 0, 1]}],
+            "colliders": [{"type": "plane", "normal": [0, 0, 1], "material": "belt"}])"),
+                           "s.json");
+    };
+    const SceneDescription belt = scene(R"({"friction": 0.4, "surface_motion": {"velocity": [1, 2, 0],
+        "angular_velocity": [0, 0, 3], "center": [4, 5, 6]}})");
+    EXPECT_EQ(belt.warnings, std::vector<std::string>{});
+    const SurfaceMotion& motion = belt.setup.materials.at(0).motion;
+    EXPECT_EQ(motion.velocity, (Vec3{1, 2, 0}));
+    EXPECT_EQ(motion.angular_velocity, (Vec3{0, 0, 3}));
+    EXPECT_EQ(motion.center, (Vec3{4, 5, 6}));
+    const SceneDescription ice = scene(R"({"surface_motion": {"velocity": [1, 0, 0]}})");
+    ASSERT_EQ(ice.warnings.size(), 1U);
+    EXPECT_NE(ice.warnings[0].find("nothing comes of it without friction"), std::string::npos) << ice.warnings[0];
+    EXPECT_THROW((void)scene(R"({"friction": 1, "surface_motion": {"velocity": [3e8, 0, 0]}})"), InputError);
+}
+
 TEST(Scene, ACollidersWithoutAMaterialIsPerfectlyElastic) {
     const SampleFolder folder;
     const SceneDescription scene = parse_scene(scene_of(R"("materials": {"rubber": {"restitution": 0.5}},

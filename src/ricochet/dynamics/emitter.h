@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/dynamics/frame_tree.h"
-#include "ricochet/dynamics/keyed_curve.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 

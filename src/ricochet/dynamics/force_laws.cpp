@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
-#include "ricochet/dynamics/checks.h"
 #include "ricochet/dynamics/forces.h"
 
 namespace ricochet {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/checks.h"
 #include "ricochet/dynamics/forces.h"
 
 namespace ricochet {

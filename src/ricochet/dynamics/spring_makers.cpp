@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/dynamics/checks.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 namespace {

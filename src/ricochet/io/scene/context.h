@@ -15,11 +15,11 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/dynamics/frame_tree.h"
-#include "ricochet/dynamics/keyed_curve.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/fields.h"

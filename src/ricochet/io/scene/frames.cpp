@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/dynamics/keyed_curve.h"
+#include "ricochet/core/keyed_curve.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -41,7 +41,8 @@ Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
         {"interpolation", &C::interpolation, "What holds between two keys.",
          Choices{choice(I::linear, "a straight line"),
                  choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the distance, so that it is at rest at every key"),
-                 choice(I::spline, "a smooth cubic (Catmull-Rom, for uneven keys too)")}},
+                 choice(I::spline, "a smooth cubic (Catmull-Rom, for uneven keys too)"),
+                 choice(I::cubic_spline, "the cubic spline, whose second derivative is continuous as well")}},
         {"ends", &C::ends, "What holds before the first and after the last key.",
          Choices{
              choice(CurveEnds::hold, "hold", "that key's value"),
@@ -87,6 +88,22 @@ const ObjectSpec& motion_spec() {
              "rotation", "A turn about an axis through the frame's origin, by the right-hand rule.",
              {{"axis", &Turn::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
               {"angle", ValueType::object, "The angle: a curve.", &number_curve_spec(), Unit{"degrees"}, kRequired}}),
+         variant<Spin>(
+             "spin", "A steady turn about an axis through the frame's origin.",
+             {{"axis", &Spin::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
+              {"rate", &Spin::rate, kCoordinate, "degrees/s", "By the right-hand rule; the angle is 0 at 0 s.",
+               kRequired}}),
+         variant<Swing>(
+             "swing", "A turn to and fro about an axis through the frame's origin.",
+             {{"axis", &Swing::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
+              {"amplitude", &Swing::amplitude, kCoordinate, "degrees", "The largest angle.", kRequired},
+              {"frequency", &Swing::frequency, kCoordinate, "Hz", "How often a second.", kRequired},
+              {"phase", &Swing::phase, kCoordinate, "degrees", "Of the sine at 0 s."}}),
+         variant<Oscillation>(
+             "oscillation", "A way to and fro.",
+             {{"amplitude", &Oscillation::amplitude, kCoordinate, "m", "The largest offset of the origin.", kRequired},
+              {"frequency", &Oscillation::frequency, kCoordinate, "Hz", "How often a second.", kRequired},
+              {"phase", &Oscillation::phase, kCoordinate, "degrees", "Of the sine at 0 s."}}),
          variant<Unbound>("translation", "A translation along a curve.",
                           {{"way", ValueType::object, "Where the origin goes: a curve of [x, y, z].",
                             &vector_curve_spec(), Unit{"m"}, kRequired}})});
@@ -101,6 +118,12 @@ FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
             auto rotation = motion.read<KeyedRotation>();
             rotation.degrees = number_curve_of(motion.object("angle"), diagnostics);
             frame.motions.emplace_back(std::move(rotation));
+        } else if (motion.type() == "spin") {
+            frame.motions.emplace_back(motion.read<Spin>());
+        } else if (motion.type() == "swing") {
+            frame.motions.emplace_back(motion.read<Swing>());
+        } else if (motion.type() == "oscillation") {
+            frame.motions.emplace_back(motion.read<Oscillation>());
         } else if (motion.type() == "translation") {
             frame.motions.emplace_back(KeyedTranslation{vector_curve_of(motion.object("way"), diagnostics)});
         }
@@ -165,7 +188,7 @@ const ObjectSpec& frame_spec() {
               return RotationTarget{f.rotation_axis, f.rotation_degrees};
           },
           "Turns it.", Without{"not turned"}, &rotation_spec()},
-         {"motions", ValueType::list, "How it moves: rotations and translations keyed in time.", &motion_spec()}});
+         {"motions", ValueType::list, "How it moves.", &motion_spec()}});
     return spec;
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Arguments of forces and flows: each check throws InputError with one line.
+/// Arguments of forces, flows and frames: each check throws InputError with one line.
 #pragma once
 
 #include <string_view>

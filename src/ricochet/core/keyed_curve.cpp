@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/keyed_curve.h"
+#include "ricochet/core/keyed_curve.h"
 
 #include <fmt/format.h>
 
@@ -48,6 +48,65 @@ Value parabola_slope(double before, const Value& slope_before, double after, con
     return slope_before + weight * (slope_after - slope_before);
 }
 
+/// Rows of lower x_(k-1) + middle x_k + upper x_(k+1) = right.
+struct Tridiagonal {
+    std::vector<double> lower, middle, upper;
+
+    /// By elimination: for rows whose middle is more than the sum of the others.
+    template <class Value>
+    [[nodiscard]] std::vector<Value> solve(std::vector<Value> right) const {
+        const std::size_t rows = middle.size();
+        std::vector<double> pivot = middle;
+        for (std::size_t k = 1; k < rows; ++k) {
+            const double factor = lower[k] / pivot[k - 1];
+            pivot[k] -= factor * upper[k - 1];
+            right[k] = right[k] - factor * right[k - 1];
+        }
+        for (std::size_t k = rows; k-- > 0;) {
+            if (k + 1 < rows) right[k] = right[k] - upper[k] * right[k + 1];
+            right[k] = right[k] / pivot[k];
+        }
+        return right;
+    }
+};
+
+/// The slopes with which the second derivative is the same on both sides of every key: those of the keys beside it
+/// weigh by one over their distance. Held curves are at rest at both ends. The last key of a repeated one is its first,
+/// which joins the first row and the last: T x = right with x and a share of T z = corner (J. Sherman, W. J. Morrison,
+/// Annals of Mathematical Statistics 21, 1950).
+template <class Value>
+std::vector<Value> smooth_slopes(const std::vector<CurveKey<Value>>& keys, bool repeats) {
+    const std::size_t segments = keys.size() - 1;
+    std::vector<Value> slopes(keys.size());
+    if (repeats && segments == 1) slopes[0] = slopes[1] = chord_slope(keys, 0);
+    if (segments < 2) return slopes;
+    const std::size_t first = repeats ? 0 : 1;
+    Tridiagonal system;
+    std::vector<Value> right;
+    for (std::size_t k = first; k < segments; ++k) {
+        const std::size_t before = (k + segments - 1) % segments;
+        system.lower.push_back(1.0 / (keys[before + 1].time - keys[before].time));
+        system.upper.push_back(1.0 / (keys[k + 1].time - keys[k].time));
+        system.middle.push_back(2.0 * (system.lower.back() + system.upper.back()));
+        right.push_back(3.0 *
+                        (system.lower.back() * chord_slope(keys, before) + system.upper.back() * chord_slope(keys, k)));
+    }
+    std::vector<double> corner(right.size(), 0.0);
+    if (repeats) {
+        corner.front() = corner.back() = system.lower.front();
+        system.middle.front() -= corner.front();
+        system.middle.back() -= corner.back();
+    }
+    const std::vector<Value> open = system.solve(right);
+    const std::vector<double> closing = system.solve(corner);
+    const Value share = (open.front() + open.back()) / (1.0 + closing.front() + closing.back());
+    for (std::size_t k = 0; k < open.size(); ++k) {
+        slopes[k + first] = repeats ? open[k] - closing[k] * share : open[k];
+    }
+    if (repeats) slopes.back() = slopes.front();
+    return slopes;
+}
+
 }  // namespace
 
 std::string_view name_of(Interpolation interpolation) {
@@ -58,6 +117,8 @@ std::string_view name_of(Interpolation interpolation) {
             return "slow_in_slow_out";
         case Interpolation::spline:
             return "spline";
+        case Interpolation::cubic_spline:
+            return "cubic_spline";
     }
     return "";
 }
@@ -73,7 +134,11 @@ KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation i
     if (name_of(interpolation).empty()) throw InputError("a curve has an interpolation that does not exist");
     if (ends != CurveEnds::hold && ends != CurveEnds::repeat) throw InputError("a curve has ends that do not exist");
     check(keys_, ends_);
-    set_slopes();
+    if (interpolation == Interpolation::cubic_spline) {
+        slopes_ = smooth_slopes(keys_, ends_ == CurveEnds::repeat);
+    } else {
+        set_slopes();
+    }
 }
 
 // At the ends of a held curve the slope is 0; a repeated one has the last segment before the first key.
@@ -128,7 +193,7 @@ Value KeyedCurve<Value>::value(double time) const {
     const Value change = keys_[k + 1].value - keys_[k].value;
     const double ease = s * s * (3.0 - 2.0 * s);
     Value value = keys_[k].value + (interpolation_ == Interpolation::linear ? s : ease) * change;
-    if (interpolation_ == Interpolation::spline) {
+    if (interpolation_ == Interpolation::spline || interpolation_ == Interpolation::cubic_spline) {
         const double r = 1.0 - s;
         value += (span * s * r) * (r * slopes_[k] - s * slopes_[k + 1]);
     }

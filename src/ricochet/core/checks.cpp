@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/checks.h"
+#include "ricochet/core/checks.h"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,15 @@
-#include "ricochet/dynamics/frame_tree.h"
+#include "ricochet/core/frame_tree.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
-#include "ricochet/dynamics/checks.h"
 
 namespace ricochet {
 namespace {
@@ -43,16 +44,40 @@ void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate) {
     for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) *row = turned_row(*row, axis, sine, cosine);
 }
 
+/// A sine of amplitude 1, and its derivative, 1/s.
+struct Wave {
+    Wave(double frequency, double phase, double time) {
+        // Whole periods are taken off before the phase is added, which would be lost in many.
+        const double turns = std::remainder(frequency * time, 1.0) + phase / 360.0;
+        value = sine_of_turns(turns);
+        rate = 2.0 * std::numbers::pi * frequency * sine_of_turns(turns + 0.25);
+    }
+    double value, rate;
+};
+
+void move(MovingPose& pose, const KeyedRotation& motion, double time) {
+    turn(pose, motion.axis, motion.degrees.value(time), motion.degrees.derivative(time));
+}
+void move(MovingPose& pose, const KeyedTranslation& motion, double time) {
+    shift(pose, motion.path.value(time), motion.path.derivative(time));
+}
+void move(MovingPose& pose, const Spin& motion, double time) {
+    turn(pose, motion.axis, motion.rate * time, motion.rate);
+}
+void move(MovingPose& pose, const Swing& motion, double time) {
+    const Wave wave(motion.frequency, motion.phase, time);
+    turn(pose, motion.axis, motion.amplitude * wave.value, motion.amplitude * wave.rate);
+}
+void move(MovingPose& pose, const Oscillation& motion, double time) {
+    const Wave wave(motion.frequency, motion.phase, time);
+    shift(pose, wave.value * motion.amplitude, wave.rate * motion.amplitude);
+}
+
 void step_into(MovingPose& pose, const FrameDescription& frame, double time) {
     shift(pose, frame.translation, {});
     if (frame.rotation_degrees != 0.0) turn(pose, frame.rotation_axis, frame.rotation_degrees, 0.0);
     for (const FrameMotion& motion : frame.motions) {
-        if (const auto* rotation = std::get_if<KeyedRotation>(&motion)) {
-            turn(pose, rotation->axis, rotation->degrees.value(time), rotation->degrees.derivative(time));
-        } else {
-            const auto& path = std::get<KeyedTranslation>(motion).path;
-            shift(pose, path.value(time), path.derivative(time));
-        }
+        std::visit([&](const auto& m) { move(pose, m, time); }, motion);
     }
 }
 
@@ -62,9 +87,24 @@ void prepare(FrameDescription& frame) {
     detail::require_finite(frame.translation, of_frame("the translation"), "m");
     detail::require_finite(frame.rotation_degrees, of_frame("the rotation"), "degrees");
     frame.rotation_axis = detail::unit_direction(frame.rotation_axis, of_frame("the rotation's axis"));
+    const auto check_wave = [&](double frequency, double phase) {
+        detail::require_finite(frequency, of_frame("a motion's frequency"), "Hz");
+        detail::require_finite(phase, of_frame("a motion's phase"), "degrees");
+    };
     for (FrameMotion& motion : frame.motions) {
-        if (auto* rotation = std::get_if<KeyedRotation>(&motion)) {
-            rotation->axis = detail::unit_direction(rotation->axis, of_frame("a motion's axis"));
+        std::visit(
+            [&](auto& m) {
+                if constexpr (requires { m.axis; })
+                    m.axis = detail::unit_direction(m.axis, of_frame("a motion's axis"));
+                if constexpr (requires { m.rate; })
+                    detail::require_finite(m.rate, of_frame("a motion's rate"), "degrees/s");
+                if constexpr (requires { m.frequency; }) check_wave(m.frequency, m.phase);
+            },
+            motion);
+        if (const auto* swing = std::get_if<Swing>(&motion)) {
+            detail::require_finite(swing->amplitude, of_frame("a motion's amplitude"), "degrees");
+        } else if (const auto* way = std::get_if<Oscillation>(&motion)) {
+            detail::require_finite(way->amplitude, of_frame("a motion's amplitude"), "m");
         }
     }
 }

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/keyed_curve.h"
+#include "ricochet/core/keyed_curve.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ using Keys = std::vector<CurveKey<double>>;
 using VectorKeys = std::vector<CurveKey<Vec3>>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::array kInterpolations = {Interpolation::linear, Interpolation::slow_in_slow_out, Interpolation::spline};
+constexpr std::array kInterpolations = {Interpolation::linear, Interpolation::slow_in_slow_out, Interpolation::spline,
+                                        Interpolation::cubic_spline};
 
 Keys random_keys(RandomSequence& random) {
     Keys keys;
@@ -173,6 +174,63 @@ TEST(KeyedCurve, ASplineAlongASineFollowsItWithThirdOrderInItsKeys) {
     EXPECT_GT(largest_error(32) / largest_error(64), 7.0);
 }
 
+/// The second derivative just beside a time, by one-sided differences of the derivative: linear in each segment.
+double second_derivative(const KeyedCurve<double>& curve, double time, double side) {
+    const double h = side * 1e-4;
+    const double near = (curve.derivative(time + 2.0 * h) - curve.derivative(time + h)) / h;
+    const double far = (curve.derivative(time + 4.0 * h) - curve.derivative(time + 3.0 * h)) / h;
+    return near - 0.75 * (far - near);  // of time + 1.5 h and + 3.5 h: on to the time itself
+}
+
+TEST(KeyedCurve, TheSecondDerivativeOfACubicSplineIsContinuousAtEveryKey) {
+    RandomSequence random(11, 1, 0);
+    for (int round = 0; round < 50; ++round) {
+        const Keys keys = random_keys(random);
+        for (const CurveEnds ends : {CurveEnds::hold, CurveEnds::repeat}) {
+            const KeyedCurve<double> curve(keys, Interpolation::cubic_spline, ends);
+            for (std::size_t k = 1; k + 1 < keys.size() + (ends == CurveEnds::repeat ? 1 : 0); ++k) {
+                const double before = second_derivative(curve, keys[k].time, -1.0);
+                const double after = second_derivative(curve, keys[k].time, 1.0);
+                EXPECT_NEAR(before, after, 1e-7 * (1.0 + std::fabs(before))) << round << ", key " << k;
+            }
+        }
+    }
+}
+
+TEST(KeyedCurve, ACubicSplineThroughUnevenKeysOfACubicAtRestAtItsEndsIsTheCubic) {
+    Keys keys;
+    for (const double s : {0.0, 0.1, 0.15, 0.4, 0.75, 0.8, 1.0}) keys.push_back({3.0 * s, s * s * (3.0 - 2.0 * s)});
+    const KeyedCurve<double> curve(keys, Interpolation::cubic_spline);
+    for (double s = 0.0; s <= 1.0; s += 0.01) {
+        EXPECT_NEAR(curve.value(3.0 * s), s * s * (3.0 - 2.0 * s), 1e-14);
+        EXPECT_NEAR(curve.derivative(3.0 * s), 6.0 * s * (1.0 - s) / 3.0, 1e-13);
+    }
+}
+
+TEST(KeyedCurve, ARepeatedCubicSplineAlongASineFollowsItWithFourthOrderInItsKeys) {
+    const auto error = [](int count) {
+        Keys keys;
+        for (int k = 0; k <= count; ++k) keys.push_back({1.0 * k, std::sin(2.0 * 3.14159265358979323846 * k / count)});
+        keys.back().value = keys.front().value;
+        const KeyedCurve<double> curve(keys, Interpolation::cubic_spline, CurveEnds::repeat);
+        double largest = 0.0;
+        for (double t = -3.0; t < 2.0 * count; t += 0.0371) {
+            largest = std::max(largest, std::fabs(curve.value(t) - std::sin(2.0 * 3.14159265358979323846 * t / count)));
+        }
+        return largest;
+    };
+    EXPECT_LT(error(12), 3e-4);
+    EXPECT_LT(error(24), error(12) / 13.0);
+}
+
+TEST(KeyedCurve, ARepeatedCubicSplineOfTwoKeysIsAStraightLine) {
+    const KeyedCurve<double> curve({{0.0, 1.0}, {2.0, 4.0}}, Interpolation::cubic_spline, CurveEnds::repeat);
+    for (double t = -5.0; t < 5.0; t += 0.3) {
+        EXPECT_NEAR(curve.value(t), 1.0 + 1.5 * t, 1e-14);
+        EXPECT_NEAR(curve.derivative(t), 1.5, 1e-14);
+    }
+}
+
 TEST(KeyedCurve, VectorsAreTheirComponents) {
     RandomSequence random(3, 0, 0);
     VectorKeys keys;
@@ -211,6 +269,7 @@ TEST(KeyedCurve, InterpolationsHaveNames) {
     EXPECT_EQ(name_of(Interpolation::linear), "linear");
     EXPECT_EQ(name_of(Interpolation::slow_in_slow_out), "slow_in_slow_out");
     EXPECT_EQ(name_of(Interpolation::spline), "spline");
+    EXPECT_EQ(name_of(Interpolation::cubic_spline), "cubic_spline");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "ricochet/dynamics/frame_tree.h"
+#include "ricochet/core/frame_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -120,8 +120,20 @@ Matrix chain_at(const std::vector<FrameDescription>& frames, double time) {
         m = m * moved_by({Dual{t.x, 0}, Dual{t.y, 0}, Dual{t.z, 0}});
         m = m * turned_by(frame.rotation_axis, {frame.rotation_degrees, 0});
         for (const FrameMotion& motion : frame.motions) {
+            const auto wave = [&](double frequency, double phase) {
+                const Real whole = 2 * std::acos(Real{-1});
+                return sine({whole * (frequency * static_cast<Real>(time) + phase / Real{360}), whole * frequency});
+            };
             if (const auto* turn = std::get_if<KeyedRotation>(&motion)) {
                 m = m * turned_by(turn->axis, curve_at(turn->degrees, time));
+            } else if (const auto* spin = std::get_if<Spin>(&motion)) {
+                m = m * turned_by(spin->axis, {static_cast<Real>(spin->rate) * time, spin->rate});
+            } else if (const auto* swing = std::get_if<Swing>(&motion)) {
+                m = m * turned_by(swing->axis, Dual{swing->amplitude, 0} * wave(swing->frequency, swing->phase));
+            } else if (const auto* way = std::get_if<Oscillation>(&motion)) {
+                const Dual s = wave(way->frequency, way->phase);
+                const Vec3& a = way->amplitude;
+                m = m * moved_by({Dual{a.x, 0} * s, Dual{a.y, 0} * s, Dual{a.z, 0} * s});
             } else {
                 m = m * moved_by(way_at(std::get<KeyedTranslation>(motion).path, time));
             }
@@ -153,7 +165,11 @@ std::vector<FrameDescription> random_arm(RandomSequence& random, Interpolation i
     arm[1].motions.emplace_back(KeyedTranslation{ways(random, interpolation)});
     arm[2].motions.emplace_back(KeyedTranslation{ways(random, interpolation)});
     arm[2].motions.emplace_back(KeyedRotation{random.unit_vector(), angles(random, interpolation)});
+    arm[2].motions.emplace_back(Spin{random.unit_vector(), random.uniform_around(0, 400)});
+    arm[2].motions.emplace_back(Oscillation{random.unit_vector(), random.uniform(), random.uniform_around(0, 180)});
     arm[2].motions.emplace_back(KeyedRotation{random.unit_vector(), angles(random, interpolation)});
+    arm[1].motions.emplace_back(
+        Swing{random.unit_vector(), random.uniform_around(0, 90), 2.0 * random.uniform(), 30.0});
     return arm;
 }
 

@@ -13,9 +13,9 @@
 #include <variant>
 #include <vector>
 
+#include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/dynamics/keyed_curve.h"
 
 namespace ricochet {
 
@@ -28,7 +28,25 @@ struct KeyedRotation {
 struct KeyedTranslation {
     KeyedCurve<Vec3> path;  ///< m
 };
-using FrameMotion = std::variant<KeyedRotation, KeyedTranslation>;
+/// A steady turn about an axis through the frame's origin.
+struct Spin {
+    Vec3 axis{0, 0, 1};  ///< of any length but zero
+    double rate = 0.0;   ///< degrees/s, by the right-hand rule; the angle is 0 at 0 s
+};
+/// A turn to and fro, by the angle amplitude sin(2 pi (frequency t + phase / 360)).
+struct Swing {
+    Vec3 axis{0, 0, 1};      ///< of any length but zero
+    double amplitude = 0.0;  ///< degrees
+    double frequency = 0.0;  ///< Hz
+    double phase = 0.0;      ///< degrees
+};
+/// A way to and fro, by the offset amplitude sin(2 pi (frequency t + phase / 360)).
+struct Oscillation {
+    Vec3 amplitude;          ///< m
+    double frequency = 0.0;  ///< Hz
+    double phase = 0.0;      ///< degrees
+};
+using FrameMotion = std::variant<KeyedRotation, KeyedTranslation, Spin, Swing, Oscillation>;
 
 /// One frame as it stands in its parent: moved, turned, and then moved by its motions one after the other, each in the
 /// axes that those before it have led to.

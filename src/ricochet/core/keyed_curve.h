@@ -3,7 +3,7 @@
 /// Sources: ease in and out as the cubic 3 s^2 - 2 s^3: J. Lasseter, "Principles of Traditional Animation Applied to 3D
 /// Computer Animation", SIGGRAPH 1987 (slow in and out). Splines: E. Catmull, R. Rom, "A class of local interpolating
 /// splines", 1974; on uneven keys with the tangents of C. de Boor, "A Practical Guide to Splines", 1978, chapter IV
-/// (piecewise cubic Bessel interpolation).
+/// (piecewise cubic Bessel interpolation; cubic splines, complete and periodic).
 #pragma once
 
 #include <string_view>
@@ -19,13 +19,14 @@ enum class Interpolation {
     slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the change: at rest at every key, continuous derivative
     spline,            ///< a cubic whose slope at a key is that of the parabola through it and both its neighbours
                        ///< (Catmull-Rom where keys are evenly spaced): continuous derivative
+    cubic_spline,      ///< the cubic spline: the second derivative is continuous too, and each key moves all of it
 };
 
 [[nodiscard]] std::string_view name_of(Interpolation interpolation);
 
 /// What holds before the first and after the last key.
 enum class CurveEnds {
-    hold,    ///< the value of that key; a spline is at rest there, so that its derivative stays continuous
+    hold,    ///< the value of that key; splines are at rest there, so that the derivative stays continuous
     repeat,  ///< the keys again and again, each round beginning with the value that the one before ended with; a spline
              ///< goes on smoothly
 };

@@ -40,6 +40,7 @@ struct ShippedScene {
 
 constexpr ShippedScene kShippedScenes[] = {
     {"bouncing_ball", ""},
+    {"conveyor", "4"},
     {"debris", "1.6"},
     {"fireworks", "2.2"},
     {"flow_past_body", "1.6"},

@@ -25,6 +25,7 @@
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/geometry/sweep/moving_triangle.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/vtk.h"

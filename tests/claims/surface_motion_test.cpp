@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "claims/contact_scene.h"
@@ -124,6 +125,33 @@ TEST(ABelt, SlipsUnderWhatAWallStops) {
     const Particle end = end_of(scene);
     EXPECT_EQ(end.velocity, Vec3{});
     EXPECT_NEAR(end.position.x, 1.0, 1e-12);
+}
+
+// A point and a sphere that fall onto a belt: the point is carried in the end, the sphere rolls.
+TEST(ABelt, CarriesInAllFourResponses) {
+    using enum ResponseKind;
+    for (const ResponseKind response : {exact, rollback, project, penalty}) {
+        SCOPED_TRACE(static_cast<int>(response));
+        const ContactScene scene = belt({2, 1, 0}, 0.2, 0.4);
+        SimulationSetup setup;
+        setup.options.response = response;
+        setup.options.integrator = IntegratorKind::velocity_verlet;
+        setup.options.time_step = 0.002;
+        setup.options.duration = 2.0;
+        setup.forces.push_back(make_gravity(scene.gravity));
+        setup.materials = scene.materials;
+        setup.colliders = scene.colliders;
+        setup.particles = {particle_of({0, 0, 0.2}), particle_of({0, 0, 0.2}, {}, 0.1)};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const Particle point = simulation.particles().at(0);
+        const Particle sphere = simulation.particles().at(1);
+        EXPECT_LT(length(point.velocity - Vec3{2, 1, 0}), 1e-12);
+        EXPECT_LT(length(sphere.velocity - 2.0 / 7.0 * Vec3{2, 1, 0}), 1e-12);
+        EXPECT_LT(length(sphere.velocity - cross(sphere.spin, Vec3{0, 0, 0.1}) - Vec3{2, 1, 0}), 1e-12);
+        // From the impact on, at 0.2 s, friction has an impulse of mu (1 + e) m v, and mu m g then.
+        EXPECT_NEAR(point.position.x, 3.3586, 2e-3);
+    }
 }
 
 /// The plane z = 0 turning about z.

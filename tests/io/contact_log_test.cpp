@@ -143,6 +143,22 @@ TEST(ContactLog, ADropIsLoggedAsItsClosedFormSays) {
     EXPECT_EQ(column<double>(file, "radius")[0], 0.25);
 }
 
+TEST(ContactLog, HasTheVelocityOfSurfacesWhereMaterialsMove) {
+    const TemporaryFolder folder;
+    SimulationSetup setup = logged_setup(0.5, 1.0);
+    setup.materials[0].friction = 0.1;
+    setup.materials[0].motion.velocity = {1, 2, 3};  // along the surface: (1, 2, 0)
+    setup.materials[0].motion.angular_velocity = {0, 0, 2};
+    setup.colliders.push_back({"belt", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0});
+    add_particle(setup, {2, 3, 1}, {0, 0, -1}, 1.0, 0.25);
+    run_into(folder.path(""), std::move(setup));
+    const auto files = contact_files(folder);
+    EXPECT_TRUE(column<Vec3>(files.at(0), "surface_velocity").empty());
+    const auto& velocities = column<Vec3>(files.at(2), "surface_velocity");
+    ASSERT_EQ(velocities.size(), 1U);
+    EXPECT_LE(length(velocities[0] - Vec3(1 - 6, 2 + 4, 0)), 1e-13);
+}
+
 TEST(ContactLog, EveryFileHasAllColumnsAlsoWhenThereWasNoImpact) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(std::max(50, scaled(200))));

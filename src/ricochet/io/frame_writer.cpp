@@ -197,6 +197,18 @@ void ContactColumns::resize(std::size_t rows) {
     if (surface_velocity) surface_velocity->resize(rows);
 }
 
+namespace {
+
+ContactColumns no_rows(const Simulation& simulation) {
+    ContactColumns columns;
+    const auto materials = simulation.materials();
+    const bool moves = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); });
+    if (moves) columns.surface_velocity.emplace();
+    return columns;
+}
+
+}  // namespace
+
 VtkPolyData contact_frame(ContactColumns columns, double time) {
     VtkPolyData frame;
     frame.time = time;
@@ -227,6 +239,7 @@ ContactLog::ContactLog(const std::filesystem::path& folder, const Simulation& si
         has_triangles_.push_back(std::holds_alternative<MeshShape>(collider.shape) ||
                                  std::holds_alternative<CuboidShape>(collider.shape));
     }
+    columns_ = no_rows(simulation);
 }
 
 void ContactLog::add_step(const Simulation& simulation) {
@@ -235,10 +248,6 @@ void ContactLog::add_step(const Simulation& simulation) {
     step_ = simulation.step_index();
     const std::vector<ContactRecord>& records = simulation.contact_records();
     const std::size_t first = columns_.size();
-    const auto materials = simulation.materials();
-    if (std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); })) {
-        if (!columns_.surface_velocity) columns_.surface_velocity.emplace();
-    }
     columns_.resize(first + records.size());
     parallel_for_blocks(records.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) set_row(first + i, records[i], simulation);
@@ -267,7 +276,7 @@ void ContactLog::write(const Simulation& simulation) {
     add_step(simulation);
     if (written_ == step_) return;
     written_ = step_;
-    files_.submit(step_, contact_frame(std::exchange(columns_, {}), simulation.time()));
+    files_.submit(step_, contact_frame(std::exchange(columns_, no_rows(simulation)), simulation.time()));
 }
 
 }  // namespace ricochet

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "claims/contact_scene.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
 
 namespace ricochet::testing {
 namespace {
@@ -288,6 +291,56 @@ TEST(ADrum, WithoutFrictionIsAsOneAtRest) {
         }
         EXPECT_EQ(ends[0].position, ends[1].position);
         EXPECT_EQ(ends[0].velocity, ends[1].velocity);
+    }
+}
+
+Material random_material(RandomSequence& random) {
+    Material material{"", 0.9 * random.uniform(), 0.9 * random.uniform()};
+    if (random.uniform() < 0.4) material.rolling_friction = random.uniform();
+    if (random.uniform() < 0.3) material.spinning_friction = 0.05 * random.uniform();
+    if (random.uniform() < 0.8) material.motion.velocity = 2.0 * random.uniform() * random.unit_vector();
+    if (random.uniform() < 0.6) material.motion.angular_velocity = 3.0 * random.uniform() * random.unit_vector();
+    material.motion.center = random.unit_vector();
+    return material;
+}
+
+/// Points and spheres that fall in a box with a ball or a cylinder in it, all of which drive.
+SimulationSetup random_scene(std::uint64_t seed) {
+    RandomSequence random(seed, 51, 0);
+    SimulationSetup setup;
+    constexpr std::array kSteps{0.005, 0.02, 0.05};
+    setup.options.time_step = kSteps[static_cast<std::size_t>(3.0 * random.uniform())];
+    setup.options.duration = 2.0;
+    setup.options.integrator = kAllMethods[static_cast<std::size_t>(8.0 * random.uniform())];
+    setup.options.verify = true;
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    setup.materials = {random_material(random), random_material(random)};
+    const Placement placement{{0, 0, -0.5}, random.unit_vector(), 360.0 * random.uniform(), {1, 1, 1}};
+    setup.colliders = {{"box", CuboidShape{{4, 4, 4}, {}}, 0}};
+    if (random.uniform() < 0.5) setup.colliders.push_back({"ball", BallShape{0.7, placement}, 1});
+    if (random.uniform() < 0.5) setup.colliders.push_back({"roller", CylinderShape{0.5, 1.2, placement}, 1});
+    for (int k = 0; k < 12; ++k) {
+        const Vec3 place{random.uniform_around(0, 1.8), random.uniform_around(0, 1.8), 1.0 + 0.8 * random.uniform()};
+        setup.particles.push_back(particle_of(place, 2.0 * random.unit_vector(), k % 3 == 0 ? 0.0 : 0.04 * (k % 3)));
+    }
+    return setup;
+}
+
+// With friction below 1: where walls that move draw something into a corner with more, rigid bodies have no answer.
+TEST(SurfacesThatMove, LeakNothingAndLoseNoTimeInRandomScenes) {
+    const int scenes = test::scaled(60) * test::case_factor(20);
+    for (int seed = 0; seed < scenes; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::array<std::uint64_t, 2> hashes{};
+        for (const int threads : {1, 2}) {
+            const ThreadLimit limit(threads);
+            Simulation simulation(random_scene(static_cast<std::uint64_t>(seed)));
+            while (!simulation.finished()) simulation.step();
+            EXPECT_EQ(simulation.statistics().violations, 0U);
+            expect_no_time_lost(simulation);
+            hashes[threads == 1 ? 0 : 1] = simulation.state_hash();
+        }
+        EXPECT_EQ(hashes[0], hashes[1]);
     }
 }
 

@@ -23,6 +23,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ricochet/core/tolerances.h"
+
 namespace ricochet {
 
 /// A direction in the space of motions: three components of the velocity and three of sqrt(2/5) r omega.
@@ -78,6 +80,9 @@ public:
     /// conditions met to kNearlySolved only, as between surfaces that press against each other; else less, down to
     /// none.
     void solve_with_most(Effort effort, double friction = 1.0);
+
+    /// False where the last answer meets the conditions to kNearlySolved only, or not at all.
+    [[nodiscard]] bool is_solved() const { return residual_ <= kCoulombResidual; }
 
     /// Force of a contact.
     [[nodiscard]] double push(std::size_t contact) const { return force_[contact]; }

@@ -132,7 +132,22 @@ private:
         }
         const MotionVector change = problem.change();
         acceleration_ = a_ + velocity_of(change);
+        if (!problem.is_solved()) stay_on_surfaces();
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
+    }
+
+    /// Where forces are not what they have to be, at least none of them leads into a surface.
+    void stay_on_surfaces() {
+        std::array<Vec3, kMostHolding> normals;
+        std::array<double, kMostHolding> lifts{};
+        std::size_t count = 0;
+        for (const HoldingSurface& surface : surfaces_) {
+            const double into = -dot(acceleration_, surface.normal) - surface.bend;
+            if (!(into > 0.0)) continue;
+            normals[count] = surface.normal;
+            lifts[count++] = into;
+        }
+        acceleration_ += shift_by({normals.data(), count}, {lifts.data(), count});
     }
 
     /// What is braked against its heading, or against its rate in the middle of the interval; else against what the

@@ -109,7 +109,6 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
             const double speed = std::max(0.0, -dot(particle_.state.velocity, met[k].normal));
             const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
             all[k] = {met[k].normal, restitution, material.friction, 0.0, 0.0, velocity_of(met[k])};
-            scratch_.driven = scratch_.driven || all[k].velocity != Vec3{};
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
                                                  std::span(all).first(met.size()));
@@ -188,7 +187,6 @@ void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& ma
                  ? random_reflection(motion, surface, material, restitution)
                  : bounce(motion, particle_.state.radius, surface.normal, restitution, material.friction);
     if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
-    scratch_.driven = scratch_.driven || is_driven;
     particle_.state.velocity = motion.velocity;
     particle_.spin = motion.spin;
 }

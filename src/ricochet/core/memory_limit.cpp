@@ -17,8 +17,6 @@
 namespace ricochet {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Version 1 writes "no limit" as the largest whole number of pages.
 constexpr double kNoGroupLimit = 0x1p60;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -31,20 +29,22 @@ std::optional<double> number_of(std::string_view text) {
 }
 
 /// The first number of a file; nothing where there is none ("max").
-std::optional<double> number_in(const fs::path& file) {
+std::optional<double> number_in(const std::string& file) {
     std::string word;
     std::ifstream(file) >> word;
     return number_of(word);
 }
 
 /// The least limit of a group and of those above it. Where the group itself is not to be seen, as in a container, its
-/// root may be the group under which the container sees it.
-double group_limit(const fs::path& mount, fs::path group, const char* file) {
+/// root may be the group under which the container sees it. group: begins with a slash. Texts and no paths: libstdc++
+/// 12 frees twice where memory runs out while paths are joined.
+double group_limit(const std::string& mount, std::string group, const std::string& file) {
     double least = kUnlimited;
-    for (group = group.relative_path();; group = group.parent_path()) {
-        const std::optional<double> limit = number_in(mount / group / file);
+    for (;; group.erase(group.rfind('/'))) {
+        while (group.ends_with('/')) group.pop_back();
+        const std::optional<double> limit = number_in(mount + group + file);
         if (limit && *limit < kNoGroupLimit) least = std::min(least, *limit);
-        if (group.empty()) return least;
+        if (group.find('/') == std::string::npos) return least;
     }
 }
 
@@ -68,11 +68,12 @@ double limit_of_groups(const MemoryFiles& files) {
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string_view controllers = std::string_view(line).substr(first + 1, second - first - 1);
         const std::string group = line.substr(second + 1);
+        const std::string& mount = files.control_groups.native();
         if (controllers.empty()) {
-            least = std::min(least, group_limit(files.control_groups, group, "memory.max"));
-            least = std::min(least, group_limit(files.control_groups / "unified", group, "memory.max"));
+            least = std::min(least, group_limit(mount, group, "/memory.max"));
+            least = std::min(least, group_limit(mount + "/unified", group, "/memory.max"));
         } else if (names_memory(controllers)) {
-            least = std::min(least, group_limit(files.control_groups / "memory", group, "memory.limit_in_bytes"));
+            least = std::min(least, group_limit(mount + "/memory", group, "/memory.limit_in_bytes"));
         }
     }
     return least;

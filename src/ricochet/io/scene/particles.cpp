@@ -188,6 +188,7 @@ private:
         bool good = true;
         particle.attributes.assign(table_.attributes.size(), missing_attribute());
         for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (table_.errors.size() >= kMostErrors) return;
             if (const auto* const target = std::get_if<AttributeComponent>(&columns_[i])) {
                 good = read_attribute(cells[i], *target, particle) && good;
             } else {

@@ -205,6 +205,25 @@ TEST(MovingTriangle, ThatOnlyTranslatesIsMetAsOneAtRestIs) {
     }
 }
 
+// A triangle that turns over by half a turn (its corners pass through its edge) meets points from both sides.
+TEST(MovingTriangle, HasItsNormalOnTheSideFromWhichThePointComes) {
+    const MovingTriangle flips{{{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{0, 1, -1}, {0, -1, 1}}}}};
+    const int count = test::scaled(2000);
+    for (int k = 0; k < count; ++k) {
+        RandomSequence random(35, 1, static_cast<std::uint64_t>(k));
+        const MovingPoint point{in_cube(random), in_cube(random)};
+        const auto met = first_contact(point, 0.0, flips);
+        if (!met || met->time == 0.0 || met->time > 1.0 - 1e-3) continue;
+        // Just before, it is on the normal's side, seen from where the material of the triangle is then.
+        const double before = met->time - 1e-7;
+        const Vec3 w = met->barycentric;
+        const auto& [a, b, c] = flips.corners;
+        const Vec3 foot = w.x * a.at(before) + w.y * b.at(before) + w.z * c.at(before);
+        EXPECT_GE(dot(point.at(before) - foot, met->normal), 0.0) << "case " << k;
+        EXPECT_NEAR(length(met->normal), 1.0, 1e-15);
+    }
+}
+
 TEST(MovingTriangle, RefusesWhatHasNoMeaning) {
     RandomSequence random(34, 1, 0);
     const Query query = random_query(random);

@@ -1,8 +1,8 @@
 #include "ricochet/io/frame_writer.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <system_error>

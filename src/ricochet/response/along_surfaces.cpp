@@ -56,6 +56,14 @@ Vec3 carrying_velocity(std::span<const HoldingSurface> surfaces, const StuckSurf
 
 }  // namespace
 
+double speed_scale(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces) {
+    double scale = length(motion.velocity) + radius * length(motion.spin);
+    for (const HoldingSurface& surface : surfaces) {
+        scale += length(surface.velocity) + radius * length(surface.angular_velocity);
+    }
+    return scale;
+}
+
 Vec3 along_all(const Vec3& v, std::span<const Vec3> normals) {
     Remover remover;
     for (const Vec3& normal : normals) remover.add(normal_direction(normal));

@@ -49,6 +49,9 @@ using StuckSurfaces = std::array<Stuck, kMostHolding>;
     return slip_velocity(motion, radius, surface.normal) - surface.velocity;
 }
 
+/// The speeds that slips, rolling and spinning on these surfaces are made of, m/s: what is small next to it is none.
+[[nodiscard]] double speed_scale(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces);
+
 /// The vector nearest to v that is at right angles to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
 

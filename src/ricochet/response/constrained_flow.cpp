@@ -26,14 +26,15 @@ Vec3 round_normal(const SurfaceGeometry& geometry, const ContactSurface& surface
     return dot(normal, surface.normal) < 0.0 ? -normal : normal;
 }
 
-/// A flow without its part along the normals of surfaces, as they are at each position: round ones turn.
-class FlowAlongRound final : public FlowField {
+/// A flow without its part along the normals of surfaces, as they are at each position: those of round ones turn.
+class FlowAlong final : public FlowField {
 public:
-    FlowAlongRound(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces)
+    FlowAlong(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces)
         : flow_(flow), geometry_(geometry), surfaces_(surfaces) {}
     [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
+        const Vec3 free = flow_.velocity(position, time);
         std::array<Vec3, kMostHolding> normals;
-        return along_all(flow_.velocity(position, time), normals_at(position, normals));
+        return surfaces_.empty() ? free : along_all(free, normals_at(position, normals));
     }
     [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
     /// Shifted onto the surfaces, so that it keeps this distance from each.
@@ -65,21 +66,6 @@ private:
     const FlowField& flow_;
     const SurfaceGeometry& geometry_;
     std::span<const ContactSurface> surfaces_;
-};
-
-/// A flow without its part along normals.
-class FlowAlong final : public FlowField {
-public:
-    FlowAlong(const FlowField& flow, std::span<const Vec3> normals) : flow_(flow), normals_(normals) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
-        const Vec3 free = flow_.velocity(position, time);
-        return normals_.empty() ? free : along_all(free, normals_);
-    }
-    [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
-
-private:
-    const FlowField& flow_;
-    std::span<const Vec3> normals_;
 };
 
 /// The end of [0, duration] up to which something holds that holds at first: to the last bit.
@@ -158,9 +144,10 @@ double ConstrainedFlow::time_to_release(double remaining) const {
 Path ConstrainedFlow::next_path(double duration, double reach) {
     for (holders_ = holders_now();;) {
         find_followed();
-        const Path path = free_path(duration);
+        const bool is_arc = followed_count_ > 0;
+        const Path path = is_arc ? arc(longest_arc(duration)) : free_path(duration);
         if (holders_.empty() || !can_be_followed(path)) return path;
-        const Part held = followed_count_ > 0 ? along_round(duration) : until_release(path);
+        const Part held = is_arc ? arc_until_release(path) : until_release(path);
         if (is_no_progress(held.path)) {  // the flow turns away here
             holders_.remove(held.ended_by);
             continue;
@@ -171,7 +158,7 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
             holders_ = holders_now();
             continue;
         }
-        if (followed_count_ > 0) return part.path;
+        if (is_arc) return part.path;
         for (std::size_t k = 0; k < holders_.size(); ++k) {
             const ContactSurface support = manifold_[holders_.point(k)];
             if (!support.flat) return along_curved(support, part.path);
@@ -202,11 +189,21 @@ Holders ConstrainedFlow::holders_now() const {
 }
 
 Path ConstrainedFlow::free_path(double duration) {
-    const FlowAlong along(flow_, holders_.normals());
+    Surfaces surfaces;
+    const FlowAlong along(flow_, geometry_, holding(surfaces));
     const FlowPath free =
         flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration, next_duration_);
     next_duration_ = free.next_duration;
     return free.path;
+}
+
+/// The holders as a path goes along them: what is not followed on an arc counts as flat.
+std::span<const ContactSurface> ConstrainedFlow::holding(Surfaces& surfaces) const {
+    for (std::size_t k = 0; k < holders_.size(); ++k) {
+        surfaces[k] = manifold_[holders_.point(k)];
+        surfaces[k].flat = surfaces[k].flat || followed_count_ == 0;
+    }
+    return std::span(surfaces).first(holders_.size());
 }
 
 /// Arcs are for round shapes, off their rims, with nothing else but flat surfaces.
@@ -224,9 +221,9 @@ void ConstrainedFlow::find_followed() {
     }
 }
 
-/// The arc up to where a holder lets go, or ends.
-ConstrainedFlow::Part ConstrainedFlow::along_round(double duration) {
-    Part part{arc(longest_arc(duration)), 0};
+/// An arc up to where a holder lets go, or ends.
+ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const {
+    Part part{path, 0};
     const auto let_go = let_go_by(part.path.end, state_.time + part.path.duration);
     if (!let_go) return part;
     part.ended_by = *let_go;
@@ -240,10 +237,9 @@ ConstrainedFlow::Part ConstrainedFlow::along_round(double duration) {
 }
 
 /// The way of so many seconds along the holders, as the cubic through its ends.
-Path ConstrainedFlow::arc(double duration) {
-    std::array<ContactSurface, kMostHolding> surfaces;
-    for (std::size_t k = 0; k < holders_.size(); ++k) surfaces[k] = manifold_[holders_.point(k)];
-    const FlowAlongRound along(flow_, geometry_, std::span(surfaces).first(holders_.size()));
+Path ConstrainedFlow::arc(double duration) const {
+    Surfaces surfaces;
+    const FlowAlong along(flow_, geometry_, holding(surfaces));
     const Vec3& from = state_.position;
     const FlowPath way = flow_path(rules_.settings.integrator, along, from, state_.time, duration, duration);
     const double passed = way.path.duration;
@@ -272,9 +268,9 @@ std::optional<std::size_t> ConstrainedFlow::let_go_by(const Vec3& position, doub
 /// s, until a holder's normal has turned by kMaxArcAngle; about, where the flow is about to be faster.
 double ConstrainedFlow::longest_arc(double duration) const {
     const Vec3 free = free_velocity();
-    const double speed = std::max(length(along_all(free, holders_.normals())), kSlowFlow * length(free));
-    const Vec3 heading = normalized(along_all(free, holders_.normals()));
-    if (!(speed > 0.0) || !is_finite(heading)) return duration;
+    const Vec3 along = along_all(free, holders_.normals());
+    const double speed = std::max(length(along), kSlowFlow * length(free));
+    const Vec3 heading = along == Vec3{} ? tangent_frame(holders_.normals()[0])[0] : normalized(along);
     for (const SurfaceId surface : followed()) {
         const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
         const double turning =
@@ -305,7 +301,8 @@ ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
     if (!holds(path.duration)) {
         const double until = last_time(path.duration, holds);
         part.ended_by = weakest(flow_at(until));
-        const FlowAlong along(flow_, holders_.normals());
+        Surfaces surfaces;
+        const FlowAlong along(flow_, geometry_, holding(surfaces));
         part.path = flow_path(rules_.settings.integrator, along, state_.position, state_.time, until, until).path;
     }
     Path& held = part.path;

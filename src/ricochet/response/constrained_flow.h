@@ -80,9 +80,12 @@ private:
 
     [[nodiscard]] Holders holders_now() const;
     [[nodiscard]] Path free_path(double duration);
+    using Surfaces = std::array<ContactSurface, kMostHolding>;
+
     void find_followed();
-    [[nodiscard]] Part along_round(double duration);
-    [[nodiscard]] Path arc(double duration);
+    [[nodiscard]] std::span<const ContactSurface> holding(Surfaces& surfaces) const;
+    [[nodiscard]] Part arc_until_release(const Path& path) const;
+    [[nodiscard]] Path arc(double duration) const;
     [[nodiscard]] std::optional<std::size_t> let_go_by(const Vec3& position, double time) const;
     [[nodiscard]] double longest_arc(double duration) const;
     [[nodiscard]] Part until_release(const Path& path) const;

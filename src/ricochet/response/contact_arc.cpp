@@ -305,9 +305,7 @@ bool ContactArc::may_jam() const {
 /// Slip, rolling or spinning is about to begin somewhere against what resists it.
 bool ContactArc::begins_to_slip(const ContactInterval& now) const {
     const double radius = particle_.radius;
-    double scale = length(now.motion.velocity) + radius * length(now.motion.spin);
-    for (const HoldingSurface& surface : materials_.all()) scale += length(surface.velocity);
-    const double slow = kSlowSlip * scale;
+    const double slow = kSlowSlip * speed_scale(now.motion, radius, materials_.all());
     const auto begins = [&](double resistance, bool is_stuck, const Vec3& rate) {
         return resistance > 0.0 && !is_stuck && length(rate) <= slow;
     };

@@ -126,13 +126,12 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
-    const bool is_driven = manifold_.is_driven(impact_);
-    if (!is_driven) {
+    if (!manifold_.is_driven(impact_)) {
         limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
     }
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    step_.log().note_contact(pull.forces, pull.acts, is_driven);
+    step_.log().note_contact(pull.forces, pull.acts);
     held_.meet(stop.contact);
     return stop;
 }
@@ -201,12 +200,12 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
     std::optional<Contact> contact = move_along(*way, arc);
-    step_.log().note_contact(pull.forces, pull.acts, manifold_.is_driven(impact_));
     const double elapsed = before - step_.remaining();
     const Vec3 forces_after = pull.acts ? rules_.forces.acceleration(state_) : Vec3{};
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
     manifold_.load(arc.plan());
     manifold_.record_push(state_.velocity - velocity_before - by_forces, elapsed, impact_);
+    step_.log().note_contact(pull.forces, pull.acts);
     held_.meet(contact);
     Stop stop{contact, way->leaves_surface, false};
     if (!stop.is_early()) held_.touch_again(way->turning_point);

@@ -133,10 +133,10 @@ double ContactSupport::fastest_departure(const ContactSurface& surface, const Ve
 /// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
 StuckSurfaces ContactSupport::sticking(std::span<const HoldingSurface> surfaces) const {
     StuckSurfaces stuck{};
-    double scale = length(state_.velocity) + state_.radius * length(particle_.spin);
-    for (const HoldingSurface& surface : surfaces) scale += length(surface.velocity);
+    const Motion motion{state_.velocity, particle_.spin};
+    const double scale = speed_scale(motion, state_.radius, surfaces);
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        const Vec3 slip = slip_on(surfaces[k], {state_.velocity, particle_.spin}, state_.radius);
+        const Vec3 slip = slip_on(surfaces[k], motion, state_.radius);
         stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip) <= kSlowSlip * scale;
     }
     return stuck;

@@ -72,7 +72,7 @@ public:
         return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
             StuckSurfaces stuck = interval.stuck;
             return r.speed == 0.0 && r.rate != Vec3{} && is_stuck(stuck[r.surface], r.kind) &&
-                   length(r.rate) > kStopRounding * speed_scale();
+                   length(r.rate) > kStopRounding * speed_scale(motion_, radius_, seen_);
         });
     }
 
@@ -80,18 +80,10 @@ private:
     using Kind = Resistance::Kind;
 
     [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
-    /// The speeds that slips are made of, m/s.
-    [[nodiscard]] double speed_scale() const {
-        double scale = length(motion_.velocity) + radius_ * length(motion_.spin);
-        for (const HoldingSurface& surface : seen_) {
-            scale += length(surface.velocity) + radius_ * length(surface.angular_velocity);
-        }
-        return scale;
-    }
     [[nodiscard]] std::span<Resistance> resistances() { return {resistances_.data(), count_}; }
 
     void find_resistances(StuckSurfaces stuck) {
-        const double scale = speed_scale();
+        const double scale = speed_scale(motion_, radius_, seen_);
         const auto add = [&](std::size_t surface, Kind kind, const Vec3& rate) {
             const double speed = length(rate);
             Resistance& added = resistances_[count_++];

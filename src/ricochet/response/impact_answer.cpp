@@ -48,6 +48,7 @@ void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
 
 void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
     scratch_.hits.push_back({surface, -particle_.state.mass * velocity_change, impact});
+    scratch_.driven = scratch_.driven || material_of(surface).drives();
 }
 
 void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {

@@ -36,8 +36,7 @@ public:
     [[nodiscard]] const Material& material_of(SurfaceId surface) const {
         return rules_.materials[rules_.world.material_of(surface)];
     }
-    /// m/s, of the surface's own material where it is touched, as far as it grips; see SurfaceMotion. What asks for it
-    /// lets the surface do work, and is recorded so.
+    /// m/s, of the surface's own material where it is touched, as far as it grips; see SurfaceMotion.
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return velocity_of(surface, particle_.state.position);
     }
@@ -45,7 +44,6 @@ public:
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface, const Vec3& center) const {
         const Material& material = material_of(surface.surface);
         if (!material.drives()) return {};
-        scratch_.driven = true;
         return material.motion.at(center - particle_.state.radius * surface.normal, surface.normal);
     }
     /// rad/s, of the turning of that material.

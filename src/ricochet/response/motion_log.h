@@ -30,11 +30,12 @@ public:
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
     /// Surfaces have held it. force: over the mass at the begin, m/s^2; acts: false where forces have been in the
-    /// velocity from the step's start on. driven: one of the surfaces moves.
-    void note_contact(const Vec3& force, bool acts, bool driven = false) {
+    /// velocity from the step's start on.
+    void note_contact(const Vec3& force, bool acts) {
         if (!scratch_.record_motions) return;
         const Vec3 now = acts ? rules_.forces.acceleration(particle_.state) : Vec3{};
-        add(driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
+        const bool is_driven = std::exchange(scratch_.driven, false);
+        add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
             !acts || rules_.forces.is_uniform_for(particle_.state));
     }
 

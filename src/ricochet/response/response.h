@@ -41,7 +41,7 @@ struct MoveScratch {
     bool record_segments = false;
     bool record_flown = false;
     bool record_motions = false;
-    bool driven = false;  ///< a surface that moves or has a temperature has answered what is not recorded yet
+    bool driven = false;  ///< a surface that moves or has a temperature has pushed since the last MotionPart
 };
 
 /// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.

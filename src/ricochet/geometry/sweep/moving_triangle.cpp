@@ -14,8 +14,8 @@ namespace {
 /// Halvings of the time, to the last bit of numbers near 1.
 constexpr int kDeepest = 52;
 
-/// Pieces that are looked at before the search is given up: some five a halving where the contact is crossed. What is
-/// passed at a distance of 1e-10 of its size, while it turns, takes some ten thousand.
+/// Pieces that are looked at before the search is given up. They are for what stays near a triangle that turns: the
+/// nearer, the shorter are the pieces for which one direction will do.
 constexpr int kMostPieces = 1 << 15;
 
 /// Relative error of a length, and of the sum of three products of rounded factors, with room to spare.
@@ -98,7 +98,7 @@ public:
         contact.distance = std::max(0.0, distance - radius_);
         contact.barycentric = barycentric_coordinates(nearest, triangle_.corners[0].at(time),
                                                       triangle_.corners[1].at(time), triangle_.corners[2].at(time));
-        contact.normal = contact_normal(time, nearest.offset);
+        contact.normal = contact_normal(contact, nearest.offset);
         return contact;
     }
 
@@ -122,14 +122,19 @@ private:
         return cross(b.at(s) - a.at(s), c.at(s) - a.at(s));
     }
 
-    /// On the side from which the point comes. Next to the triangle its own normal counts.
-    [[nodiscard]] Vec3 contact_normal(double time, const Vec3& offset) const {
+    /// From the nearest point to a sphere's centre; for a point, which lies there, the triangle's own normal against
+    /// the point's motion.
+    [[nodiscard]] Vec3 contact_normal(const MovingContact& contact, const Vec3& offset) const {
         if (radius_ > 0.0 && offset != Vec3{}) return normalized(offset);
-        const Vec3 normal = normal_at(time);
-        const auto& [a, b, c] = triangle_.corners;
-        const double before = dot(normal, point_.from - a.from);
-        if (normal == Vec3{}) return offset == Vec3{} ? Vec3{0, 0, 1} : normalized(offset);
-        return normalized(before < 0.0 ? -normal : normal);
+        Vec3 motion = point_.to - point_.from;
+        for (int k = 0; k < 3; ++k) {
+            const MovingPoint& corner = triangle_.corners[static_cast<std::size_t>(k)];
+            motion -= contact.barycentric[k] * (corner.to - corner.from);
+        }
+        Vec3 normal = normal_at(contact.time);
+        if (normal == Vec3{}) normal = motion;  // a degenerate triangle has none
+        if (normal == Vec3{}) return {0, 0, 1};
+        return normalized(dot(normal, motion) > 0.0 ? -normal : normal);
     }
 
     MovingPoint point_;

@@ -1,7 +1,8 @@
 /// \file
 /// The first contact of a point or a sphere with a triangle when all move: each corner, and the centre, along a
 /// straight line at constant speed. No contact is missed; what is reported without one is nearer than the result's
-/// distance says.
+/// distance says. Exact while no product of two differences of coordinates leaves the range of doubles: differences
+/// that count are not below some 1e-150.
 ///
 /// Method: a piece [s, t] of the time is free when for one direction n the products n . (p - a) of all three corners a
 /// have one strict sign at s and at t: they are linear in time between. Signs are exact. Pieces that no direction
@@ -49,8 +50,9 @@ struct MovingContact {
 [[nodiscard]] bool is_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle, double s,
                             double t);
 
-/// The first contact in [0, 1]; nothing when there is certainly none. Throws as is_apart() does. Costs some ten pieces
-/// where nothing comes near, some three hundred for a contact, and 2^15 at most.
+/// The first contact in [0, 1]; nothing when there is certainly none. Throws as is_apart() does. Among
+/// random pairs of the size of their motion a call takes some 0.6 us where they stay apart and 44 us for a contact (one
+/// core of a shared machine); at most 2^15 pieces are looked at.
 [[nodiscard]] std::optional<MovingContact> first_contact(const MovingPoint& point, double radius,
                                                          const MovingTriangle& triangle);
 

@@ -62,10 +62,8 @@ const ObjectSpec& surface_motion_spec() {
     static const ObjectSpec spec =
         object<S>("surface motion",
                   "How the material of the surface moves while its geometry stands still: a belt, or the wall of a "
-                  "drum that turns "
-                  "about its own axis. Friction and diffuse reflection are relative to it; only the part of the "
-                  "velocity along the "
-                  "surface counts. Without friction and diffuse reflection nothing comes of it.",
+                  "drum that turns about its own axis. Friction, resistance to rolling and spinning, and diffuse "
+                  "reflection are relative to it; only the part of the velocity along the surface counts.",
                   {{"velocity", &S::velocity, kSurfaceSpeed, "m/s", "The same everywhere."},
                    {"angular_velocity", &S::angular_velocity, kSurfaceSpeed, "rad/s",
                     "Turning by the right-hand rule about an axis through `center`, added to `velocity`."},

@@ -2,11 +2,15 @@
 // something stops it there?
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "claims/contact_scene.h"
 #include "ricochet/collision_queries.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
 
 namespace ricochet::testing {
 namespace {
@@ -72,6 +76,49 @@ TEST(ARidge, IsNotOverlappedWhereAWallStopsASphereOnItsWayOverAFace) {
                 expect_free_at_end(scene);
             }
         }
+    }
+}
+
+/// A sphere on a ridge of two slopes of its own, pushed along it and over, with a wall somewhere before it. Half of
+/// them begin all but over a face.
+SimulationSetup random_ridge(std::uint64_t seed) {
+    RandomSequence random(77, 1, seed);
+    const auto around = [&](double half) { return random.uniform_around(0, half); };
+    const double left = 0.05 + 0.8 * random.uniform();
+    const double right = 0.05 + 0.8 * random.uniform();
+    TriangleMesh mesh;
+    const double aside = around(10);
+    mesh.vertices = {
+        {-20, 0, 0}, {20, 0, 0}, {aside, -20, -20 * std::tan(left)}, {around(10), 20, -20 * std::tan(right)}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}};
+    SimulationSetup setup;
+    setup.options.verify = true;
+    setup.materials = {{"", 0.0, random.uniform() < 0.5 ? 0.0 : 0.3 * random.uniform()}};
+    double angle = (2.0 * random.uniform() - 1.0) * 0.98 * std::min(left, right);
+    if (random.uniform() < 0.5) angle = right * (1.0 - std::pow(10.0, -4.0 * random.uniform() - 1.0));
+    const Vec3 place = (1.0 + 1e-13) * Vec3{0, std::sin(angle), std::cos(angle)};
+    const double over = 0.3 * around(1);
+    const double along = 2.0 * around(1);
+    setup.particles = {particle_of(place, {along, over * std::cos(angle), -over * std::sin(angle)}, kRadius)};
+    const double pull = 2.0 * around(1);
+    setup.forces.push_back(make_gravity({pull, 6.0 * around(1), -10}));
+    Vec3 n;
+    for (const double half : {1.0, 1.0, 0.3}) n = {n.y, n.z, around(half)};
+    n = normalized(n);
+    setup.colliders = {mesh_collider(std::move(mesh)),
+                       plane_collider(place - (kRadius + 0.3 * random.uniform()) * n, n)};
+    setup.options.time_step = std::pow(10.0, -2.0 * random.uniform());
+    setup.options.duration = 3.0 * setup.options.time_step;
+    return setup;
+}
+
+TEST(ARidge, IsNeverOverlappedInRandomScenes) {
+    const int scenes = test::scaled(1000) * test::case_factor(100);
+    for (int seed = 0; seed < scenes; ++seed) {
+        Simulation simulation(random_ridge(static_cast<std::uint64_t>(seed)));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_EQ(simulation.statistics().violations, 0U) << "seed " << seed;
+        expect_no_time_lost(simulation);
     }
 }
 

@@ -15,8 +15,9 @@ namespace {
 /// Arcs up to a contact that is found on one. Each brings the cubic nearer to the arc by its fourth power.
 constexpr int kMostCloserLooks = 12;
 
-/// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong.
-constexpr int kMostTurningPoints = 3;
+/// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong, once it is
+/// little: three left 1e-11 of the radius where a sphere had gathered speed on a long arc.
+constexpr int kMostTurningPoints = 8;
 
 /// Methods of second order and more; the others hold forces over a step.
 bool follows_varying_forces(IntegratorKind kind) {

@@ -152,14 +152,18 @@ bool ContactArc::ends_a_slip() const {
     return false;
 }
 
-/// The largest change of a shape's normal that a sphere sees from the start to a position.
+/// The largest change of a shape's normal that a sphere sees from the start to a position. Of its outward normal: the
+/// way straight on comes out of a large shape behind a small sphere, where the direction to it turns round.
 double ContactArc::turned_at(const Vec3& position) const {
     double turned = 0.0;
     for (std::size_t k = 0; k < materials_.count; ++k) {
         const bool can_be_narrow = particle_.radius > 0.0 && !is_flat_[k] && geometry_.world().is_shape(surfaces_[k]);
         if (!can_be_narrow) continue;
-        turned = std::max(turned, length(geometry_.nearest(surfaces_[k], position).normal -
-                                         geometry_.nearest(surfaces_[k], particle_.position).normal));
+        const auto normal_at = [&](const Vec3& p) {
+            return is_on_rim_[k] ? geometry_.nearest(surfaces_[k], p).normal
+                                 : geometry_.unit_normal_of(surfaces_[k], p);
+        };
+        turned = std::max(turned, length(normal_at(position) - normal_at(particle_.position)));
     }
     return turned;
 }

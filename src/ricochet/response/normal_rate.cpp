@@ -8,13 +8,19 @@ namespace {
 /// Step along a shape that its curvature is taken over, as a fraction of its size.
 constexpr double kCurvatureStep = 1e-4;
 
+/// Part of a shape's size that counts at least for that of a sphere on it, off its rims: over shorter steps the normals
+/// of a large shape differ by rounding only.
+constexpr double kSmallestScale = 1e-3;
+
 /// Derivative of a shape's normal: by the difference of its normals along the motion. A side goes on beyond its rim.
 Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                        const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
     if (speed == 0.0) return {};
     const double size = geometry.world().size_of(surface);
-    const double step = kCurvatureStep * (radius > 0.0 ? std::min(size, radius) : size);
+    double scale = size;
+    if (radius > 0.0) scale = std::clamp(radius, nearest.rim ? 0.0 : kSmallestScale * size, size);
+    const double step = kCurvatureStep * scale;
     const Vec3 heading = velocity / speed;
     // A tangent soon comes out on the other side of a surface that bends towards it.
     const auto normal_at = [&](double distance) {

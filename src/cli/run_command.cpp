@@ -179,6 +179,7 @@ void print_warnings(const SimulationStatistics& statistics) {
     warn(statistics.springs_lost, "springs lost a particle at an end (springs_lost)");
     warn(statistics.unsolved_steps, "steps were not solved to the tolerance by the implicit method (unsolved_steps)");
     warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
+    warn(statistics.squeezed, "times surfaces that close left a particle no room: it waits for some (squeezed)");
     warn(statistics.started_inside - statistics.started_in_overlap,
          "points were born exactly on a surface (started_inside)");
     warn(statistics.started_in_overlap, "spheres were born in overlap with a surface (started_in_overlap)");

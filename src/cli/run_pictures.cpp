@@ -226,6 +226,7 @@ RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& 
     check_names("--glass", style_.glass, folder);
     survey(chosen);
     load_colliders(folder);
+    survey_moving(chosen);
     choose_camera(folder, aspect);
     preview_.emplace(std::move(meshes_), planes_, camera_.target);
 }
@@ -262,7 +263,13 @@ void RunPictures::choose_looks(const VtkPolyData& frame) {
 void RunPictures::load_colliders(const RunFolder& folder) {
     for (const std::filesystem::path& file : folder.colliders) {
         const std::string name = collider_name(folder.info, file);
-        if (contains(style_.hidden, name)) continue;
+        const bool moves = folder.info.moves(file.filename().string());
+        if (moves) {
+            moving_looks_[static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0))] = {
+                contains(style_.glass, name) ? kGlassColor : kColliderColors[color_index(folder.info, file)],
+                contains(style_.glass, name), contains(style_.hidden, name)};
+        }
+        if (moves || contains(style_.hidden, name)) continue;
         VtkPolyData data = read_vtp(file);
         const std::vector<double>* point = find_field(data, "plane_point");
         const std::vector<double>* normal = find_field(data, "plane_normal");
@@ -276,6 +283,47 @@ void RunPictures::load_colliders(const RunFolder& folder) {
                            contains(style_.glass, name) ? kGlassColor : kColliderColors[color_index(folder.info, file)],
                            std::move(colors),
                            contains(style_.glass, name)});
+    }
+}
+
+// The picture is to show where they come.
+void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
+    if (moving_looks_.empty()) return;
+    for (const FrameFile& file : spread_sample(chosen)) {
+        if (file.moving.empty()) continue;
+        PreviewMoving moving;
+        add_moving(file, moving);
+        for (const PreviewMesh& mesh : moving.meshes) {
+            subject_.colliders.insert(subject_.colliders.end(), mesh.mesh.vertices.begin(), mesh.mesh.vertices.end());
+        }
+    }
+}
+
+// One mesh a collider, with the vertices of all of them.
+void RunPictures::add_moving(const FrameFile& file, PreviewMoving& moving) const {
+    if (file.moving.empty()) return;
+    const VtkPolyData data = read_vtp(file.moving);
+    const VtkArray* const numbers = find_array(data.cell_arrays, "collider");
+    const auto* const of = numbers == nullptr ? nullptr : std::get_if<std::vector<std::uint32_t>>(&numbers->values);
+    if (of == nullptr) throw InputError(fmt::format("{}: has no array collider", file.moving.string()));
+    std::map<std::uint32_t, TriangleMesh> meshes;
+    std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> renamed;
+    for (std::size_t t = 0; t < data.triangles.size(); ++t) {
+        TriangleMesh& mesh = meshes[(*of)[t]];
+        auto& names = renamed[(*of)[t]];
+        Triangle triangle{};
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t v = data.triangles[t][corner];
+            const auto [name, is_new] = names.emplace(v, static_cast<std::uint32_t>(mesh.vertices.size()));
+            if (is_new) mesh.vertices.push_back(data.points[v]);
+            triangle[corner] = name->second;
+        }
+        mesh.triangles.push_back(triangle);
+    }
+    for (auto& [collider, mesh] : meshes) {
+        const auto looks = moving_looks_.find(collider);
+        if (looks == moving_looks_.end() || looks->second.hidden) continue;
+        moving.meshes.push_back({std::move(mesh), looks->second.color, {}, looks->second.glass});
     }
 }
 
@@ -370,6 +418,7 @@ std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile&
 Image RunPictures::picture(const FrameFile& file, const PictureOptions& options) {
     const VtkPolyData frame = read_vtp(file.path);
     PreviewMoving shown = moving(frame, file);
+    add_moving(file, shown);
     if (!draws_sprites()) {
         preview_->set_moving(shown);
         return render_picture(*preview_, camera_, options);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,6 +97,8 @@ public:
 private:
     void survey(const std::vector<FrameFile>& chosen);
     void load_colliders(const RunFolder& folder);
+    void survey_moving(const std::vector<FrameFile>& chosen);
+    void add_moving(const FrameFile& file, PreviewMoving& moving) const;
     void choose_camera(const RunFolder& folder, double aspect);
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
     void choose_looks(const VtkPolyData& frame);
@@ -112,6 +115,13 @@ private:
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;
+    /// How a collider that moves is shown, by its number.
+    struct MovingLooks {
+        Vec3 color;
+        bool glass = false;
+        bool hidden = false;
+    };
+    std::map<std::uint32_t, MovingLooks> moving_looks_;
     std::vector<PreviewPlane> planes_;
     std::optional<Preview> preview_;
 };

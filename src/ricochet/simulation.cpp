@@ -58,15 +58,37 @@ std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
         return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
     }
-    return impl().world.mesh_of(i);
+    return impl().world_of(i).mesh_of(i);
 }
-std::size_t Simulation::triangle_count() const { return impl().world.triangles().size(); }
-std::size_t Simulation::degenerate_triangles() const { return impl().world.degenerate_triangles(); }
+MovingPose Simulation::collider_pose(std::size_t i, double time) const {
+    require_index(i, impl().world.colliders().size(), "collider");
+    return impl().bodies ? impl().bodies->pose(impl().bodies->body_of_collider(i), time) : MovingPose{};
+}
+std::size_t Simulation::triangle_count() const {
+    std::size_t count = impl().world.triangles().size();
+    for (BodyId body = 0; impl().bodies && body < impl().bodies->size(); ++body) {
+        count += impl().bodies->world(body).triangles().size();
+    }
+    return count;
+}
+std::size_t Simulation::degenerate_triangles() const {
+    std::size_t count = impl().world.degenerate_triangles();
+    for (BodyId body = 0; impl().bodies && body < impl().bodies->size(); ++body) {
+        count += impl().bodies->world(body).degenerate_triangles();
+    }
+    return count;
+}
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
 SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
     require_index(record.surface, impl().world.surface_count(), "surface");
-    return impl().world.closest_point_on(record.surface, record.position);
+    const std::uint32_t collider = impl().world.name_of(record.surface).collider;
+    const MovingPose pose = collider_pose(collider, record.time);
+    const CollisionWorld& world = impl().world_of(collider);
+    if (&world == &impl().world) return world.closest_point_on(record.surface, record.position);
+    SurfacePosition position = world.closest_point_on(record.surface, pose.image(record.position));
+    position.point = pose.point(position.point);
+    return position;
 }
 SurfaceName Simulation::surface_name(SurfaceId surface) const {
     require_index(surface, impl().world.surface_count(), "surface");

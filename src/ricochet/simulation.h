@@ -15,6 +15,7 @@
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/byte_stream.h"
+#include "ricochet/core/frame_tree.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
@@ -36,6 +37,9 @@ struct SimulationSetup {
     std::vector<std::unique_ptr<Force>> forces;
     std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
     std::vector<ColliderDescription> colliders;
+    /// The frames that colliders stand in (ColliderDescription::frame); null where none does. Only the exact response
+    /// follows colliders that move.
+    std::shared_ptr<const FrameTree> frames = {};
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
     std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
@@ -71,6 +75,7 @@ struct SimulationStatistics {
     std::uint64_t started_inside = 0;      ///< particles born on a surface or, as spheres, overlapping one
     std::uint64_t started_in_overlap = 0;  ///< of them the spheres
     std::uint64_t stayed = 0;             ///< impacts after which no certified position nearer to the surface was found
+    std::uint64_t squeezed = 0;           ///< particle-steps that ended without room between surfaces that close
     std::uint64_t lost_impulses = 0;      ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;         ///< what options.verify found wrong with positions and ways
     std::uint64_t energy_violations = 0;  ///< and with energies
@@ -170,9 +175,11 @@ public:
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// Of the setup, in its order.
     [[nodiscard]] std::span<const Material> materials() const;
-    /// World-space mesh of collider i (placement baked in); nothing for planes. Balls and cylinders, which have no
-    /// triangles, are shown by a fine mesh.
+    /// Mesh of collider i (placement baked in), in the world or in the frame that it stands in; nothing for planes.
+    /// Balls and cylinders, which have no triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
+    /// Where the frame of collider i is at a time, s, and how it moves: the world itself for those at rest.
+    [[nodiscard]] MovingPose collider_pose(std::size_t i, double time) const;
     /// Totals of collider i, one entry a triangle (one in all for a plane); empty without options.triangle_totals.
     [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
     /// Triangles of all mesh colliders together, degenerate ones included.

@@ -58,11 +58,11 @@ struct Aimed {
         const auto found = find_first_contact({world, scratch.plane_cache}, {path, 0.0}, scratch);
         const auto& contact = found.contact;
         if (!contact) {
-            position = follow_path(found.near, path, path.duration, path.end, scratch.chain).reached;
+            position = follow_path(found.near, path, path.duration, path.end, scratch.chain).reached.position;
             return;
         }
         const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
-        position = safe_position.position;
+        position = safe_position.reached.position;
         triangle = world.name_of(contact->first().surface).triangle;
         ++tally.contacts;
         tally.stayed += safe_position.stayed ? 1 : 0;
@@ -153,12 +153,12 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
 }
 
 /// Every segment of the chain that was followed; a chain that does not join its ends counts as a crossing.
-void Billiard::check_legs(const std::vector<Vec3>& chain, const Vec3& from, const Vec3& to,
+void Billiard::check_legs(const std::vector<WayPoint>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
-    tally.crossing_segments += chain.front() == from && chain.back() == to ? 0 : 1;
+    tally.crossing_segments += chain.front().position == from && chain.back().position == to ? 0 : 1;
     for (std::size_t k = 1; k < chain.size(); ++k) {
         ++tally.checked_segments;
-        tally.crossing_segments += oracle_meets(mesh_, chain[k - 1], chain[k]) ? 1 : 0;
+        tally.crossing_segments += oracle_meets(mesh_, chain[k - 1].position, chain[k].position) ? 1 : 0;
     }
 }
 

@@ -65,14 +65,15 @@ TEST_P(SafePositionFarOut, IsOneContactOffsetBeforeTheSurfaceAlongCertifiedSegme
         ASSERT_TRUE(contact);
         const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
         ASSERT_FALSE(safe_position.stayed);
-        ASSERT_TRUE(can_be_walked(world_, path, 0.0, start, contact->time, safe_position.position, 12));
-        const double height = std::fabs(world_.signed_distance_from(contact->first().surface, safe_position.position));
-        const double offset = contact_offset(safe_position.position);
+        ASSERT_TRUE(can_be_walked(world_, path, 0.0, start, contact->time, safe_position.reached.position, 12));
+        const double height =
+            std::fabs(world_.signed_distance_from(contact->first().surface, safe_position.reached.position));
+        const double offset = contact_offset(safe_position.reached.position);
         EXPECT_GE(height, 0.5 * offset);
         EXPECT_LE(height, 64.0 * offset);
         // Off the true contact by no more than the contact offset and the rounding of the path.
         const double rounding = 64.0 * ulp(max_abs(center_) + 8.0);
-        EXPECT_LE(length(safe_position.position - path.position(contact->time)), 256.0 * offset + rounding);
+        EXPECT_LE(length(safe_position.reached.position - path.position(contact->time)), 256.0 * offset + rounding);
     }
 }
 
@@ -93,7 +94,7 @@ TEST_P(SafePositionFarOut, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         // From straight away to grazing.
         const double lift = std::pow(10.0, -12.0 * random.uniform());
         away += (lift - dot(away, hit.normal)) * hit.normal;
-        const auto found_next = query(world_, scratch, line_path(safe_position.position, 3.0 * away, 1.0), 0.0);
+        const auto found_next = query(world_, scratch, line_path(safe_position.reached.position, 3.0 * away, 1.0), 0.0);
         const auto& next = found_next.contact;
         if (!next) continue;
         for (const ContactSurface& surface : next->all()) EXPECT_NE(surface.surface, hit.surface);
@@ -110,7 +111,7 @@ TEST(SafePosition, InACornerStandsOffAllItsWalls) {
     ASSERT_TRUE(contact);
     const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
     EXPECT_FALSE(safe_position.stayed);
-    for (int axis = 0; axis < 3; ++axis) EXPECT_GT(safe_position.position[axis], 0.0);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_GT(safe_position.reached.position[axis], 0.0);
 }
 
 // In a wedge of 0.001 rad, next to its edge, stepping off one wall means stepping through the other.
@@ -132,8 +133,8 @@ TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
         const auto& contact = found.contact;
         ASSERT_TRUE(contact) << i;
         const SafePosition safe_position = find_safe_position(found.near, path, *contact, scratch.chain);
-        EXPECT_EQ(side_of(world.planes()[0].plane, safe_position.position), 1) << i;
-        EXPECT_EQ(side_of(world.planes()[1].plane, safe_position.position), 1) << i;
+        EXPECT_EQ(side_of(world.planes()[0].plane, safe_position.reached.position), 1) << i;
+        EXPECT_EQ(side_of(world.planes()[1].plane, safe_position.reached.position), 1) << i;
         moved += safe_position.stayed ? 0 : 1;
     }
     EXPECT_GT(moved, count / 2);
@@ -151,7 +152,7 @@ TEST(FollowPath, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
     const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
     EXPECT_FALSE(followed.blocker);
-    EXPECT_EQ(followed.reached, over.end);
+    EXPECT_EQ(followed.reached.position, over.end);
 }
 
 // The ridge is made of triangles so small that the chord's middle lies far off every piece that the broad phase is
@@ -165,7 +166,7 @@ TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     EXPECT_TRUE(intersects_any(world, over.c[0], over.end));
     EXPECT_FALSE(found.near.covers_chord(over, 0.0, over.duration));
     const CertifiedPath followed = follow_path(found.near, over, over.duration, over.end, scratch.chain);
-    EXPECT_EQ(followed.reached, over.end);
+    EXPECT_EQ(followed.reached.position, over.end);
     EXPECT_FALSE(followed.blocker);
 }
 
@@ -183,7 +184,7 @@ TEST(FollowPath, EndsNextToTrianglesOfAnySmallness) {
             const auto found = query(world, scratch, beside, radius);
             ASSERT_FALSE(found.contact);
             const CertifiedPath followed = follow_path(found.near, beside, 2.0, beside.end, scratch.chain);
-            EXPECT_EQ(followed.reached, beside.end);
+            EXPECT_EQ(followed.reached.position, beside.end);
             EXPECT_LT(scratch.chain.size(), 100'000U);
         }
     }
@@ -198,8 +199,8 @@ TEST(FollowPath, StopsWhereAChordIsBlocked) {
     const CertifiedPath followed = follow_path(found.near, down, down.duration, down.end, scratch.chain);
     ASSERT_TRUE(followed.blocker);
     EXPECT_EQ(*followed.blocker, 0U);
-    EXPECT_NEAR(followed.time, 1.0, 1e-12);
-    EXPECT_GT(followed.reached.z, 0.0);
+    EXPECT_NEAR(followed.reached.time, 1.0, 1e-12);
+    EXPECT_GT(followed.reached.position.z, 0.0);
     const Contact contact = contact_with_blocker(found.near, down, followed);
     EXPECT_EQ(contact.first().normal, (Vec3{0, 0, 1}));
 }

@@ -373,8 +373,6 @@ const std::vector<Spoiled> kSpoiled = {
     {R"("simulation": {"rollback": {"time_tolerance": -1e-9}})",
      "s.json:1:63: simulation.rollback.time_tolerance: found -1e-09, expected a number > 0 (s)"},
     // part of the format, not built
-    {R"("colliders": [{"type": "mesh", "file": "rock.obj", "motion": []}])",
-     "s.json:1:78: colliders[0].motion: \"motion\" is part of the scene format but not built in this version"},
     {R"("particles": {"file": "a.vtp"})",
      "s.json:1:39: particles.file: a .vtp file of particles is part of the scene format but not built in this "
      "version, expected a .csv file"},

@@ -129,7 +129,7 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
     const CollisionWorld world({mesh_collider(testing::box_mesh({0, 0, 0}, {4, 4, 4})),
                                 {"floor", PlaneShape{{0, 0, -1}, {0, 0, 3}}, 0},
                                 {"ball", BallShape{2.0, {{20, 0, 0}}}, 0}});
-    RunCheck check(world);
+    RunCheck check(world, nullptr);
     Particles particles;
     for (std::uint64_t id = 5; id < 9; ++id) {
         Particle particle;
@@ -153,7 +153,7 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
         const std::vector<Segment> segments{{particles.position[i], to, 0.5}};
         ForceInput moved;
         moved.position = to;
-        check.check(i, particles, moved, 1.0, segments, violations);
+        check.check(i, particles, moved, {1.0, 1.0}, segments, violations);
         return violations.size();
     };
     EXPECT_EQ(move(0, {2, 2, 2}), 0U);

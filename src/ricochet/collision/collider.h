@@ -80,6 +80,8 @@ struct ColliderDescription {
     std::string name;
     ColliderShape shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
+    /// The frame that it stands in, and moves with: its placement is within that. Empty: the world.
+    std::string frame = {};
 };
 
 }  // namespace ricochet

@@ -68,8 +68,17 @@ bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_f
 }  // namespace
 
 CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin)
-    : colliders_(std::move(colliders)) {
-    for (ColliderDescription& collider : colliders_) add(collider);
+    : CollisionWorld(std::make_shared<ColliderList>(std::move(colliders)), {}, chord_margin) {}
+
+CollisionWorld::CollisionWorld(std::shared_ptr<ColliderList> colliders, std::string_view frame, double chord_margin)
+    : list_(std::move(colliders)) {
+    for (std::size_t number = 0; number < list_->all().size(); ++number) {
+        if (list_->all()[number].frame == frame) {
+            add(number);
+        } else {
+            add_range(number, Kind::elsewhere);
+        }
+    }
     flag_degenerate_triangles();
     triangle_bounds_ = box_of(vertices_, triangles_);
     bounds_ = triangle_bounds_;
@@ -80,30 +89,31 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, doubl
     distance_field_ = DistanceField(vertices_, triangles_, triangle_bounds_);
 }
 
-void CollisionWorld::add(ColliderDescription& collider) {
+void CollisionWorld::add(std::size_t number) {
+    const ColliderDescription& collider = list_->all()[number];
     if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
-        add_plane(collider, *plane);
+        add_plane(number, *plane);
     } else if (const auto* ball = std::get_if<BallShape>(&collider.shape)) {
-        add_shape(AnalyticShape::ball(checked_map(collider, world_from_unit(*ball))));
+        add_shape(number, AnalyticShape::ball(checked_map(collider, world_from_unit(*ball))));
     } else if (const auto* cylinder = std::get_if<CylinderShape>(&collider.shape)) {
-        add_shape(AnalyticShape::cylinder(checked_map(collider, world_from_unit(*cylinder))));
+        add_shape(number, AnalyticShape::cylinder(checked_map(collider, world_from_unit(*cylinder))));
     } else if (const auto* cuboid = std::get_if<CuboidShape>(&collider.shape)) {
-        add_mesh(collider,
-                 {std::make_shared<const TriangleMesh>(cuboid_mesh(cuboid->size)), cuboid->placement, {}, {}});
+        add_mesh(number, {std::make_shared<const TriangleMesh>(cuboid_mesh(cuboid->size)), cuboid->placement, {}, {}});
     } else {
-        auto& mesh = std::get<MeshShape>(collider.shape);
-        add_mesh(collider, mesh);
-        mesh.mesh.reset();  // the baked copies are the collider from here on
-        mesh.triangle_materials = {};
+        add_mesh(number, std::get<MeshShape>(collider.shape));
+        list_->drop_mesh(number);  // the baked copy is the collider from here on
     }
 }
 
-void CollisionWorld::add_shape(const AnalyticShape& shape) {
-    const auto surface = static_cast<SurfaceId>(surface_count_);
-    ranges_.push_back({surface, static_cast<std::uint32_t>(triangles_.size()), 0,
-                       static_cast<std::uint32_t>(shapes_.size()), Kind::shape});
-    shapes_.push_back({shape, surface});
-    surface_count_ += shape.part_count();
+/// The running triangle count keeps the ranges sorted by first triangle.
+void CollisionWorld::add_range(std::size_t number, Kind kind, std::size_t index) {
+    ranges_.push_back({list_->first_surface_of(number), static_cast<std::uint32_t>(triangles_.size()),
+                       static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(index), kind});
+}
+
+void CollisionWorld::add_shape(std::size_t number, const AnalyticShape& shape) {
+    add_range(number, Kind::shape, shapes_.size());
+    shapes_.push_back({shape, list_->first_surface_of(number)});
 }
 
 // The boxes of a class are enlarged by its largest radius and the chord margin; radii up to half the chord margin share
@@ -135,24 +145,20 @@ const TriangleBvh& CollisionWorld::bvh_for(double radius) const {
     throw RunError("a particle is larger than any radius class that was prepared");
 }
 
-void CollisionWorld::add_plane(const ColliderDescription& collider, const PlaneShape& shape) {
+void CollisionWorld::add_plane(std::size_t number, const PlaneShape& shape) {
+    const ColliderDescription& collider = list_->all()[number];
     const double size = length(shape.normal);
     if (!(size > 0.0) || !std::isfinite(size))
         refuse(collider, "its normal is zero or not finite, expected a direction");
     if (!is_finite(shape.point) || max_abs(shape.point) > kLargestCoordinate) {
         refuse(collider, "its point is not finite or beyond 1e75 m");
     }
-    const auto surface = static_cast<SurfaceId>(surface_count_);
-    // The running triangle count keeps the ranges sorted by first triangle.
-    ranges_.push_back({surface, static_cast<std::uint32_t>(triangles_.size()), 0,
-                       static_cast<std::uint32_t>(planes_.size()), Kind::plane});
-    planes_.push_back({{flush_tiny(shape.point), flush_tiny(shape.normal / size)}, surface});
-    ++surface_count_;
+    add_range(number, Kind::plane, planes_.size());
+    planes_.push_back({{flush_tiny(shape.point), flush_tiny(shape.normal / size)}, list_->first_surface_of(number)});
 }
 
-void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshShape& shape) {
-    if (!shape.mesh || shape.mesh->triangles.empty())
-        refuse(collider, "its mesh has no triangles, expected at least one");
+void CollisionWorld::add_mesh(std::size_t number, const MeshShape& shape) {
+    const ColliderDescription& collider = list_->all()[number];
     const TriangleMesh& mesh = *shape.mesh;
     const std::size_t triangles_after = triangles_.size() + mesh.triangles.size();
     if (std::max(triangles_after, vertices_.size() + mesh.vertices.size()) >
@@ -161,8 +167,7 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
     }
     const AffineMap map = checked_map(collider, world_from_local(shape.placement));
     const auto base = static_cast<std::uint32_t>(vertices_.size());
-    ranges_.push_back(
-        {static_cast<SurfaceId>(surface_count_), static_cast<std::uint32_t>(triangles_.size()), base, 0, Kind::mesh});
+    add_range(number, Kind::mesh);
     vertices_.resize(vertices_.size() + mesh.vertices.size());
     bake_vertices(collider, mesh.vertices, map, std::span(vertices_).subspan(base));
     const std::size_t first = triangles_.size();
@@ -175,27 +180,6 @@ void CollisionWorld::add_mesh(const ColliderDescription& collider, const MeshSha
                                          : Triangle{base + t[0], base + t[1], base + t[2]};
         }
     });
-    surface_count_ += mesh.triangles.size();
-    add_triangle_materials(collider, shape);
-}
-
-void CollisionWorld::add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape) {
-    const std::size_t count = shape.mesh->triangles.size();
-    if (shape.triangle_materials.empty() && triangle_materials_.empty()) return;
-    if (!shape.triangle_materials.empty() && shape.triangle_materials.size() != count) {
-        refuse(collider, "its material list does not have one entry a triangle");
-    }
-    // Meshes before the first that names materials by triangle use their collider's.
-    while (triangle_materials_.size() < triangles_.size() - count) {
-        const auto triangle = static_cast<std::uint32_t>(triangle_materials_.size());
-        triangle_materials_.push_back(colliders_[collider_of(surface_of_triangle(triangle))].material);
-    }
-    if (shape.triangle_materials.empty()) {
-        triangle_materials_.resize(triangles_.size(), collider.material);
-    } else {
-        triangle_materials_.insert(triangle_materials_.end(), shape.triangle_materials.begin(),
-                                   shape.triangle_materials.end());
-    }
 }
 
 void CollisionWorld::flag_degenerate_triangles() {
@@ -224,18 +208,6 @@ double CollisionWorld::mean_box() const {
     return sum / static_cast<double>(triangles_.size());
 }
 
-std::uint32_t CollisionWorld::collider_among_many(SurfaceId surface) const {
-    const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), surface,
-                                        [](SurfaceId s, const Range& range) { return s < range.first_surface; });
-    return static_cast<std::uint32_t>(after - ranges_.begin() - 1);
-}
-
-SurfaceName CollisionWorld::name_of(SurfaceId surface) const {
-    const std::uint32_t collider = collider_of(surface);
-    const Range& range = ranges_[collider];
-    return {collider, range.kind == Kind::mesh ? surface - range.first_surface : 0};
-}
-
 SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
     if (ranges_.size() == 1) return triangle;
     // Planes own no triangles, so the last range that starts at or before the triangle and is a mesh is the owner.
@@ -243,13 +215,6 @@ SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
                                   [](std::uint32_t t, const Range& range) { return t < range.first_triangle; });
     --after;
     return after->first_surface + (triangle - after->first_triangle);
-}
-
-std::uint32_t CollisionWorld::material_of(SurfaceId surface) const {
-    const std::uint32_t collider = collider_of(surface);
-    const Range& range = ranges_[collider];
-    if (range.kind != Kind::mesh || triangle_materials_.empty()) return colliders_[collider].material;
-    return triangle_materials_[range.first_triangle + (surface - range.first_surface)];
 }
 
 CollisionWorld::Nearest CollisionWorld::nearest(SurfaceId surface, const Vec3& p) const {
@@ -355,8 +320,7 @@ bool CollisionWorld::segment_intersects(SurfaceId surface, const Vec3& p, const 
 }
 
 std::size_t CollisionWorld::surface_count_of(std::size_t collider) const {
-    const std::size_t end = collider + 1 < ranges_.size() ? ranges_[collider + 1].first_surface : surface_count_;
-    return end - ranges_[collider].first_surface;
+    return list_->first_surface_of(collider + 1) - list_->first_surface_of(collider);
 }
 
 std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const {
@@ -379,7 +343,7 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
 std::size_t CollisionWorld::memory_bytes() const {
     const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     std::size_t bytes = distance_field_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) +
-                        held(triangles_) + held(degenerate_) + held(shapes_) + held(triangle_materials_);
+                        held(triangles_) + held(degenerate_) + held(shapes_) + list_->memory_bytes();
     if (clusters_) bytes += held(*clusters_);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
     return bytes;

@@ -1,10 +1,13 @@
 /// \file
-/// All static colliders of a scene in world coordinates, as surfaces in one total order.
+/// The colliders of a scene that stand in one frame, in its coordinates: those at rest in the world, or those that move
+/// together. The surfaces of all colliders have one total order, whatever frame they are in.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "ricochet/collision/collider.h"
@@ -19,20 +22,56 @@
 
 namespace ricochet {
 
+/// All colliders of a scene, whatever frame they stand in, and how their surfaces are numbered.
+class ColliderList {
+public:
+    /// Throws InputError that names the collider when a mesh has no triangles, or one material a triangle is not given
+    /// for each.
+    explicit ColliderList(std::vector<ColliderDescription> colliders);
+
+    [[nodiscard]] const std::vector<ColliderDescription>& all() const { return colliders_; }
+    [[nodiscard]] std::size_t surface_count() const { return first_surfaces_.back(); }
+    /// First surface of a collider; of the number after the last: surface_count().
+    [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return first_surfaces_[collider]; }
+    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const {
+        return colliders_.size() == 1 ? 0 : collider_among_many(surface);
+    }
+    [[nodiscard]] SurfaceName name_of(SurfaceId surface) const;
+    /// Material of a surface: that of its triangle, or of its collider.
+    [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
+    /// Lets go of a mesh of which a world holds its own copy.
+    void drop_mesh(std::size_t collider);
+    /// Bytes, without the meshes.
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    [[nodiscard]] std::uint32_t collider_among_many(SurfaceId surface) const;
+
+    std::vector<ColliderDescription> colliders_;
+    std::vector<SurfaceId> first_surfaces_;  ///< of each collider, and what would be that of the next
+};
+
 /// Immutable after construction; safe from any number of threads.
 class CollisionWorld {
 public:
-    /// Bakes every placement into world coordinates and builds the broad phase. Throws InputError that names the
-    /// collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
+    /// Bakes the placements of all colliders of a frame into its coordinates and builds the broad phase. Throws
+    /// InputError that names the collider when a placement is singular or a coordinate exceeds kLargestCoordinate.
     /// chord_margin: how far beside its chords a path may run before the broad phase divides it, in parts of the mean
     /// triangle's box. Results do not depend on it.
+    CollisionWorld(std::shared_ptr<ColliderList> colliders, std::string_view frame, double chord_margin = kChordMargin);
+    /// The same of colliders that all stand in the world.
     explicit CollisionWorld(std::vector<ColliderDescription> colliders, double chord_margin = kChordMargin);
     CollisionWorld(const CollisionWorld&) = delete;  // the broad phase refers to the arrays
     CollisionWorld& operator=(const CollisionWorld&) = delete;
 
-    [[nodiscard]] const std::vector<ColliderDescription>& colliders() const { return colliders_; }
-    [[nodiscard]] std::size_t surface_count() const { return surface_count_; }
-    [[nodiscard]] SurfaceName name_of(SurfaceId surface) const;
+    /// Of all frames, and the numbers of their surfaces.
+    [[nodiscard]] const std::vector<ColliderDescription>& colliders() const { return list_->all(); }
+    [[nodiscard]] std::size_t surface_count() const { return list_->surface_count(); }
+    [[nodiscard]] SurfaceName name_of(SurfaceId surface) const { return list_->name_of(surface); }
+    /// True for the surfaces of this frame's colliders: what is asked of a surface below is asked of one of these.
+    [[nodiscard]] bool owns(SurfaceId surface) const { return ranges_[collider_of(surface)].kind != Kind::elsewhere; }
+    /// True where there are none.
+    [[nodiscard]] bool empty() const { return triangles_.empty() && planes_.empty() && shapes_.empty(); }
 
     /// The infinite planes, with their surface numbers.
     struct PlaneSurface {
@@ -79,8 +118,8 @@ public:
         return range.first_triangle + (surface - range.first_surface);
     }
 
-    /// Material of a surface: that of its triangle, or of its collider.
-    [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
+    /// Material of a surface of any frame: that of its triangle, or of its collider.
+    [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const { return list_->material_of(surface); }
 
     /// The corners of a surface that is a triangle.
     struct Corners {
@@ -135,13 +174,14 @@ public:
     /// Exact: does the point lie on the surface?
     [[nodiscard]] bool point_on(SurfaceId surface, const Vec3& p) const { return segment_intersects(surface, p, p); }
 
-    /// World-space mesh of a collider with all its triangles, degenerate ones included; nothing for planes.
+    /// Mesh of a collider, in the frame's coordinates, with all its triangles, degenerate ones included; nothing for
+    /// planes.
     [[nodiscard]] std::optional<TriangleMesh> mesh_of(std::size_t collider) const;
     /// Triangles of a collider; 1 for a plane and a ball, 3 for a cylinder.
     [[nodiscard]] std::size_t surface_count_of(std::size_t collider) const;
     /// First surface of a collider.
-    [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return ranges_[collider].first_surface; }
-    /// Box of all colliders but the planes.
+    [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return list_->first_surface_of(collider); }
+    /// Box of the frame's colliders but the planes.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
     /// Box of all triangles.
     [[nodiscard]] const Box3& triangle_bounds() const { return triangle_bounds_; }
@@ -153,7 +193,7 @@ public:
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
 
 private:
-    enum class Kind : std::uint8_t { plane, mesh, shape };
+    enum class Kind : std::uint8_t { plane, mesh, shape, elsewhere };
 
     /// What a collider owns of the shared arrays.
     struct Range {
@@ -164,31 +204,26 @@ private:
         Kind kind = Kind::mesh;
     };
 
-    void add(ColliderDescription& collider);
-    void add_shape(const AnalyticShape& shape);
-    void add_plane(const ColliderDescription& collider, const PlaneShape& shape);
-    void add_mesh(const ColliderDescription& collider, const MeshShape& shape);
-    void add_triangle_materials(const ColliderDescription& collider, const MeshShape& shape);
+    void add(std::size_t number);
+    void add_range(std::size_t number, Kind kind, std::size_t index = 0);
+    void add_shape(std::size_t number, const AnalyticShape& shape);
+    void add_plane(std::size_t number, const PlaneShape& shape);
+    void add_mesh(std::size_t number, const MeshShape& shape);
     void flag_degenerate_triangles();
     [[nodiscard]] double mean_box() const;
     [[nodiscard]] double largest_radius_of_class(double radius) const;
-    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const {
-        return ranges_.size() == 1 ? 0 : collider_among_many(surface);
-    }
-    [[nodiscard]] std::uint32_t collider_among_many(SurfaceId surface) const;
+    [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const { return list_->collider_of(surface); }
 
-    std::vector<ColliderDescription> colliders_;
-    std::vector<Range> ranges_;
+    std::shared_ptr<ColliderList> list_;
+    std::vector<Range> ranges_;  ///< one a collider of the list
     std::vector<PlaneSurface> planes_;
     std::vector<Vec3> vertices_;
     std::vector<Triangle> triangles_;
     std::vector<std::uint8_t> degenerate_;
     std::size_t degenerate_count_ = 0;
-    std::size_t surface_count_ = 0;
     Box3 bounds_;
     Box3 triangle_bounds_;
     std::vector<ShapeSurface> shapes_;
-    std::vector<std::uint32_t> triangle_materials_;  ///< empty when no mesh names materials by triangle
     double chord_margin_ = 0.0;       ///< m, how far beside its chords a path may run before it is divided
     TriangleBvh::Clusters clusters_;  ///< of all triangles, shared by the classes
     struct RadiusClass {

@@ -9,8 +9,11 @@
 
 #include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/look_ahead.h"
+#include "ricochet/collision/way_point.h"
 
 namespace ricochet {
+
+class ForeignSurfaces;
 
 // The surfaces near a path, and the certificate of segments beside it.
 
@@ -31,10 +34,29 @@ public:
     /// The same for a segment that starts on surfaces: true when it leaves all of them and intersects no other.
     [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
 
+    // The same of links from one stored position to the next, which have to be free in the frame of every collider
+    // that is near. Where nothing moves, a link is the segment.
+
+    /// From now on with the surfaces of other frames, which must outlive it.
+    void join(const ForeignSurfaces& foreign) { foreign_ = &foreign; }
+    [[nodiscard]] const ForeignSurfaces* foreign() const { return foreign_; }
+    /// Where the path starts.
+    [[nodiscard]] WayPoint start() const;
+    /// The stored position nearest to a point at a time along the path.
+    [[nodiscard]] WayPoint point_at(const Vec3& p, double time) const;
+    [[nodiscard]] bool is_link_free(const WayPoint& p, const WayPoint& q) const;
+    [[nodiscard]] std::optional<SurfaceId> link_blocker(const WayPoint& p, const WayPoint& q) const;
+    /// CollisionWorld's functions of the same names for a surface of any frame, seen from this one.
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] double signed_distance_from(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] int side_of_surface(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] bool is_flat(SurfaceId surface) const;
+    /// m, the contact offset for a position, by the largest of its coordinates in all frames.
+    [[nodiscard]] double offset_at(const WayPoint& p) const;
+
     /// True when the surfaces include all that the path's chord between two times may intersect.
-    [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const {
-        return candidates_ == CandidateSet::all || ricochet::covers_chord(world(), margins_, path, from, to);
-    }
+    [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
     /// All of them on which the point lies exactly.
     [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
     /// True when the sphere overlaps a surface by more than the tolerance (a point: lies on one) at the path's start.
@@ -58,6 +80,7 @@ private:
     QueryMargins margins_;
     Vec3 start_;
     CandidateSet candidates_;
+    const ForeignSurfaces* foreign_ = nullptr;  ///< null where there are none
 };
 
 /// A path, and what is already known about it.
@@ -71,6 +94,8 @@ struct ContactQuery {
     /// Surfaces that the particle touches and is held by, so that it follows them: they are no contacts, and block only
     /// what intersects them.
     std::span<const SurfaceId> held = {};
+    /// m, by which positions along the path may lie further beside it than rounding puts them.
+    double beside = 0.0;
 };
 
 /// The first contact, and what else the query has found on the way to it.

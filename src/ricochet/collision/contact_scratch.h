@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/way_point.h"
 #include "ricochet/geometry/predicates/triangle_plane.h"
 
 namespace ricochet {
@@ -92,7 +93,9 @@ struct ContactScratch {
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Hit> hits;
     std::vector<Approach> approaches;
-    std::vector<Vec3> chain;  ///< ends of certified segments, see CertifiedPath
+    std::vector<WayPoint> chain;  ///< ends of certified segments, see CertifiedPath
+    /// Of queries in the frames of other bodies, one each.
+    std::vector<std::unique_ptr<ContactScratch>> foreign;
     TrianglePlaneCache plane_cache;
 
     /// Empties the lists of a query.

@@ -45,12 +45,12 @@ Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, con
     return facing_normal(world.unit_normal_of(surface, p), side, v);
 }
 
-QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in)
+QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside)
     : bvh(&world.bvh_for(radius_in)),
       radius(radius_in),
       tolerance(0.0),
       largest(largest_coordinate(path)),
-      slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset),
+      slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset + beside),
       curvature(bvh->margin() - radius) {
     if (radius > 0.0) tolerance = sphere_tolerance(radius, largest);
 }

@@ -18,7 +18,8 @@ namespace ricochet {
 
 /// How far beside a path a query takes surfaces into account.
 struct QueryMargins {
-    QueryMargins(const CollisionWorld& world, const Path& path, double radius);
+    /// beside: ContactQuery::beside.
+    QueryMargins(const CollisionWorld& world, const Path& path, double radius, double beside = 0.0);
 
     const TriangleBvh* bvh;  ///< the broad phase for the radius
     double radius;           ///< m, 0 for points

@@ -42,6 +42,16 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& 
     return deepest;
 }
 
+std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies, const Vec3& center,
+                                       double radius, double time) {
+    std::optional<Overlap> deepest = deepest_overlap(at_rest, center, radius);
+    for (BodyId body = 0; bodies != nullptr && body < bodies->size(); ++body) {
+        const auto overlap = deepest_overlap(bodies->world(body), bodies->pose(body, time).image(center), radius);
+        if (overlap && (!deepest || overlap->distance < deepest->distance)) deepest = overlap;
+    }
+    return deepest;
+}
+
 std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius, double reach) {
     std::vector<SurfaceId> touched;
     if (!is_finite(center)) return touched;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/moving_colliders.h"
 
 namespace ricochet {
 
@@ -20,6 +20,10 @@ struct Overlap {
 /// for a centre that is not finite. What lies wholly inside a solid overlaps nothing. The broad phase proposes the
 /// triangles: one query of a point. Safe from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
+
+/// The same among colliders of all frames, as they stand at a time, s. bodies: null where none moves.
+[[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies,
+                                                     const Vec3& center, double radius, double time);
 
 /// The surfaces that a sphere, or a point (radius 0), touches: those from whose distance its radius differs by at most
 /// `reach`, m, by number. Not one that a point lies exactly on. One query of a point.

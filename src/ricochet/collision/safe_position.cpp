@@ -11,26 +11,26 @@ namespace {
 /// Follows a path: halves it until its chords are free, and stops at the first that is not.
 class PathFollower {
 public:
-    PathFollower(const NearSurfaces& near, const Path& path, std::vector<Vec3>& chain)
-        : near_(near), path_(path), chain_(chain), followed_{path.c[0], 0.0, std::nullopt} {
-        chain_.assign(1, path.c[0]);
+    PathFollower(const NearSurfaces& near, const Path& path, const WayPoint& start, std::vector<WayPoint>& chain)
+        : near_(near), path_(path), chain_(chain), followed_{start, std::nullopt} {
+        chain_.assign(1, start);
     }
 
-    bool follow_to(double time, const Vec3& target, int depth) {
-        const double middle = 0.5 * (followed_.time + time);
-        const bool is_shortest = depth == 0 || middle <= followed_.time || middle >= time;
-        const Vec3& from = followed_.reached;
-        if ((is_shortest || near_.covers_chord(path_, followed_.time, time)) && near_.is_free(from, target)) {
+    bool follow_to(const WayPoint& target, int depth) {
+        const WayPoint& from = followed_.reached;
+        const double time = target.time;
+        const double middle = 0.5 * (from.time + time);
+        const bool is_shortest = depth == 0 || middle <= from.time || middle >= time;
+        if ((is_shortest || near_.covers_chord(path_, from.time, time)) && near_.is_link_free(from, target)) {
             followed_.reached = target;
-            followed_.time = time;
             chain_.push_back(target);
             return true;
         }
         if (is_shortest) {
-            followed_.blocker = near_.blocker(from, target);
+            followed_.blocker = near_.link_blocker(from, target);
             return false;
         }
-        return follow_to(middle, path_.position(middle), depth - 1) && follow_to(time, target, depth - 1);
+        return follow_to(near_.point_at(path_.position(middle), middle), depth - 1) && follow_to(target, depth - 1);
     }
 
     [[nodiscard]] const CertifiedPath& followed() const { return followed_; }
@@ -38,7 +38,7 @@ public:
 private:
     const NearSurfaces& near_;
     const Path& path_;
-    std::vector<Vec3>& chain_;
+    std::vector<WayPoint>& chain_;
     CertifiedPath followed_;
 };
 
@@ -73,21 +73,17 @@ Vec3 escape_direction(const Normals& normals) {
 
 /// What moves a position on the path at the contact along the normal until it is exactly `radius` from the first
 /// surface.
-Vec3 correction_at(const NearSurfaces& near, const Vec3& position, const Contact& contact) {
+Vec3 correction_at(const NearSurfaces& near, const WayPoint& at, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
-    const SurfaceGeometry& geometry = near.geometry();
-    if (near.radius() == 0.0) {
-        return -geometry.signed_distance_from(surface, position) * geometry.unit_normal_of(surface, position);
-    }
-    const double distance = geometry.nearest(surface, position).distance;
-    return (near.radius() - distance) * contact.first().normal;
+    if (near.radius() == 0.0) return -near.signed_distance_from(surface, at) * near.unit_normal_of(surface, at);
+    return (near.radius() - near.nearest(surface, at).distance) * contact.first().normal;
 }
 
 /// The position on the path at the contact, corrected. A sphere that overlaps is left as it is, and so is a position
 /// next to the origin whose distance from a large triangle has a rounding error beyond all that the query has covered.
-Vec3 position_at(const NearSurfaces& near, const Path& path, const Contact& contact) {
-    const Vec3 position = path.position(contact.time);
-    const Vec3 correction = correction_at(near, position, contact);
+Vec3 position_at(const NearSurfaces& near, const WayPoint& on_path, const Contact& contact) {
+    const Vec3& position = on_path.position;
+    const Vec3 correction = correction_at(near, on_path, contact);
     const bool overlaps =
         near.radius() > 0.0 && dot(correction, contact.first().normal) > near.radius() * kContactMismatch;
     if (overlaps || length(correction) > 0.5 * near.slack()) return position;
@@ -95,49 +91,48 @@ Vec3 position_at(const NearSurfaces& near, const Path& path, const Contact& cont
 }
 
 /// Normal of a blocking surface at p, facing p; zero when p lies in its plane.
-ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const Vec3& p) {
+ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const WayPoint& p) {
     if (near.radius() > 0.0) {
-        const auto nearest = near.geometry().nearest(surface, p);
+        const auto nearest = near.nearest(surface, p);
         return {surface, nearest.normal, nearest.flat};
     }
-    const int side = near.world().side_of_surface(surface, p);
-    return {surface, static_cast<double>(side) * near.geometry().unit_normal_of(surface, p),
-            near.world().is_flat(surface)};
+    const int side = near.side_of_surface(surface, p);
+    return {surface, static_cast<double>(side) * near.unit_normal_of(surface, p), near.is_flat(surface)};
 }
 
 }  // namespace
 
 CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                          std::vector<Vec3>& chain) {
-    PathFollower follower(near, path, chain);
-    (void)follower.follow_to(until, target, path.degree > 1 ? kCertificateDepth : 0);
+                          std::vector<WayPoint>& chain) {
+    PathFollower follower(near, path, near.start(), chain);
+    (void)follower.follow_to(near.point_at(target, until), path.degree > 1 || near.foreign() ? kCertificateDepth : 0);
     return follower.followed();
 }
 
 SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
-                                std::vector<Vec3>& chain) {
-    const Vec3 on_path = path.position(contact.time);
-    const Vec3 position = position_at(near, path, contact);
+                                std::vector<WayPoint>& chain) {
+    const WayPoint on_path = near.point_at(path.position(contact.time), contact.time);
+    const Vec3 position = position_at(near, on_path, contact);
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
-    double offset = contact_offset(position);
+    double offset = near.offset_at({position, contact.time, on_path.world});
     const double longest = kLargestContactOffsetUlps / kContactOffsetUlps * offset;
     for (int attempt = 0; attempt < kSafePositionAttempts;) {
         const Vec3 step = offset * escape_direction(normals);
         if (!(length(step) <= longest)) break;
         const Vec3 safe = flush_tiny(position + step);
-        if (length(safe - on_path) > near.slack()) break;
+        if (length(safe - on_path.position) > near.slack()) break;
         const CertifiedPath followed = follow_path(near, path, contact.time, safe, chain);
-        if (!followed.blocker) return {safe, false, std::nullopt, contact.time};
+        if (!followed.blocker) return {followed.reached, false, std::nullopt};
         const Vec3 normal = facing_surface(near, *followed.blocker, followed.reached).normal;
         if (normal != Vec3{} && normals.add(normal)) continue;
         offset *= kContactOffsetWidening;
         ++attempt;
     }
-    PathFollower follower(near, path, chain);
-    (void)follower.follow_to(contact.time, position, kCertificateDepth);
+    PathFollower follower(near, path, near.start(), chain);
+    (void)follower.follow_to(near.point_at(position, contact.time), kCertificateDepth);
     const CertifiedPath& followed = follower.followed();
-    return {followed.reached, followed.reached == path.c[0], followed.blocker, followed.time};
+    return {followed.reached, followed.reached.position == path.c[0], followed.blocker};
 }
 
 std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
@@ -155,12 +150,13 @@ std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
 
 Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const CertifiedPath& followed) {
     Contact contact;
-    contact.time = followed.time;
+    contact.time = followed.reached.time;
     contact.count = 1;
     contact.surfaces[0] = facing_surface(near, *followed.blocker, followed.reached);
     if (contact.surfaces[0].normal == Vec3{}) {
+        const WayPoint& reached = followed.reached;
         contact.surfaces[0].normal =
-            facing_normal(near.world(), *followed.blocker, 0, followed.reached, path.velocity(followed.time));
+            facing_normal(near.unit_normal_of(*followed.blocker, reached), 0, path.velocity(reached.time));
     }
     return contact;
 }

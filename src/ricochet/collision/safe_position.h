@@ -14,8 +14,7 @@ namespace ricochet {
 
 /// How far a path could be followed in certified segments.
 struct CertifiedPath {
-    Vec3 reached;                      ///< the last certified position
-    double time = 0;                   ///< its time along the path, s
+    WayPoint reached;                  ///< the last certified position
     std::optional<SurfaceId> blocker;  ///< what the next, shortest segment intersects; nothing at the target
 };
 
@@ -23,21 +22,20 @@ struct CertifiedPath {
 /// when it is free, otherwise halves of the arc down to kCertificateDepth. chain: replaced by the certified positions
 /// in order, the start first.
 [[nodiscard]] CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                                        std::vector<Vec3>& chain);
+                                        std::vector<WayPoint>& chain);
 
 /// A certified position next to a contact.
 struct SafePosition {
-    Vec3 position;
+    WayPoint reached;
     bool stayed = false;               ///< no certified position nearer than the path's start was found
-    std::optional<SurfaceId> blocker;  ///< where the path is blocked before the contact: by what
-    double time = 0.0;                 ///< and then when, s
+    std::optional<SurfaceId> blocker;  ///< where the path is blocked before the contact, there: by what
 };
 
 /// A position off the surfaces of the contact along their normals by contact_offset(), by more when that fails, and
 /// the last certified position on the path when nothing else is free. "Do not move" is always valid. chain: as for
 /// follow_path().
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
-                                              std::vector<Vec3>& chain);
+                                              std::vector<WayPoint>& chain);
 
 /// For a particle that was put exactly on surfaces: a position one contact offset off them, on the side that their
 /// normals point to, along a segment that leaves them and intersects no other surface. `near` is that of a path that

@@ -38,7 +38,9 @@ SignedDistance::SignedDistance(const CollisionWorld& world) : world_(world) {
     std::uint32_t shapes = 0;
     for (std::uint32_t collider = 0; collider < world.colliders().size(); ++collider) {
         const ColliderShape& shape = world.colliders()[collider].shape;
-        if (std::holds_alternative<PlaneShape>(shape)) {
+        if (!world.owns(world.first_surface_of(collider))) {
+            parts_.push_back({Kind::elsewhere, 0});
+        } else if (std::holds_alternative<PlaneShape>(shape)) {
             parts_.push_back({Kind::plane, planes++});
         } else if (std::holds_alternative<BallShape>(shape) || std::holds_alternative<CylinderShape>(shape)) {
             parts_.push_back({Kind::shape, shapes++});

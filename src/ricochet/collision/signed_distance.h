@@ -56,7 +56,7 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
-    enum class Kind : std::uint8_t { plane, shape, mesh };
+    enum class Kind : std::uint8_t { plane, shape, mesh, elsewhere };
 
     /// Where a collider is found: an index into the world's planes or shapes, or into meshes_.
     struct Part {

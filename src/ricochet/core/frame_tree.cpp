@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -21,12 +22,16 @@ std::optional<std::size_t> place_of(std::span<const FrameDescription> frames, st
     return static_cast<std::size_t>(found - frames.begin());
 }
 
-// Moves the frame along its own axes.
-void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate) {
+// Moves the frame along its own axes, by an offset with its first and second derivative.
+void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate = {}, const Vec3& second = {}) {
     AffineMap& map = pose.world_from_frame;
     const Vec3 moved = map.direction(offset);
+    const Vec3 moving = map.direction(rate);
+    const Vec3 carried = cross(pose.angular_velocity, moved);
     map.translation += moved;
-    pose.velocity += cross(pose.angular_velocity, moved) + map.direction(rate);
+    pose.velocity += carried + moving;
+    pose.acceleration += cross(pose.angular_acceleration, moved) + cross(pose.angular_velocity, carried) +
+                         2.0 * cross(pose.angular_velocity, moving) + map.direction(second);
 }
 
 // Rodrigues' formula, applied to each row of the rotation: row' = row R(axis, angle), the turn about -axis of the row.
@@ -34,51 +39,109 @@ Vec3 turned_row(const Vec3& row, const Vec3& axis, double sine, double cosine) {
     return cosine * row - sine * cross(axis, row) + ((1.0 - cosine) * dot(axis, row)) * axis;
 }
 
-// Turns the frame about one of its own axes, of unit length.
-void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate) {
+// Turns the frame about one of its own axes, of unit length, by an angle in degrees with its derivatives.
+void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate = 0.0, double second = 0.0) {
+    constexpr double kRadians = std::numbers::pi / 180.0;
     AffineMap& map = pose.world_from_frame;
-    pose.angular_velocity += (rate * (std::numbers::pi / 180.0)) * map.direction(axis);
+    const Vec3 about = map.direction(axis);
+    pose.angular_acceleration += (second * kRadians) * about + (rate * kRadians) * cross(pose.angular_velocity, about);
+    pose.angular_velocity += (rate * kRadians) * about;
     const double turns = degrees / 360.0;
     const double sine = sine_of_turns(turns);
     const double cosine = sine_of_turns(turns + 0.25);
     for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) *row = turned_row(*row, axis, sine, cosine);
 }
 
-/// A sine of amplitude 1, and its derivative, 1/s.
+/// A sine of amplitude 1, and its derivatives, 1/s and 1/s^2.
 struct Wave {
     Wave(double frequency, double phase, double time) {
         // Whole periods are taken off before the phase is added, which would be lost in many.
         const double turns = std::remainder(frequency * time, 1.0) + phase / 360.0;
+        const double pulsation = 2.0 * std::numbers::pi * frequency;
         value = sine_of_turns(turns);
-        rate = 2.0 * std::numbers::pi * frequency * sine_of_turns(turns + 0.25);
+        rate = pulsation * sine_of_turns(turns + 0.25);
+        second = -pulsation * pulsation * value;
     }
-    double value, rate;
+    double value, rate, second;
 };
 
 void move(MovingPose& pose, const KeyedRotation& motion, double time) {
-    turn(pose, motion.axis, motion.degrees.value(time), motion.degrees.derivative(time));
+    const KeyedCurve<double>& angle = motion.degrees;
+    turn(pose, motion.axis, angle.value(time), angle.derivative(time), angle.second_derivative(time));
 }
 void move(MovingPose& pose, const KeyedTranslation& motion, double time) {
-    shift(pose, motion.path.value(time), motion.path.derivative(time));
+    shift(pose, motion.path.value(time), motion.path.derivative(time), motion.path.second_derivative(time));
 }
 void move(MovingPose& pose, const Spin& motion, double time) {
     turn(pose, motion.axis, motion.rate * time, motion.rate);
 }
 void move(MovingPose& pose, const Swing& motion, double time) {
     const Wave wave(motion.frequency, motion.phase, time);
-    turn(pose, motion.axis, motion.amplitude * wave.value, motion.amplitude * wave.rate);
+    const double size = motion.amplitude;
+    turn(pose, motion.axis, size * wave.value, size * wave.rate, size * wave.second);
 }
 void move(MovingPose& pose, const Oscillation& motion, double time) {
     const Wave wave(motion.frequency, motion.phase, time);
-    shift(pose, wave.value * motion.amplitude, wave.rate * motion.amplitude);
+    const Vec3& size = motion.amplitude;
+    shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
 void step_into(MovingPose& pose, const FrameDescription& frame, double time) {
-    shift(pose, frame.translation, {});
-    if (frame.rotation_degrees != 0.0) turn(pose, frame.rotation_axis, frame.rotation_degrees, 0.0);
+    shift(pose, frame.translation);
+    if (frame.rotation_degrees != 0.0) turn(pose, frame.rotation_axis, frame.rotation_degrees);
     for (const FrameMotion& motion : frame.motions) {
         std::visit([&](const auto& m) { move(pose, m, time); }, motion);
     }
+}
+
+/// Those of a product of two functions, by Leibniz' rule.
+DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
+    constexpr std::array<DerivativeBounds, 5> kBinomials{
+        {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}}};
+    DerivativeBounds result{};
+    for (std::size_t n = 0; n < result.size(); ++n) {
+        for (std::size_t k = 0; k <= n; ++k) result[n] += kBinomials[n][k] * f[k] * g[n - k];
+    }
+    return result;
+}
+
+/// Those of the matrix of a turn by an angle, degrees, about a fixed axis: of exp(i angle), by Faa di Bruno's formula.
+DerivativeBounds turn_bounds(DerivativeBounds a) {
+    for (double& bound : a) bound *= std::numbers::pi / 180.0;
+    return {1.0, a[1], a[2] + a[1] * a[1], a[3] + 3.0 * a[1] * a[2] + a[1] * a[1] * a[1],
+            a[4] + 4.0 * a[1] * a[3] + 3.0 * a[2] * a[2] + 6.0 * a[1] * a[1] * a[2] + a[1] * a[1] * a[1] * a[1]};
+}
+
+DerivativeBounds wave_bounds(double amplitude, double frequency) {
+    const double pulsation = 2.0 * std::numbers::pi * std::fabs(frequency);
+    DerivativeBounds bounds{amplitude};
+    for (std::size_t n = 1; n < bounds.size(); ++n) bounds[n] = pulsation * bounds[n - 1];
+    return bounds;
+}
+
+/// What the motions of a chain add to its bounds, one after the other.
+struct BoundsOf {
+    MotionBounds& bounds;
+    double from, to;
+
+    void shift(const DerivativeBounds& offset) const {
+        const DerivativeBounds moved = product(bounds.rotation, offset);
+        for (std::size_t n = 1; n < moved.size(); ++n) bounds.origin[n] += moved[n];
+    }
+    void turn(const DerivativeBounds& degrees) const {
+        bounds.rotation = product(bounds.rotation, turn_bounds(degrees));
+    }
+    void operator()(const KeyedRotation& motion) const { turn(motion.degrees.bounds(from, to)); }
+    void operator()(const KeyedTranslation& motion) const { shift(motion.path.bounds(from, to)); }
+    void operator()(const Spin& motion) const { turn({0.0, std::fabs(motion.rate), 0.0, 0.0, 0.0}); }
+    void operator()(const Swing& motion) const { turn(wave_bounds(std::fabs(motion.amplitude), motion.frequency)); }
+    void operator()(const Oscillation& motion) const { shift(wave_bounds(length(motion.amplitude), motion.frequency)); }
+};
+
+double next_key_of(const FrameMotion& motion, double time) {
+    if (const auto* turning = std::get_if<KeyedRotation>(&motion)) return turning->degrees.next_key(time);
+    if (const auto* moving = std::get_if<KeyedTranslation>(&motion)) return moving->path.next_key(time);
+    return std::numeric_limits<double>::infinity();
 }
 
 // Checks a frame by itself; axes become unit vectors.
@@ -156,6 +219,26 @@ MovingPose FrameTree::at(std::size_t frame, double time) const {
     MovingPose pose;
     for (const std::size_t k : chains_[frame]) step_into(pose, frames_[k], time);
     return pose;
+}
+
+MotionBounds FrameTree::bounds(std::size_t frame, double from, double to) const {
+    require_index(frame, size(), "frame");
+    MotionBounds bounds;
+    const BoundsOf add{bounds, from, to};
+    for (const std::size_t k : chains_[frame]) {
+        add.shift({length(frames_[k].translation), 0.0, 0.0, 0.0, 0.0});
+        for (const FrameMotion& motion : frames_[k].motions) std::visit(add, motion);
+    }
+    return bounds;
+}
+
+double FrameTree::next_key(std::size_t frame, double time) const {
+    require_index(frame, size(), "frame");
+    double next = std::numeric_limits<double>::infinity();
+    for (const std::size_t k : chains_[frame]) {
+        for (const FrameMotion& motion : frames_[k].motions) next = std::min(next, next_key_of(motion, time));
+    }
+    return next;
 }
 
 }  // namespace ricochet

@@ -59,16 +59,49 @@ struct FrameDescription {
     std::vector<FrameMotion> motions{};  ///< in order
 };
 
+/// Where a frame is at a time: turned about an axis through its origin, which is at a position.
+struct KeyPose {
+    double time = 0.0;     ///< s
+    Vec3 position;         ///< m
+    Vec3 axis{0, 0, 1};    ///< of any length but zero
+    double degrees = 0.0;  ///< by the right-hand rule
+};
+
+/// The motions of a frame through poses: between two of them its origin moves steadily on a straight line, and it turns
+/// steadily about one axis by the shortest way; before the first and after the last it stands still. Throws InputError
+/// as KeyedCurve does. Source: K. Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
+[[nodiscard]] std::vector<FrameMotion> motions_through(const std::vector<KeyPose>& poses);
+
 /// Where a frame is at one time, and how it moves.
 struct MovingPose {
     AffineMap world_from_frame;  ///< a rotation and the origin's position, m
     Vec3 velocity;               ///< of the origin, m/s
     Vec3 angular_velocity;       ///< rad/s, in world axes
+    Vec3 acceleration;           ///< of the origin, m/s^2
+    Vec3 angular_acceleration;   ///< rad/s^2, in world axes
+
+    /// The point p of the frame, m, in the world: fl(R p + t), row by row as AffineMap::point() says it.
+    [[nodiscard]] Vec3 point(const Vec3& p) const { return world_from_frame.point(p); }
+    /// A point of the world, m, in the frame's coordinates: fl(R^T (x - t)), summed over the rows of R in their order.
+    /// Where a stored position is in a frame is what this says, bit by bit.
+    [[nodiscard]] Vec3 image(const Vec3& x) const { return direction_image(x - world_from_frame.translation); }
+    /// A direction of the world in the frame's axes, R^T d.
+    [[nodiscard]] Vec3 direction_image(const Vec3& d) const {
+        const AffineMap& m = world_from_frame;
+        return d.x * m.row_x + d.y * m.row_y + d.z * m.row_z;
+    }
 
     /// Velocity, in world axes, of the frame's own point at p (frame coordinates): v + w x (R p), m/s.
     [[nodiscard]] Vec3 velocity_of(const Vec3& p) const {
         return velocity + cross(angular_velocity, world_from_frame.direction(p));
     }
+};
+
+/// Upper bounds of how fast a frame moves over an interval of time: of the sizes of the first to fourth derivatives of
+/// its origin, m/s^n, and of its rotation matrix (operator norm), 1/s^n. Entry 0: 0 and 1.
+struct MotionBounds {
+    DerivativeBounds origin{};
+    DerivativeBounds rotation{1.0, 0.0, 0.0, 0.0, 0.0};
 };
 
 /// The first frame whose parents lead back to it; nothing when there is none. Unknown parents count as the world.
@@ -89,6 +122,11 @@ public:
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
     /// The frame's pose and motion at a time (s).
     [[nodiscard]] MovingPose at(std::size_t frame, double time) const;
+    /// Bounds of its motion over [from, to], s; at keys within, of what is on both sides of them.
+    [[nodiscard]] MotionBounds bounds(std::size_t frame, double from, double to) const;
+    /// The first time after `time`, s, at which a curve of it or of the frames that it stands on has a key: derivatives
+    /// may jump there; infinite when there is none.
+    [[nodiscard]] double next_key(std::size_t frame, double time) const;
 
 private:
     std::vector<FrameDescription> frames_;

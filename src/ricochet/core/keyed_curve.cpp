@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -13,6 +14,9 @@ namespace {
 
 bool is_good(double value) { return std::isfinite(value); }
 bool is_good(const Vec3& value) { return is_finite(value); }
+
+double size_of(double value) { return std::fabs(value); }
+double size_of(const Vec3& value) { return length(value); }
 
 // Mean slope of the segment that begins at a key.
 template <class Value>
@@ -193,7 +197,7 @@ Value KeyedCurve<Value>::value(double time) const {
     const Value change = keys_[k + 1].value - keys_[k].value;
     const double ease = s * s * (3.0 - 2.0 * s);
     Value value = keys_[k].value + (interpolation_ == Interpolation::linear ? s : ease) * change;
-    if (interpolation_ == Interpolation::spline || interpolation_ == Interpolation::cubic_spline) {
+    if (is_spline()) {
         const double r = 1.0 - s;
         value += (span * s * r) * (r * slopes_[k] - s * slopes_[k + 1]);
     }
@@ -212,6 +216,57 @@ Value KeyedCurve<Value>::derivative(double time) const {
     const Value eased = (6.0 * s * r) * chord;
     if (interpolation_ == Interpolation::slow_in_slow_out) return eased;
     return eased + (r * (1.0 - 3.0 * s)) * slopes_[k] + (s * (3.0 * s - 2.0)) * slopes_[k + 1];
+}
+
+template <class Value>
+Value KeyedCurve<Value>::second_derivative(double time) const {
+    if (is_held(time) || interpolation_ == Interpolation::linear) return Value{};
+    const double phase = phase_of(time).time;
+    const std::size_t k = segment_at(phase);
+    const double span = keys_[k + 1].time - keys_[k].time;
+    const double s = (phase - keys_[k].time) / span;
+    const Value eased = ((6.0 - 12.0 * s) / span) * chord_slope(keys_, k);
+    if (!is_spline()) return eased;
+    return eased + ((6.0 * s - 4.0) / span) * slopes_[k] + ((6.0 * s - 2.0) / span) * slopes_[k + 1];
+}
+
+/// Of the cubic on a segment, by its coefficients in s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12 s| <= 6,
+/// |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
+template <class Value>
+void KeyedCurve<Value>::include_segment(std::size_t k, DerivativeBounds& bounds) const {
+    const double span = keys_[k + 1].time - keys_[k].time;
+    const double chord = size_of(chord_slope(keys_, k));
+    const bool is_linear = interpolation_ == Interpolation::linear;
+    const double slopes = is_spline() ? size_of(slopes_[k]) + size_of(slopes_[k + 1]) : 0.0;
+    const auto include = [&](std::size_t order, double size) { bounds[order] = std::max(bounds[order], size); };
+    include(1, is_linear ? chord : 1.5 * chord + slopes);
+    if (is_linear) return;
+    include(2, (6.0 * chord + 4.0 * slopes) / span);
+    include(3, (12.0 * chord + 6.0 * slopes) / span / span);
+}
+
+template <class Value>
+DerivativeBounds KeyedCurve<Value>::bounds(double from, double to) const {
+    DerivativeBounds bounds{};
+    const bool repeats = ends_ == CurveEnds::repeat;
+    for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
+        if (repeats || (keys_[k].time < to && keys_[k + 1].time > from)) include_segment(k, bounds);
+    }
+    bounds[0] = size_of(value(from)) + bounds[1] * (to - from);
+    return bounds;
+}
+
+template <class Value>
+double KeyedCurve<Value>::next_key(double time) const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    if (ends_ == CurveEnds::hold && time >= keys_.back().time) return kNever;
+    if (ends_ == CurveEnds::hold && time < keys_.front().time) return keys_.front().time;
+    const auto [phase, rounds] = phase_of(time);
+    const double offset = rounds * (keys_.back().time - keys_.front().time);
+    for (std::size_t k = segment_at(phase); k < keys_.size(); ++k) {
+        if (keys_[k].time + offset > time) return keys_[k].time + offset;
+    }
+    return kNever;
 }
 
 template class KeyedCurve<double>;

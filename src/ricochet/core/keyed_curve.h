@@ -1,11 +1,12 @@
 /// \file
-/// Values keyed in time, as animators set them: a curve through keys, with its exact first derivative.
+/// Values keyed in time, as animators set them: a curve through keys, with its exact derivatives.
 /// Sources: ease in and out as the cubic 3 s^2 - 2 s^3: J. Lasseter, "Principles of Traditional Animation Applied to 3D
 /// Computer Animation", SIGGRAPH 1987 (slow in and out). Splines: E. Catmull, R. Rom, "A class of local interpolating
 /// splines", 1974; on uneven keys with the tangents of C. de Boor, "A Practical Guide to Splines", 1978, chapter IV
 /// (piecewise cubic Bessel interpolation; cubic splines, complete and periodic).
 #pragma once
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct CurveKey {
     Value value{};
 };
 
+/// Upper bounds of the sizes of a function of time and of its first to fourth derivative; in the user's unit, per s^n.
+using DerivativeBounds = std::array<double, 5>;
+
 /// A curve through keys, for Value = double and Value = Vec3. Immutable: safe from any number of threads. Time is in s,
 /// values are in the user's unit.
 template <class Value>
@@ -54,6 +58,13 @@ public:
     [[nodiscard]] Value value(double time) const;
     /// Derivative by time, per s; at a key the one of what follows it.
     [[nodiscard]] Value derivative(double time) const;
+    /// Second derivative by time, per s^2; at a key the one of what follows it.
+    [[nodiscard]] Value second_derivative(double time) const;
+
+    /// Bounds of the value and its derivatives between keys, over [from, to].
+    [[nodiscard]] DerivativeBounds bounds(double from, double to) const;
+    /// The first key after a time, s, where derivatives may jump; infinite after the last.
+    [[nodiscard]] double next_key(double time) const;
 
     [[nodiscard]] const std::vector<CurveKey<Value>>& keys() const { return keys_; }
     [[nodiscard]] Interpolation interpolation() const { return interpolation_; }
@@ -70,6 +81,10 @@ private:
     // The segment that begins at or before a time within the keys.
     [[nodiscard]] std::size_t segment_at(double time) const;
     void set_slopes();
+    [[nodiscard]] bool is_spline() const {
+        return interpolation_ == Interpolation::spline || interpolation_ == Interpolation::cubic_spline;
+    }
+    void include_segment(std::size_t k, DerivativeBounds& bounds) const;
 
     std::vector<CurveKey<Value>> keys_;
     std::vector<Value> slopes_;  // of a spline, one a key

@@ -83,4 +83,18 @@ double sine_of_turns(double turns) {
     return angle * polynomial(kSineTerms, angle * angle);
 }
 
+// Halved until the series of the arctangent soon ends: tan(a / 2) = tan(a) / (1 + sqrt(1 + tan(a)^2)).
+double turns_of(double sine, double cosine) {
+    constexpr int kHalvings = 4;
+    constexpr int kTerms = 12;
+    const bool is_steep = sine > cosine;
+    double tangent = is_steep ? cosine / sine : sine / cosine;
+    for (int k = 0; k < kHalvings; ++k) tangent /= 1.0 + std::sqrt(1.0 + tangent * tangent);
+    const double square = tangent * tangent;
+    double sum = 0.0;
+    for (int k = kTerms; k-- > 0;) sum = 1.0 / (2.0 * k + 1.0) - square * sum;
+    const double turns = (1 << kHalvings) * (tangent * sum / (2.0 * std::numbers::pi));
+    return is_steep ? 0.25 - turns : turns;
+}
+
 }  // namespace ricochet

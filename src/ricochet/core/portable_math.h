@@ -14,4 +14,7 @@ namespace ricochet {
 /// Sine of 2 pi turns; whole turns are removed exactly, so late times lose no accuracy.
 [[nodiscard]] double sine_of_turns(double turns);
 
+/// The angle whose sine and cosine are as these (>= 0), in whole turns: 0 to 1/4. Not both may be 0.
+[[nodiscard]] double turns_of(double sine, double cosine);
+
 }  // namespace ricochet

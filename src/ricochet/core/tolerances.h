@@ -190,6 +190,13 @@ inline constexpr double kBoxPaddingUnits = 16.0;
 /// mesh need every triangle as a candidate sooner (at kBoxSlack / kPathRounding half extents, 2^28).
 inline constexpr double kBoxSlack = 0x1p-20;
 
+/// By how much a body that moves may see a path beside where it is, as a part of the larger of the radius and the
+/// distance from the frame's origin; the cubics that it sees are as short as that takes. Reason: one cubic for a turn
+/// of a degree. Times of impact are found again on the true way and do not depend on it. Smaller: more cubics. Larger:
+/// a graze that is nearer than that to a miss is taken for one sooner, and safe positions are searched from further
+/// off.
+inline constexpr double kMovingPathTolerance = 1e-9;
+
 // Narrow phase
 
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).

@@ -20,7 +20,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b34ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b35ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
 template <class Archive>
@@ -34,6 +34,7 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     a(checkpoint.output_seconds);
     archive_series(a, checkpoint.frames);
     archive_series(a, checkpoint.contacts);
+    archive_series(a, checkpoint.moving);
 }
 
 struct Close {

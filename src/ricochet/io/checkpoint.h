@@ -18,6 +18,7 @@ struct Checkpoint {
     double output_seconds = 0.0;     ///< of it on output, see RunWriter::output_seconds()
     std::vector<PvdEntry> frames;    ///< written so far
     std::vector<PvdEntry> contacts;  ///< the same of the contact log
+    std::vector<PvdEntry> moving;    ///< and of the colliders that move
 };
 
 /// Writes state and checkpoint; an older file stays until the new one is complete. Throws RunError when the disk does

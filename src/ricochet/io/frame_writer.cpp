@@ -12,6 +12,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/io/frames.h"
 
 namespace ricochet {
 
@@ -202,7 +203,8 @@ namespace {
 ContactColumns no_rows(const Simulation& simulation) {
     ContactColumns columns;
     const auto materials = simulation.materials();
-    const bool moves = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); });
+    const bool moves = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); }) ||
+                       std::any_of(simulation.colliders().begin(), simulation.colliders().end(), is_moving);
     if (moves) columns.surface_velocity.emplace();
     return columns;
 }

@@ -279,4 +279,32 @@ VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, co
     return frame;
 }
 
+bool is_moving(const ColliderDescription& collider) { return !collider.frame.empty(); }
+
+VtkPolyData moving_collider_frame(const Simulation& simulation, const Box3& region) {
+    VtkPolyData frame;
+    frame.time = simulation.time();
+    std::vector<std::uint32_t> numbers;
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        const ColliderDescription& collider = simulation.colliders()[i];
+        if (!is_moving(collider)) continue;
+        const MovingPose pose = simulation.collider_pose(i, simulation.time());
+        TriangleMesh mesh;
+        if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
+            const PlaneShape placed{pose.point(plane->point), pose.world_from_frame.direction(plane->normal)};
+            const VtkPolyData shown = plane_collider_frame(placed, region, {}, frame.time);
+            mesh = {shown.points, shown.triangles};
+        } else {
+            mesh = *simulation.collider_mesh(i);
+            for (Vec3& vertex : mesh.vertices) vertex = pose.point(vertex);
+        }
+        const auto base = static_cast<std::uint32_t>(frame.points.size());
+        frame.points.insert(frame.points.end(), mesh.vertices.begin(), mesh.vertices.end());
+        for (const Triangle& t : mesh.triangles) frame.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+        numbers.resize(frame.triangles.size(), static_cast<std::uint32_t>(i));
+    }
+    frame.cell_arrays = list_of(VtkArray{"collider", std::move(numbers)});
+    return frame;
+}
+
 }  // namespace ricochet

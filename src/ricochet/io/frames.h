@@ -39,4 +39,10 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
 [[nodiscard]] VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region,
                                                const TriangleTotals& totals, double time);
 
+/// The colliders that move as they stand now, as one mesh; the array `collider` of its triangles says which each
+/// belongs to. region: as of plane_collider_frame().
+[[nodiscard]] VtkPolyData moving_collider_frame(const Simulation& simulation, const Box3& region);
+/// True for a collider that stands in a frame.
+[[nodiscard]] bool is_moving(const ColliderDescription& collider);
+
 }  // namespace ricochet

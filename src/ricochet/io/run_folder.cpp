@@ -26,6 +26,7 @@ namespace {
 
 constexpr std::string_view kFramePrefix = "particles_";
 constexpr std::string_view kContactPrefix = "contacts_";
+constexpr std::string_view kMovingPrefix = "moving_";
 constexpr std::string_view kColliderPrefix = "collider_";
 constexpr std::string_view kExtension = ".vtp";
 
@@ -86,6 +87,9 @@ std::optional<std::uint64_t> step_of_frame_file(std::string_view name) { return 
 std::string contact_file_name(std::uint64_t step) { return file_of_step(kContactPrefix, step); }
 std::optional<std::uint64_t> step_of_contact_file(std::string_view name) { return step_of_file(kContactPrefix, name); }
 
+std::string moving_file_name(std::uint64_t step) { return file_of_step(kMovingPrefix, step); }
+std::optional<std::uint64_t> step_of_moving_file(std::string_view name) { return step_of_file(kMovingPrefix, name); }
+
 std::string collider_file_name(std::size_t index, std::string_view name) {
     std::string plain(name.substr(0, 80));
     std::replace_if(
@@ -107,7 +111,8 @@ bool is_run_file(std::string_view name) {
     if (is_comparison_file(finished)) return true;
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
-           step_of_frame_file(finished) || step_of_contact_file(finished) || index_of_collider_file(finished);
+           finished == kMovingSeriesFile || step_of_frame_file(finished) || step_of_contact_file(finished) ||
+           step_of_moving_file(finished) || index_of_collider_file(finished);
 }
 
 // The folder while a run writes.
@@ -224,8 +229,10 @@ void OutputDirectory::remove_after(std::uint64_t step) const {
     remove_files(path_, [&](const std::string& name) {
         const auto frame = step_of_frame_file(name);
         const auto contacts = step_of_contact_file(name);
+        const auto moving = step_of_moving_file(name);
         const bool is_unfinished = without_partial_ending(name) != name && is_run_file(name);
-        return is_unfinished || (frame && *frame > step) || (contacts && *contacts > step);
+        return is_unfinished || (frame && *frame > step) || (contacts && *contacts > step) ||
+               (moving && *moving > step);
     });
 }
 
@@ -238,10 +245,12 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     }
     RunFolder folder;
     std::map<std::size_t, std::filesystem::path> colliders;
+    std::map<std::uint64_t, std::filesystem::path> moving;
     for (auto entry = std::filesystem::directory_iterator(path, error);
          !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         if (const auto step = step_of_frame_file(name)) folder.frames.push_back({*step, entry->path()});
+        if (const auto step = step_of_moving_file(name)) moving.emplace(*step, entry->path());
         if (const auto index = index_of_collider_file(name)) colliders.emplace(*index, entry->path());
         if (name == kRunInfoFile) folder.info = read_run_info(entry->path());
     }
@@ -252,6 +261,9 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     }
     std::sort(folder.frames.begin(), folder.frames.end(),
               [](const FrameFile& a, const FrameFile& b) { return a.step < b.step; });
+    for (FrameFile& frame : folder.frames) {
+        if (const auto found = moving.find(frame.step); found != moving.end()) frame.moving = found->second;
+    }
     for (const auto& [index, file] : colliders) folder.colliders.push_back(file);
     return folder;
 }

@@ -22,6 +22,7 @@ inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< of an int
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";
+inline constexpr const char* kMovingSeriesFile = "moving.pvd";
 
 inline constexpr const char* kComparisonJsonFile = "compare.json";          ///< everything that a comparison found
 inline constexpr const char* kComparisonTableFile = "compare.csv";          ///< one line a response and time step
@@ -44,6 +45,11 @@ inline constexpr std::array<const char*, 6> kComparisonPictures{
 /// The step of a contact file's name; nothing when it is not one.
 [[nodiscard]] std::optional<std::uint64_t> step_of_contact_file(std::string_view name);
 
+/// moving_NNNNNN.vtp: the colliders that move, where they are after a step.
+[[nodiscard]] std::string moving_file_name(std::uint64_t step);
+/// The step of such a file's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_moving_file(std::string_view name);
+
 /// Files that follow each other in time, and the file that lists them.
 struct FileSeries {
     std::string (*file_name)(std::uint64_t step);
@@ -51,6 +57,7 @@ struct FileSeries {
 };
 inline constexpr FileSeries kParticleSeries{&frame_file_name, kParticleSeriesFile};
 inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFile};
+inline constexpr FileSeries kMovingSeries{&moving_file_name, kMovingSeriesFile};
 
 /// collider_NN_name.vtp; characters other than letters, digits, '-' and '_' become '_'.
 [[nodiscard]] std::string collider_file_name(std::size_t index, std::string_view name);
@@ -91,6 +98,7 @@ private:
 struct FrameFile {
     std::uint64_t step = 0;
     std::filesystem::path path;
+    std::filesystem::path moving{};  ///< of the colliders that move; empty where none do
 };
 
 /// What a run has written so far.

@@ -42,8 +42,8 @@ RunInfo run_info_of(const Json& json) {
     }
     for (const Json& collider : json.at("colliders")) {
         info.colliders.push_back({collider.at("name").get<std::string>(), collider.at("type").get<std::string>(),
-                                  collider.at("file").get<std::string>(),
-                                  collider.at("material").get<std::uint32_t>()});
+                                  collider.at("file").get<std::string>(), collider.at("material").get<std::uint32_t>(),
+                                  collider.value("moves", false)});
     }
     return info;
 }
@@ -88,6 +88,7 @@ std::string run_info_text(const RunInfo& info) {
                                      {"type", collider.type},
                                      {"file", collider.file},
                                      {"material", collider.material}});
+        if (collider.moves) json["colliders"].back()["moves"] = true;
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -138,6 +139,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["started_inside"] = statistics.started_inside;
     json["started_in_overlap"] = statistics.started_in_overlap;
     json["stayed"] = statistics.stayed;
+    if (statistics.squeezed > 0) json["squeezed"] = statistics.squeezed;
     json["lost_impulses"] = statistics.lost_impulses;
     json["springs_broken"] = statistics.springs_broken;
     json["springs_lost"] = statistics.springs_lost;

@@ -3,10 +3,12 @@
 /// last.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
@@ -22,10 +24,17 @@ struct ColliderInfo {
     std::string type;            ///< see type_name()
     std::string file;            ///< its file in the run's folder
     std::uint32_t material = 0;  ///< index of its material
+    bool moves = false;          ///< its file is in the coordinates of its frame
 };
 
 /// Everything that run.json says.
 struct RunInfo {
+    /// True for the file of a collider that moves.
+    [[nodiscard]] bool moves(std::string_view file) const {
+        return std::any_of(colliders.begin(), colliders.end(),
+                           [&](const ColliderInfo& collider) { return collider.moves && collider.file == file; });
+    }
+
     std::string version;                      ///< of ricochet
     std::string scene;                        ///< the scene file as it was named
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis

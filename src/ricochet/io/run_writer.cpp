@@ -32,7 +32,14 @@ private:
 Box3 mesh_region(const Simulation& simulation) {
     Box3 region;
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
-        if (const auto mesh = simulation.collider_mesh(i)) region.include(bounds(*mesh));
+        const MovingPose pose = simulation.collider_pose(i, simulation.time());
+        const bool moves = is_moving(simulation.colliders()[i]);
+        auto mesh = simulation.collider_mesh(i);
+        if (!mesh) continue;
+        for (Vec3& vertex : mesh->vertices) {
+            if (moves) vertex = pose.point(vertex);
+        }
+        region.include(bounds(*mesh));
     }
     return region;
 }
@@ -41,7 +48,7 @@ std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
     std::vector<ColliderInfo> infos;
     for (const ColliderDescription& collider : simulation.colliders()) {
         infos.push_back({collider.name, type_name(collider.shape), collider_file_name(infos.size(), collider.name),
-                         collider.material});
+                         collider.material, is_moving(collider)});
     }
     return infos;
 }
@@ -73,12 +80,18 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
         contacts_.emplace(folder_, simulation, ContactLog::kMostRows,
                           resumed ? resumed->contacts : std::vector<PvdEntry>{}, thread_);
     }
+    const std::vector<ColliderDescription>& colliders = simulation.colliders();
+    if (std::any_of(colliders.begin(), colliders.end(), is_moving)) {
+        moving_.emplace(folder_, kMovingSeries, resumed ? resumed->moving : std::vector<PvdEntry>{}, thread_);
+    }
     region_.include(mesh_region(simulation));
     info_.colliders = describe_colliders(simulation);
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
     write_colliders(simulation);
     std::vector<PvdEntry> series;
-    for (const ColliderInfo& collider : info_.colliders) series.push_back({0.0, series.size(), collider.file});
+    for (std::size_t i = 0; i < info_.colliders.size(); ++i) {
+        if (!is_moving(colliders[i])) series.push_back({0.0, series.size(), info_.colliders[i].file});
+    }
     if (!series.empty()) write_file(folder_ / kColliderSeriesFile, pvd_text(series));
 }
 
@@ -98,13 +111,15 @@ void RunWriter::write_frame(const Simulation& simulation) {
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
     }
     frames_.submit(simulation.step_index(), std::move(frame));
+    if (moving_) moving_->submit(simulation.step_index(), moving_collider_frame(simulation, region_));
     last_frame_ = simulation.step_index();
 }
 
 void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds) {
     const SecondsTo clock(output_seconds_);
-    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}};
+    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}, {}};
     if (contacts_) checkpoint.contacts = contacts_->drain();
+    if (moving_) checkpoint.moving = moving_->drain();
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
 
@@ -129,6 +144,7 @@ RunSummary RunWriter::close(const Simulation& simulation) {
         const SecondsTo clock(output_seconds_);
         frames_.finish();
         if (contacts_) contacts_->finish();
+        if (moving_) moving_->finish();
         write_colliders(simulation);
     }
     RunSummary summary = summarize(simulation);

@@ -162,6 +162,7 @@ struct MeshGroup {
 struct Preview::Impl {
     embree::Device device = embree::make_device();
     MeshGroup solid, glass;
+    MeshGroup moving_solid, moving_glass;
     embree::Scene moving_scene;
     std::vector<PreviewPlane> planes;
     std::vector<Vec3> sphere_colors;  // in the order of the drawn spheres
@@ -176,6 +177,7 @@ struct Preview::Impl {
     void add_cloth(PreviewMesh source);
 
     void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
+    void fill(MeshGroup& solid_ones, MeshGroup& glass_ones, std::vector<PreviewMesh> meshes) const;
     [[nodiscard]] std::optional<PreviewHit> trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const;
     [[nodiscard]] static PreviewHit mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, const PreviewRay& ray);
     [[nodiscard]] PreviewHit moving_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
@@ -201,6 +203,17 @@ void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
     attach(group.scene.get(), triangles_of(source.mesh), static_cast<unsigned>(group.meshes.size()));
     auto normals = corner_normals(source.mesh, kCreaseDegrees);
     group.meshes.push_back({std::move(source), std::move(normals)});
+}
+
+void Preview::Impl::fill(MeshGroup& solid_ones, MeshGroup& glass_ones, std::vector<PreviewMesh> meshes) const {
+    for (MeshGroup* group : {&solid_ones, &glass_ones}) {
+        group->meshes.clear();
+        group->scene = new_scene(device.get());
+    }
+    for (PreviewMesh& mesh : meshes) add_mesh(mesh.glass ? glass_ones : solid_ones, std::move(mesh));
+    rtcCommitScene(solid_ones.scene.get());
+    rtcCommitScene(glass_ones.scene.get());
+    embree::check_device(device.get(), "building the picture's meshes");
 }
 
 std::optional<PreviewHit> Preview::Impl::trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const {
@@ -260,12 +273,7 @@ Preview::Preview(std::vector<PreviewMesh> meshes, std::vector<PreviewPlane> plan
     : impl_(std::make_unique<Impl>()) {
     impl_->planes = std::move(planes);
     impl_->origin = origin;
-    impl_->solid.scene = new_scene(impl_->device.get());
-    impl_->glass.scene = new_scene(impl_->device.get());
-    for (PreviewMesh& mesh : meshes) impl_->add_mesh(mesh.glass ? impl_->glass : impl_->solid, std::move(mesh));
-    rtcCommitScene(impl_->solid.scene.get());
-    rtcCommitScene(impl_->glass.scene.get());
-    embree::check_device(impl_->device.get(), "building the picture's meshes");
+    impl_->fill(impl_->solid, impl_->glass, std::move(meshes));
 }
 
 Preview::~Preview() = default;
@@ -342,6 +350,7 @@ void Preview::set_moving(PreviewMoving moving) {
     impl_->add_spheres(moving.spheres);
     impl_->add_lines(moving.lines);
     impl_->add_cloth(std::move(moving.cloth));
+    impl_->fill(impl_->moving_solid, impl_->moving_glass, std::move(moving.meshes));
     if (!impl_->has_moving) return;
     rtcCommitScene(impl_->moving_scene.get());
     embree::check_device(impl_->device.get(), "building the picture's particles");
@@ -351,6 +360,8 @@ std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
     if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return std::nullopt;
     RTCRayHit hit = embree_query(ray, impl_->origin);
     std::optional<PreviewHit> nearest = impl_->trace(impl_->solid, ray, hit);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    if (const auto nearer = impl_->trace(impl_->moving_solid, ray, hit)) nearest = nearer;
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     if (impl_->has_moving) {
         embree::QueryContext context;
@@ -365,7 +376,10 @@ std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
 std::optional<PreviewHit> Preview::trace_glass(const PreviewRay& ray) const {
     if (!drawable(ray.origin - impl_->origin) || !drawable(ray.direction)) return std::nullopt;
     RTCRayHit hit = embree_query(ray, impl_->origin);
-    return impl_->trace(impl_->glass, ray, hit);
+    const std::optional<PreviewHit> nearest = impl_->trace(impl_->glass, ray, hit);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    const std::optional<PreviewHit> nearer = impl_->trace(impl_->moving_glass, ray, hit);
+    return nearer ? nearer : nearest;
 }
 
 bool Preview::occluded(const PreviewRay& ray) const {
@@ -374,6 +388,9 @@ bool Preview::occluded(const PreviewRay& ray) const {
     embree::init_context(context, nullptr);
     RTCRay shadow = embree_ray(ray, impl_->origin);
     if (!impl_->solid.empty()) embree::occluded1(impl_->solid.scene.get(), context, shadow);
+    if (shadow.tfar >= 0.0F && !impl_->moving_solid.empty()) {
+        embree::occluded1(impl_->moving_solid.scene.get(), context, shadow);
+    }
     if (shadow.tfar >= 0.0F && impl_->has_moving) embree::occluded1(impl_->moving_scene.get(), context, shadow);
     return shadow.tfar < 0.0F;
 }

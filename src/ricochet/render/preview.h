@@ -47,7 +47,8 @@ struct PreviewLines {
 struct PreviewMoving {
     PreviewSpheres spheres;
     PreviewLines lines;
-    PreviewMesh cloth;  ///< shaded smoothly everywhere
+    PreviewMesh cloth;                  ///< shaded smoothly everywhere
+    std::vector<PreviewMesh> meshes{};  ///< colliders that move
 };
 
 /// A ray from a point along a unit vector.

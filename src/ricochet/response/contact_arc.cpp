@@ -73,18 +73,48 @@ ContactArc::State ContactArc::by_midpoint_rule(double t) const {
             state.position + half * (state.motion.velocity + (0.5 * half) * rough.acceleration),
             {state.motion.velocity + half * rough.acceleration, state.motion.spin + half * rough.spin_acceleration}};
         const Vec3 pull = forces(middle, elapsed + half);
-        const ContactInterval plan = plan_interval_by_middle(state.motion, particle_.radius, pull, holding(state).all(),
-                                                             holding(middle).all(), grip(), left);
+        const ContactInterval plan =
+            plan_interval_by_middle(state.motion, particle_.radius, pull, holding(state, elapsed).all(),
+                                    holding(middle, elapsed + half).all(), grip(), left);
+        const Vec3 spin_change = this->spin_change(middle, elapsed + half);
         const Vec3& v = state.motion.velocity;
         const double passed = plan.duration;
         const Vec3 way = passed * (v + (0.5 * passed) * plan.acceleration);
         state.position += way;
-        state.work += dot(pull - forces_at_start_, way);
-        state.motion = {v + passed * plan.acceleration, state.motion.spin + passed * plan.spin_acceleration};
+        state.work += dot(pull - forces_at_start_, way) + passed * spin_power(middle, spin_change);
+        state.motion = {v + passed * plan.acceleration,
+                        state.motion.spin + passed * (plan.spin_acceleration + spin_change)};
         elapsed = passed < left ? elapsed + passed : t;
         state.motion = along_surfaces(state.motion, particle_.radius, holding(state).all(), plan.stuck);
     }
     return state;
+}
+
+/// rad/s^2, by which the frame's motion changes the spin.
+Vec3 ContactArc::spin_change(const State& state, double t) const {
+    if (start_.frame == nullptr || particle_.radius == 0.0) return {};
+    return start_.frame->spin_change(state.motion.spin, particle_.time + t);
+}
+
+/// What that does in a second, over the mass, m^2/s^3.
+double ContactArc::spin_power(const State& state, const Vec3& change) const {
+    return 0.4 * particle_.radius * particle_.radius * dot(state.motion.spin, change);
+}
+
+/// With what the frame's motion adds to the rates of slip and turning.
+ContactArc::Holding ContactArc::holding(const State& state, double t) const {
+    Holding result = holding(state);
+    const Vec3 change = spin_change(state, t);
+    if (change == Vec3{}) return result;
+    for (std::size_t k = 0; k < result.count; ++k) {
+        HoldingSurface& surface = result.surfaces[k];
+        const Vec3 turning = particle_.radius * change;
+        const double about = dot(turning, surface.normal);
+        surface.slip_bend -= cross(turning, surface.normal);
+        surface.turning_bend += turning - about * surface.normal;
+        surface.spinning_bend += about;
+    }
+    return result;
 }
 
 /// The classical Runge-Kutta method.
@@ -243,7 +273,7 @@ Vec3 ContactArc::forces(const State& state, double t) const {
 Grip ContactArc::grip() const { return {start_.pressure, start_.shortest, start_.negligible_path}; }
 
 ContactInterval ContactArc::plan_at(const State& state, double t, double duration, const StuckSurfaces& stuck) const {
-    return plan_interval(state.motion, particle_.radius, forces(state, t), holding(state).all(), grip(), duration,
+    return plan_interval(state.motion, particle_.radius, forces(state, t), holding(state, t).all(), grip(), duration,
                          stuck);
 }
 
@@ -251,8 +281,10 @@ ContactArc::Rate ContactArc::rate(const State& state, double t) const {
     const Vec3 pull = forces(state, t);
     const Vec3& v = state.motion.velocity;
     const ContactInterval plan =
-        plan_interval(state.motion, particle_.radius, pull, holding(state).all(), grip(), 0.0, stuck_);
-    return {v, plan.acceleration, plan.spin_acceleration, dot(pull - forces_at_start_, v)};
+        plan_interval(state.motion, particle_.radius, pull, holding(state, t).all(), grip(), 0.0, stuck_);
+    const Vec3 change = spin_change(state, t);
+    return {v, plan.acceleration, plan.spin_acceleration + change,
+            dot(pull - forces_at_start_, v) + spin_power(state, change)};
 }
 
 /// At the contact offset from what holds it, along the normals, and moving along them.

@@ -15,6 +15,7 @@
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
+#include "ricochet/response/riding.h"
 
 namespace ricochet {
 
@@ -27,6 +28,7 @@ struct ArcStart {
     double negligible_path = 0;  ///< m, as Grip::negligible_path
     double duration = 0.0;       ///< s, that it may last at most
     std::optional<ErrorTolerance> tolerance{};  ///< of a method that chooses its own steps
+    const FrameForces* frame = nullptr;         ///< that all is seen from; null in the world
 };
 
 /// One arc, at most kMaxArcAngle long. Everything it is given but the particle must outlive it.
@@ -71,6 +73,9 @@ private:
     };
 
     [[nodiscard]] Holding holding(const State& state) const;
+    [[nodiscard]] Holding holding(const State& state, double t) const;
+    [[nodiscard]] Vec3 spin_change(const State& state, double t) const;
+    [[nodiscard]] double spin_power(const State& state, const Vec3& change) const;
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
     [[nodiscard]] Grip grip() const;

@@ -182,9 +182,9 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     held_.find();
     const ContactManifold::Holding materials = manifold_.holding(impact_);
     const Grip grip = manifold_.grip(pull.pressure, step_.duration());
-    const ContactArc arc(
-        step_.geometry(), rules_.forces, state_, manifold_, materials,
-        {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration, tolerance()});
+    const ContactArc arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
+                         {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
+                          tolerance(), rules_.frame});
     if (arc.plan().at_rest) {
         particle_.spin = arc.plan().motion.spin;
         return {std::nullopt, false, true};
@@ -282,11 +282,14 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
 
 /// The forces do in a step, and the integrator is of second order or more.
 bool ContactFollower::forces_vary() const {
+    if (rules_.frame != nullptr) return true;
     return follows_varying_forces(rules_.settings.integrator.kind) && !rules_.forces.is_uniform_for(state_);
 }
 
-/// Forces that vary ask for an arc, for its energy or its tolerance.
-bool ContactFollower::needs_arc() const { return tolerance() || rules_.forces.is_conservative_for(state_); }
+/// Forces that vary ask for an arc, for its energy or its tolerance; a frame that moves, for what it does to spins.
+bool ContactFollower::needs_arc() const {
+    return rules_.frame != nullptr || tolerance() || rules_.forces.is_conservative_for(state_);
+}
 
 /// What an arc may be wrong by, where the integrator chooses its own steps.
 std::optional<ErrorTolerance> ContactFollower::tolerance() const {

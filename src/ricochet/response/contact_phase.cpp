@@ -43,14 +43,13 @@ std::optional<Contact> ContactPhase::resume() {
     const Vec3 forces = rules_.forces.acceleration(state_);
     const auto support = support_.hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
-    if (kicks_first(rules_.settings.integrator.kind)) {
+    if (kicks_first(rules_.settings.integrator.kind) && rules_.frame == nullptr) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         if (!began_still_ || !is_finite(forces)) return std::nullopt;
         const ContactInterval interval = follower_.plan({forces}, step_.remaining());
         if (!interval.at_rest) return std::nullopt;
         particle_.spin = interval.motion.spin;
-        rest(forces, true);
-        return std::nullopt;
+        return rest(forces, true);
     }
     const Stop stop = spend_cascade(*support, std::max(0.0, before.cascade_left));
     return stop.is_early() ? stop.contact : follow_surface(false);
@@ -67,8 +66,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
         particle_.spin = Vec3{};
-        rest(is_kicked(flight) ? Vec3{} : forces_now(flight), false);
-        return std::nullopt;
+        return rest(is_kicked(flight) ? Vec3{} : forces_now(flight), false);
     }
     if (is_kicked(flight)) {
         land(arriving);
@@ -178,7 +176,9 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
         const double before = step_.remaining();
         const Stop stop = follower_.advance({forces, true, pressure}, std::min(left, before));
         if (stop.is_early()) return stop;
-        if (stop.rests) wait(std::min(left, before), forces);
+        if (stop.rests) {
+            if (auto contact = wait(std::min(left, before), forces)) return {contact};
+        }
         left -= before - step_.remaining();
     }
     if (step_.remaining() <= 0.0) {
@@ -201,10 +201,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
             state_.velocity = along_all(state_.velocity, manifold_.normals());
             continue;
         }
-        if (stop.rests) {
-            rest(forces, !kicked);
-            return std::nullopt;
-        }
+        if (stop.rests) return rest(forces, !kicked);
     }
     if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.kept();
     return std::nullopt;
@@ -230,28 +227,40 @@ bool ContactPhase::lands() const {
     });
 }
 
-/// Time passes at rest; the surfaces carry the weight.
-void ContactPhase::wait(double duration, const Vec3& forces) {
-    manifold_.record_push(-state_.velocity - duration * forces, duration, impact_);
+/// Time passes at rest; the surfaces carry the weight. Returns what comes to it there.
+std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
+    const Vec3 before = state_.velocity;
+    const KeptContact kept = manifold_.kept();
     state_.velocity = Vec3{};
+    if (rules_.bodies == nullptr) {
+        manifold_.record_push(-before - duration * forces, duration, impact_);
+        step_.log().note_impact();
+        static_cast<void>(step_.wait(duration));
+        step_.log().note_contact({}, false);  // what stays where it is gains nothing by forces
+        return std::nullopt;
+    }
     step_.log().note_impact();
-    step_.wait(duration);
-    step_.log().note_contact({}, false);  // what stays where it is gains nothing by forces
+    const double left = step_.remaining();
+    const auto contact = step_.wait(duration, std::span(kept.surfaces).first(kept.count));
+    const double elapsed = left - step_.remaining();
+    manifold_.record_push(-before - elapsed * forces, elapsed, impact_);
+    step_.log().note_contact({}, false);
+    return contact;
 }
 
-/// Rests for what is left of the step. held: until the forces change.
-void ContactPhase::rest(const Vec3& forces, bool held) {
+/// Rests for what is left of the step. held: until the forces change. Returns what comes to it before.
+std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.start();
+    const bool is_back = length(state_.position - start) <= kTouchingOffsets * contact_offset(start);
     // Landing again from one contact offset above, step after step, it would creep downhill.
-    if (state_.position != start && length(state_.position - start) <= kTouchingOffsets * contact_offset(start)) {
-        step_.return_to_start();
-    }
-    wait(step_.remaining(), forces);
+    if (state_.position != start && is_back && rules_.bodies == nullptr) step_.return_to_start();
+    if (const auto contact = wait(step_.remaining(), forces)) return contact;
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
     const bool stays =
         held && began_still_ && began_spin_ == particle_.spin && state_.position == start && began_ == manifold_.kept();
     step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
     particle_.contact = manifold_.kept();
+    return std::nullopt;
 }
 
 Vec3 ContactPhase::forces_now(const Flight& flight) const {

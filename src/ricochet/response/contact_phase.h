@@ -45,8 +45,8 @@ private:
     void gather();
     void find_next_surfaces();
     [[nodiscard]] bool lands() const;
-    void wait(double duration, const Vec3& forces);
-    void rest(const Vec3& forces, bool held);
+    [[nodiscard]] std::optional<Contact> wait(double duration, const Vec3& forces);
+    [[nodiscard]] std::optional<Contact> rest(const Vec3& forces, bool held);
     [[nodiscard]] Vec3 forces_now(const Flight& flight) const;
     [[nodiscard]] double slow_restitution(SurfaceId surface) const;
 

@@ -1,9 +1,12 @@
 #include "ricochet/response/exact.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_phase.h"
+#include "ricochet/response/riding.h"
 
 namespace ricochet {
 namespace {
@@ -20,29 +23,45 @@ constexpr double kWholeStep = 1.0 + 1e-9;
 /// left.
 class ParticleMover {
 public:
-    ParticleMover(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
-        : rules_(rules), particle_(particle), step_(rules, particle, duration, scratch), contact_phase_(step_) {}
+    /// rides: null where nothing moves.
+    ParticleMover(const ResponseRules& rules, const Rides* rides, MovingParticle& particle, double duration,
+                  MoveScratch& scratch)
+        : rules_(rules),
+          rides_(rides),
+          particle_(particle),
+          step_(rules, particle, duration, scratch),
+          contact_phase_(step_) {}
 
     MoveOutcome run();
 
 private:
     std::optional<Contact> fly(Flight& flight, bool is_first);
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
+    [[nodiscard]] std::optional<Contact> resume();
+    [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
+                                                       const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Flight& flight, const Contact& contact,
+                                                    const Motion& arriving);
+    template <class Go>
+    std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
 
     const ResponseRules& rules_;
+    const Rides* rides_;
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;
+    bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
 };
 
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
-    std::optional<Contact> contact = contact_phase_.resume();
+    std::optional<Contact> contact;
+    if (rides_ == nullptr || step_.catch_up()) contact = resume();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
-        if (!contact) contact = fly(flight, is_first);
+        if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
         while (contact && !outcome.is_absorbed() && outcome.bounces < rules_.settings.bounce_budget) {
             contact = answer(flight, *contact);
         }
@@ -52,8 +71,80 @@ MoveOutcome ParticleMover::run() {
             break;
         }
     }
+    if (rides_ != nullptr) step_.store_position();
     step_.log().note_impact();
     return outcome;
+}
+
+/// Contact that lasted to the end of the last step goes on.
+std::optional<Contact> ParticleMover::resume() {
+    const KeptContact& kept = particle_.contact;
+    const BodyId body = rides_ != nullptr && kept.count > 0 ? rules_.bodies->body_of(kept.surfaces[0]) : kAtRest;
+    if (body == kAtRest) return contact_phase_.resume();
+    return ride(body, nullptr, [&](ContactPhase& phase) { return phase.resume(); });
+}
+
+/// Contact in the frame of a body, which is left for the world again.
+template <class Go>
+std::optional<Contact> ParticleMover::ride(BodyId body, Contact* contact, const Go& go) {
+    step_.enter(body, rides_->rules_of(body), contact);
+    // What rests there does so to the last bit.
+    if (const auto ridden = std::exchange(particle_.ridden, std::nullopt)) {
+        particle_.state.position = ridden->position;
+        particle_.state.velocity = {};
+        particle_.spin = ridden->spin;
+    }
+    ContactPhase phase(step_);
+    std::optional<Contact> next = go(phase);
+    if (step_.outcome().is_resting() && particle_.contact.count > 0) {
+        particle_.ridden = {particle_.state.position, particle_.spin};
+    }
+    step_.leave(rules_, next ? &*next : nullptr);
+    flies_anew_ = true;
+    return next;
+}
+
+/// Contact with the surfaces of one frame, of those that take part: the first that can last.
+std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const Contact& contact,
+                                                    const Motion& arriving) {
+    if (rides_ == nullptr) return contact_phase_.begin(flight, contact, arriving);
+    std::array<BodyId, Contact::kMostSurfaces> bodies{};
+    std::size_t count = 0;
+    for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
+    std::sort(bodies.begin(), bodies.begin() + count);
+    for (std::size_t k = count; k-- > 0;) {  // those at rest first
+        if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
+        Contact own = contact;
+        own.count = 0;
+        for (const ContactSurface& surface : contact.all()) {
+            if (rules_.bodies->body_of(surface.surface) != bodies[k]) continue;
+            own.surfaces[static_cast<std::size_t>(own.count++)] = surface;
+        }
+        const double before = step_.remaining();
+        const auto next = bodies[k] == kAtRest ? contact_phase_.begin(flight, own, arriving)
+                                               : begin_ride(bodies[k], flight, own, arriving);
+        if (next || step_.remaining() < before || particle_.contact.count > 0) return next;
+    }
+    return std::nullopt;
+}
+
+std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Flight& flight, const Contact& contact,
+                                                 const Motion& arriving) {
+    // What a kick has done along the surface for the time that is left, forces do again.
+    if (flight.kick_duration > 0.0) {
+        const Vec3& n = contact.first().normal;
+        const Vec3 along = flight.acceleration - dot(flight.acceleration, n) * n;
+        particle_.state.velocity -= step_.remaining() * along;
+    }
+    const double time = particle_.state.time;
+    HomeFrame frame(rules_.bodies);
+    frame.set(body);
+    const RecordedMotion seen = frame.in_frame({particle_.state.position, arriving.velocity, arriving.spin}, time);
+    Contact own = contact;
+    return ride(body, &own, [&](ContactPhase& phase) {
+        phase.remember(own);
+        return phase.begin(Flight{}, own, {seen.velocity, seen.spin});
+    });
 }
 
 /// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
@@ -78,7 +169,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
-    return contact_phase_.begin(flight, contact, arriving);
+    return begin_contact(flight, contact, arriving);
 }
 
 /// The horizon of the last flight of a step: as far as its path is known, which it is where the acceleration is
@@ -108,8 +199,14 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
 
 }  // namespace
 
+ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules) {
+    if (rules.bodies != nullptr) rides_ = std::make_unique<Rides>(rules_);
+}
+
+ExactResponse::~ExactResponse() = default;
+
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    return ParticleMover(rules_, particle, duration, scratch).run();
+    return ParticleMover(rules_, rides_.get(), particle, duration, scratch).run();
 }
 
 void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {

@@ -11,22 +11,29 @@
 /// surfaces under constant forces while slip keeps its direction, else of second order or better (docs/responses.md).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ricochet/response/response.h"
 
 namespace ricochet {
 
+class Rides;
+
 /// See the top of this file.
 class ExactResponse final : public Response {
 public:
-    explicit ExactResponse(const ResponseRules& rules) : Response(rules) {}
+    explicit ExactResponse(const ResponseRules& rules);
     ExactResponse(const CollisionWorld& world, const ForceField& forces, std::span<const Material> materials,
                   const ResponseSettings& settings)
-        : Response({world, forces, materials, settings}) {}
+        : ExactResponse(ResponseRules{world, forces, materials, settings}) {}
+    ~ExactResponse() override;
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     void add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const override;
+
+private:
+    std::unique_ptr<Rides> rides_;  ///< null where nothing moves
 };
 
 }  // namespace ricochet

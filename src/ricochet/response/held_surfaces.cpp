@@ -107,7 +107,7 @@ void HeldSurfaces::meet(std::optional<Contact>& contact) {
 
 bool HeldSurfaces::goes_on_along(const Contact& contact) {
     const bool all = std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        return manifold_.point_of(surface.normal).has_value();
+        return geometry_.world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
     });
     if (!all || ++seams_ > kMostSeams) return false;
     for (const ContactSurface& surface : contact.all()) manifold_.add(surface);

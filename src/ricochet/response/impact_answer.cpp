@@ -47,8 +47,36 @@ void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
 }
 
 void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
-    scratch_.hits.push_back({surface, -particle_.state.mass * velocity_change, impact});
-    scratch_.driven = scratch_.driven || material_of(surface).drives();
+    const Vec3 change = home_.direction_in_world(velocity_change, particle_.state.time);
+    scratch_.hits.push_back({surface, -particle_.state.mass * change, impact});
+    scratch_.driven = scratch_.driven || material_of(surface).drives() || home_.is_moving() || is_carried(surface);
+}
+
+/// Of the point of a body that is touched, and of its material there.
+Vec3 ImpactAnswer::carried_velocity_of(const ContactSurface& surface, const Vec3& center) const {
+    const MovingColliders& bodies = home_.bodies();
+    const double time = particle_.state.time;
+    const BodyId body = bodies.body_of(surface.surface);
+    const MovingView view(bodies, home_.body(), {time, time, time, 0.0, 0.0});
+    const WayPoint foot = view.point_at(center - particle_.state.radius * surface.normal, 0.0);
+    Vec3 velocity = view.velocity_of(body, foot);
+    const Material& material = material_of(surface.surface);
+    if (!material.drives()) return velocity;
+    const MovingView seen(bodies, body, view.clock());
+    const Vec3 along =
+        material.motion.at(view.image(body, foot.world, 0.0), seen.direction_from(home_.body(), surface.normal, 0.0));
+    return velocity + view.direction_from(body, along, 0.0);
+}
+
+Vec3 ImpactAnswer::carried_angular_velocity_of(SurfaceId surface) const {
+    const MovingColliders& bodies = home_.bodies();
+    const double time = particle_.state.time;
+    const BodyId body = bodies.body_of(surface);
+    const MovingView view(bodies, home_.body(), {time, time, time, 0.0, 0.0});
+    const Material& material = material_of(surface);
+    Vec3 turning = material.drives() ? view.direction_from(body, material.motion.angular_velocity, 0.0) : Vec3{};
+    const Vec3 of_body = bodies.pose(body, time).angular_velocity - bodies.pose(home_.body(), time).angular_velocity;
+    return turning + home_.direction_in_frame(of_body, time);
 }
 
 void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {
@@ -60,9 +88,7 @@ void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_be
 
 /// What one bounce does not answer is answered by all surfaces together.
 void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebound) {
-    const auto is_approached = [&](const ContactSurface& surface) {
-        return dot(particle_.state.velocity, surface.normal) < 0.0;
-    };
+    const auto is_approached = [&](const ContactSurface& surface) { return departure_from(surface) < 0.0; };
     const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_approached);
     if (first == surfaces.end()) {  // a touch without approach still is an impact
         push(surfaces.front().surface, Vec3{}, true);
@@ -85,9 +111,8 @@ bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const 
                                 Rebound rebound) {
     const Motion before{particle_.state.velocity, particle_.spin};
     reflect_off(surface, material_of(surface.surface), rebound);
-    const bool goes_on = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& other) {
-        return dot(particle_.state.velocity, other.normal) < 0.0;
-    });
+    const bool goes_on = std::any_of(surfaces.begin(), surfaces.end(),
+                                     [&](const ContactSurface& other) { return departure_from(other) < 0.0; });
     if (goes_on) {
         particle_.state.velocity = before.velocity;
         particle_.spin = before.spin;
@@ -107,9 +132,10 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
         const std::span<const ContactSurface> met = foremost(surfaces, kept);
         for (std::size_t k = 0; k < met.size(); ++k) {
             const Material& material = material_of(met[k].surface);
-            const double speed = std::max(0.0, -dot(particle_.state.velocity, met[k].normal));
+            const double speed = std::max(0.0, -departure_from(met[k]));
             const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
-            all[k] = {met[k].normal, restitution, material.friction, 0.0, 0.0, velocity_of(met[k])};
+            all[k] = {met[k].normal,       restitution, material.friction, 0.0, 0.0,
+                      velocity_of(met[k]), {},          advance_of(met[k])};
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
                                                  std::span(all).first(met.size()));
@@ -130,8 +156,8 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
 std::span<const ContactSurface> ImpactAnswer::foremost(std::span<const ContactSurface> surfaces, Foremost& kept) const {
     if (surfaces.size() <= kept.size()) return surfaces;
     const auto is_before = [&](const ContactSurface& a, const ContactSurface& b) {
-        const double towards_a = dot(particle_.state.velocity, a.normal);
-        const double towards_b = dot(particle_.state.velocity, b.normal);
+        const double towards_a = departure_from(a);
+        const double towards_b = departure_from(b);
         return towards_a != towards_b ? towards_a < towards_b : a.surface < b.surface;
     };
     std::partial_sort_copy(surfaces.begin(), surfaces.end(), kept.begin(), kept.end(), is_before);
@@ -142,7 +168,7 @@ std::span<const ContactSurface> ImpactAnswer::foremost(std::span<const ContactSu
 double ImpactAnswer::approach(std::span<const ContactSurface> surfaces) const {
     double largest = 0.0;
     for (const ContactSurface& surface : surfaces) {
-        largest = std::max(largest, -dot(particle_.state.velocity, surface.normal));
+        largest = std::max(largest, -departure_from(surface));
     }
     return largest;
 }
@@ -151,7 +177,7 @@ double ImpactAnswer::approach(std::span<const ContactSurface> surfaces) const {
 void ImpactAnswer::stop_approach(std::span<const ContactSurface> surfaces) {
     for (int pass = 0; pass < kCornerPasses && approach(surfaces) > 0.0; ++pass) {
         for (const ContactSurface& surface : surfaces) {
-            const double speed = -dot(particle_.state.velocity, surface.normal);
+            const double speed = -departure_from(surface);
             if (speed > 0.0) particle_.state.velocity += speed * surface.normal;
         }
     }
@@ -163,7 +189,7 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
     for (int pass = 0; pass < kCornerPasses; ++pass) {
         bool approached = false;
         for (const ContactSurface& surface : surfaces) {
-            if (!(dot(particle_.state.velocity, surface.normal) < 0.0)) continue;
+            if (!(departure_from(surface) < 0.0)) continue;
             approached = true;
             const Vec3 before = particle_.state.velocity;
             reflect_off(surface, material_of(surface.surface), rebound);
@@ -177,7 +203,7 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
 }
 
 void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound) {
-    const double approach = -dot(particle_.state.velocity, surface.normal);
+    const double approach = -departure_from(surface);
     const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
     // As it is seen from the surface's own material.
     const Vec3 carried = velocity_of(surface);
@@ -221,7 +247,8 @@ void ImpactAnswer::push_out_of_corner(std::span<const ContactSurface> surfaces) 
         if (count < normals.size()) normals[count++] = surface.normal;
     }
     const Vec3 before = particle_.state.velocity;
-    particle_.state.velocity = project_off(before, {normals.data(), count});
+    const Vec3 carried = is_carried(surfaces.front().surface) ? velocity_of(surfaces.front()) : Vec3{};
+    particle_.state.velocity = project_off(before - carried, {normals.data(), count}) + carried;
     push(surfaces.front().surface, particle_.state.velocity - before, false);
     record(surfaces.front(), before);
 }

@@ -9,17 +9,19 @@
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_problem.h"
 #include "ricochet/response/response.h"
+#include "ricochet/response/riding.h"
 
 namespace ricochet {
 
 /// States beyond this cannot be followed: the predicates would leave the range of doubles.
 [[nodiscard]] bool can_be_followed(const Path& path);
 
-/// The impacts of one particle in one step.
+/// The impacts of one particle in one step. Impacts are answered in the world, contact that lasts in any frame.
 class ImpactAnswer {
 public:
-    ImpactAnswer(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome)
-        : rules_(rules), particle_(particle), scratch_(scratch), outcome_(outcome) {}
+    ImpactAnswer(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome,
+                 const HomeFrame& home = HomeFrame::world())
+        : rules_(rules), particle_(particle), scratch_(scratch), outcome_(outcome), home_(home) {}
 
     /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
     void reflect(std::span<const ContactSurface> surfaces);
@@ -42,18 +44,35 @@ public:
     }
     /// The same where the particle's centre is elsewhere.
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface, const Vec3& center) const {
+        if (is_carried(surface.surface)) return carried_velocity_of(surface, center);
         const Material& material = material_of(surface.surface);
         if (!material.drives()) return {};
         return material.motion.at(center - particle_.state.radius * surface.normal, surface.normal);
     }
     /// rad/s, of the turning of that material.
     [[nodiscard]] Vec3 angular_velocity_of(SurfaceId surface) const {
+        if (is_carried(surface)) return carried_angular_velocity_of(surface);
         const Material& material = material_of(surface);
         return material.drives() ? material.motion.angular_velocity : Vec3{};
+    }
+    /// m/s, with which the surface itself comes towards the particle.
+    [[nodiscard]] double advance_of(const ContactSurface& surface) const {
+        return is_carried(surface.surface) ? dot(velocity_of(surface), surface.normal) : 0.0;
+    }
+    /// m/s, with which the particle leaves the surface along its normal.
+    [[nodiscard]] double departure_from(const ContactSurface& surface) const {
+        return dot(particle_.state.velocity, surface.normal) - advance_of(surface);
     }
 
 private:
     enum class Rebound { by_material, none };
+
+    /// True for the surfaces of bodies that move relative to the frame that the particle is given in.
+    [[nodiscard]] bool is_carried(SurfaceId surface) const {
+        return rules_.bodies != nullptr && rules_.bodies->body_of(surface) != home_.body();
+    }
+    [[nodiscard]] Vec3 carried_velocity_of(const ContactSurface& surface, const Vec3& center) const;
+    [[nodiscard]] Vec3 carried_angular_velocity_of(SurfaceId surface) const;
 
     void answer(std::span<const ContactSurface> surfaces, Rebound rebound);
     [[nodiscard]] bool answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
@@ -74,6 +93,7 @@ private:
     MovingParticle& particle_;
     MoveScratch& scratch_;
     MoveOutcome& outcome_;
+    const HomeFrame& home_;
 };
 
 }  // namespace ricochet

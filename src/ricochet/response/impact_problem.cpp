@@ -38,14 +38,20 @@ private:
         surface_of_[count_++] = surface;
         is_driven_ =
             is_driven_ || surfaces_[surface].velocity != Vec3{} || surfaces_[surface].angular_velocity != Vec3{};
-        if (dot(before_.velocity, n) < 0.0) restitution_ = std::min(restitution_, surfaces_[surface].restitution);
+        if (departure_from(surfaces_[surface]) < 0.0)
+            restitution_ = std::min(restitution_, surfaces_[surface].restitution);
+    }
+
+    /// m/s, along the normal, before.
+    [[nodiscard]] double departure_from(const ImpactSurface& surface) const {
+        return dot(before_.velocity, surface.normal) - surface.advance;
     }
 
     void set_up(double restitution) {
         problem_.clear();
         for (std::size_t c = 0; c < count_; ++c) {
             const Vec3& n = surfaces_[surface_of_[c]].normal;
-            problem_.add({normal_direction(n), (1.0 + restitution) * dot(before_.velocity, n)});
+            problem_.add({normal_direction(n), (1.0 + restitution) * departure_from(surfaces_[surface_of_[c]])});
         }
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];

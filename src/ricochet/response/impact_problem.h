@@ -23,6 +23,8 @@ struct ImpactSurface {
     /// What it does by that is no gain.
     Vec3 velocity{};
     Vec3 angular_velocity{};
+    /// m/s, with which the surface itself comes towards the particle; part of `velocity`.
+    double advance = 0.0;
 };
 
 /// What an impact does.

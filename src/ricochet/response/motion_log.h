@@ -6,6 +6,7 @@
 
 #include "ricochet/core/motion_part.h"
 #include "ricochet/response/response.h"
+#include "ricochet/response/riding.h"
 
 namespace ricochet {
 
@@ -13,8 +14,8 @@ namespace ricochet {
 /// What it is given must outlive it.
 class MotionLog {
 public:
-    MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch)
-        : rules_(rules), particle_(particle), scratch_(scratch) {
+    MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch, const HomeFrame& home)
+        : rules_(rules), particle_(particle), scratch_(scratch), home_(home) {
         if (scratch.record_motions) last_ = motion(), time_ = particle.state.time;
     }
 
@@ -25,7 +26,7 @@ public:
     /// It has met surfaces, or has been let go by them, or nothing has happened; without time.
     void note_impact() {
         if (!scratch_.record_motions) return;
-        const bool is_driven = std::exchange(scratch_.driven, false);
+        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
         if (motion() == last_) return;
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
@@ -34,14 +35,15 @@ public:
     void note_contact(const Vec3& force, bool acts) {
         if (!scratch_.record_motions) return;
         const Vec3 now = acts ? rules_.forces.acceleration(particle_.state) : Vec3{};
-        const bool is_driven = std::exchange(scratch_.driven, false);
+        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
             !acts || rules_.forces.is_uniform_for(particle_.state));
     }
 
 private:
     [[nodiscard]] RecordedMotion motion() const {
-        return {particle_.state.position, particle_.state.velocity, particle_.spin};
+        return home_.in_world({particle_.state.position, particle_.state.velocity, particle_.spin},
+                              particle_.state.time);
     }
     void add(MotionPart::Kind kind, const std::array<Vec3, 2>& forces, bool steady) {
         const RecordedMotion begin = std::exchange(last_, motion());
@@ -52,6 +54,7 @@ private:
     const ResponseRules& rules_;
     const MovingParticle& particle_;
     MoveScratch& scratch_;
+    const HomeFrame& home_;
     RecordedMotion last_;
     double time_ = 0.0;  // s
 };

@@ -14,24 +14,24 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const LookAhea
     if (!can_follow(path)) return std::nullopt;
     const Vec3 departure = state().velocity;
     const Travel travelled = travel({path, state().radius, look_ahead, candidates});
-    state().velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, travelled.elapsed);
+    state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, travelled.elapsed);
     record_flown(path, travelled.elapsed, departure, true);
-    if (look_ahead != nullptr && !travelled.found.contact && state().position == path.end) {
-        const LookAheadResult& ahead = travelled.found.ahead;
+    if (look_ahead != nullptr && !travelled.contact && state().position == path.end) {
+        const LookAheadResult& ahead = travelled.ahead;
         outcome_.free_for = std::max(0.0, ahead.free_until - path.duration);
         outcome_.candidates_for = std::max(0.0, ahead.candidates_until - path.duration);
         outcome_.candidates = ahead.candidates;
     }
-    return travelled.found.contact;
+    return travelled.contact;
 }
 
 std::optional<Contact> ParticleStep::follow(const Flight& flight) {
     if (!can_follow(flight.path)) return std::nullopt;
     const Vec3 departure = state().velocity;
     const Travel travelled = travel({flight.path, state().radius, nullptr, {}});
-    state().velocity = velocity_at(rules_.settings.integrator, rules_.forces, flight, travelled.elapsed);
+    state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, travelled.elapsed);
     record_flown(flight.path, travelled.elapsed, departure, false);
-    return travelled.found.contact;
+    return travelled.contact;
 }
 
 bool ParticleStep::can_follow(const Path& path) {
@@ -43,70 +43,91 @@ bool ParticleStep::can_follow(const Path& path) {
 
 /// The first contact of a path, and the certified segments to the safe position there or to the path's end.
 ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
-    Travel travel{find_first_contact(geometry_, query, scratch_.contacts)};
-    go(query, travel);
-    return travel;
+    if (rules_->bodies != nullptr) return travel_among_bodies(query);
+    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+    return go(query, found);
 }
 
 /// To the contact found, or to the end of the path.
-void ParticleStep::go(const ContactQuery& query, Travel& travel) {
+ParticleStep::Travel ParticleStep::go(const ContactQuery& query, ContactQueryResult& found) {
+    Travel travel = go_along(query, found);
+    pass(travel.elapsed);
+    return travel;
+}
+
+/// The same without its time.
+ParticleStep::Travel ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& found) {
     const Path& path = query.path;
-    const NearSurfaces& near = travel.found.near;
-    std::optional<Contact>& contact = travel.found.contact;
+    const NearSurfaces& near = found.near;
+    std::optional<Contact>& contact = found.contact;
     const bool starts_there =
         contact ? contact->time == 0.0 : query.radius > 0.0 && query.held.empty() && near.starts_in_overlap();
     if (starts_there && !near.surfaces_at(path.c[0]).empty()) {
         leave_surface(near);
-        contact.reset();
-        return;
+        return {};
     }
     if (contact) {
-        stop_at_contact(query, travel);
+        stop_at_contact(query, found);
     } else {
         const CertifiedPath followed = follow_freely(near, query);
-        state().position = followed.reached;
+        state().position = followed.reached.position;
         if (followed.blocker) contact = contact_with_blocker(near, path, followed);
     }
-    record_chain();
-    travel.elapsed = contact ? contact->time : path.duration;
-    pass(travel.elapsed);
+    record_chain(near);
+    return {contact, contact ? contact->time : path.duration, found.ahead};
 }
 
 /// What blocks the way to the contact is met before.
-void ParticleStep::stop_at_contact(const ContactQuery& query, Travel& travel) {
-    std::optional<Contact>& contact = travel.found.contact;
-    const NearSurfaces& near = travel.found.near;
+void ParticleStep::stop_at_contact(const ContactQuery& query, ContactQueryResult& found) {
+    std::optional<Contact>& contact = found.contact;
+    const NearSurfaces& near = found.near;
     const SafePosition safe = find_safe_position(near, query.path, *contact, scratch_.contacts.chain);
     outcome_.stayed += safe.stayed ? 1 : 0;
-    state().position = safe.position;
-    if (query.held.empty() || !safe.blocker || safe.time >= contact->time) return;
-    contact = contact_with_blocker(near, query.path, {safe.position, safe.time, safe.blocker});
+    state().position = safe.reached.position;
+    const bool is_held = !query.held.empty() || near.foreign() != nullptr;
+    if (!is_held || !safe.blocker || safe.reached.time >= contact->time) return;
+    contact = contact_with_blocker(near, query.path, {safe.reached, safe.blocker});
 }
 
 /// Along a surface that bends away every chord of a point's path is blocked, or of a small sphere's, and its control
 /// polygon is free.
 CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const ContactQuery& query) {
     const Path& path = query.path;
-    std::vector<Vec3>& chain = scratch_.contacts.chain;
+    std::vector<WayPoint>& chain = scratch_.contacts.chain;
     const auto is_free_outside = [&] {
         if (query.held.empty() || path.degree != 3) return false;
         ControlPoints outside = path.control_points();
         outside.point[3] = path.end;
+        chain.assign(1, near.start());
         for (std::size_t k = 1; k < 4; ++k) {
-            if (!near.is_free(outside.point[k - 1], outside.point[k])) return false;
+            const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
+            const WayPoint next = near.point_at(outside.point[k], time);
+            if (!near.is_link_free(chain.back(), next)) return false;
+            chain.push_back(next);
         }
-        chain.assign(outside.begin(), outside.end());
         return true;
     };
-    const CertifiedPath whole{path.end, path.duration, std::nullopt};
-    if (query.radius == 0.0 && is_free_outside()) return whole;
+    const auto end_of_chain = [&] { return CertifiedPath{chain.back(), std::nullopt}; };
+    if (query.radius == 0.0 && is_free_outside()) return end_of_chain();
     const CertifiedPath followed = follow_path(near, path, path.duration, path.end, chain);
-    return query.radius > 0.0 && followed.blocker && is_free_outside() ? whole : followed;
+    if (!followed.blocker || query.radius == 0.0) return followed;
+    std::vector<WayPoint> until_there = chain;
+    if (is_free_outside()) return end_of_chain();
+    chain.swap(until_there);
+    return followed;
 }
 
-void ParticleStep::wait(double duration) {
-    pass(duration);
-    record_flown(line_path(state().position, Vec3{}, duration), duration, Vec3{}, false);
+std::optional<Contact> ParticleStep::wait(double duration, std::span<const SurfaceId> held) {
+    const Path here = line_path(state().position, Vec3{}, duration);
+    if (rules_->bodies == nullptr) {
+        pass(duration);
+        record_flown(here, duration, Vec3{}, false);
+        return std::nullopt;
+    }
+    const Travel travelled = travel_among_bodies({here, state().radius, nullptr, {}, held});
+    if (!travelled.contact) state().position = here.end;  // bit by bit, wherever its frame goes
+    record_flown(here, travelled.elapsed, Vec3{}, false);
+    return travelled.contact;
 }
 
 void ParticleStep::pass(double duration) {
@@ -116,6 +137,7 @@ void ParticleStep::pass(double duration) {
 
 void ParticleStep::stop() {
     outcome_.unsimulated_time = remaining_;
+    if (rules_->bodies != nullptr && !wait_out(particle_.step_end)) outcome_.squeezed = 1;
     remaining_ = 0.0;
 }
 
@@ -135,19 +157,28 @@ void ParticleStep::leave_surface(const NearSurfaces& near) {
         return;
     }
     first_segment_ = scratch_.segments.size();
-    start_ = state().position;
+    start_ = stored_.position = state().position;
 }
 
-void ParticleStep::record_chain() {
+void ParticleStep::record_chain(const NearSurfaces& near) {
+    const std::vector<WayPoint>& chain = scratch_.contacts.chain;
+    const ForeignSurfaces* const foreign = near.foreign();
+    const auto time_of = [&](const WayPoint& p) {
+        return foreign == nullptr ? 0.0 : foreign->view().clock().at(p.time);
+    };
+    if (foreign != nullptr) stored_ = {chain.back().world, time_of(chain.back())};
     if (!scratch_.record_segments) return;
-    const std::vector<Vec3>& chain = scratch_.contacts.chain;
-    for (std::size_t k = 1; k < chain.size(); ++k) scratch_.segments.push_back({chain[k - 1], chain[k], state().time});
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+        scratch_.segments.push_back(
+            {chain[k - 1].world, chain[k].world, state().time, time_of(chain[k - 1]), time_of(chain[k])});
+    }
 }
 
 bool step_off_surface(const NearSurfaces& near, ForceInput& state, MoveScratch& scratch) {
     const auto position = step_off(near, state.position);
     if (!position) return false;
-    if (scratch.record_segments) scratch.segments.push_back({state.position, *position, state.time});
+    if (scratch.record_segments)
+        scratch.segments.push_back({state.position, *position, state.time, state.time, state.time});
     state.position = *position;
     return true;
 }

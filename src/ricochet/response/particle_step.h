@@ -9,24 +9,29 @@
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/response/impact_answer.h"
 #include "ricochet/response/motion_log.h"
+#include "ricochet/response/riding.h"
 
 namespace ricochet {
 
 /// A particle's state within a step, the time that is left of it, and the outcome so far. It moves the particle along
-/// paths in certified segments, and nothing else does.
+/// paths in certified segments, and nothing else does. The state is given in the world, or in the frame of a body that
+/// the particle rides on; what is stored is its position in the world.
 class ParticleStep {
 public:
     ParticleStep(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
-        : rules_(rules),
+        : rules_(&rules),
           particle_(particle),
           scratch_(scratch),
+          home_(rules.bodies),
           geometry_(rules.world, scratch.contacts.plane_cache),
-          impact_(rules, particle, scratch, outcome_),
-          log_(rules, particle, scratch),
+          impact_(rules, particle, scratch, outcome_, home_),
+          log_(rules, particle, scratch, home_),
           start_(particle.state.position),
+          stored_{particle.state.position, particle.stored_time},
           first_segment_(scratch.segments.size()),
           duration_(duration),
           remaining_(duration) {}
@@ -50,14 +55,29 @@ public:
     /// Calls found(surface) for all surfaces near the particle: planes, shapes, triangles, each in ascending order.
     template <class Found>
     void visit_near(const Found& found);
-    /// Lets time pass where the particle is, s.
-    void wait(double duration);
+    /// Lets time pass where the particle is, s. Returns what comes to it there.
+    std::optional<Contact> wait(double duration, std::span<const SurfaceId> held = {});
     /// Gives up the time that is left.
     void stop();
     /// Back along its own segments to where the step began.
     void return_to_start();
 
-    [[nodiscard]] const ResponseRules& rules() const { return rules_; }
+    // Where colliders move.
+
+    /// From now on the state is that in the frame of a body, by whose rules it goes on; `contact` too. rules: of that
+    /// frame.
+    void enter(BodyId body, const ResponseRules& rules, Contact* contact);
+    /// From now on it is that in the world again.
+    void leave(const ResponseRules& rules, Contact* contact);
+    /// The frame that the state is given in.
+    [[nodiscard]] const HomeFrame& home() const { return home_; }
+    /// Where the clock of the particle stood still in steps before: makes it go on, if it can. False where it cannot.
+    [[nodiscard]] bool catch_up();
+    /// At the end of the move.
+    void store_position();
+
+    /// In the frame that the state is given in.
+    [[nodiscard]] const ResponseRules& rules() const { return *rules_; }
     [[nodiscard]] MovingParticle& particle() { return particle_; }
     [[nodiscard]] ForceInput& state() { return particle_.state; }
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
@@ -72,17 +92,34 @@ public:
 private:
     /// How far a particle has come along a path.
     struct Travel {
-        ContactQueryResult found;  ///< `contact`: what it has come to
-        double elapsed = 0.0;      ///< s
+        std::optional<Contact> contact{};  ///< what it has come to
+        double elapsed = 0.0;              ///< s
+        LookAheadResult ahead{};           ///< only without a contact
     };
 
     [[nodiscard]] bool can_follow(const Path& path);
+    /// A position in the world, and its time.
+    struct Stored {
+        Vec3 position;
+        double time = 0.0;  ///< s
+    };
+
     [[nodiscard]] Travel travel(const ContactQuery& query);
-    void go(const ContactQuery& query, Travel& travel);
-    void stop_at_contact(const ContactQuery& query, Travel& travel);
+    [[nodiscard]] Travel go(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] Travel go_along(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] Travel travel_among_bodies(const ContactQuery& query);
+    [[nodiscard]] std::optional<Contact> first_contact_among_bodies(const ContactQuery& query);
+    [[nodiscard]] MovingView view_of(const Path& path) const;
+    [[nodiscard]] WayPoint here(const MovingView& view) const { return view.stored(stored_.position, 0.0); }
+    void turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const;
+    [[nodiscard]] bool carry_on(BodyId frame, double until);
+    [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
+    [[nodiscard]] bool is_link_free(const Stored& from, const Stored& to) const;
+    [[nodiscard]] bool wait_out(double until);
+    void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
-    void record_chain();
+    void record_chain(const NearSurfaces& near);
     void pass(double duration);
     /// Of a piece of what the particle has flown, after it.
     void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
@@ -90,14 +127,16 @@ private:
         scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
     }
 
-    const ResponseRules& rules_;
+    const ResponseRules* rules_;
     MovingParticle& particle_;
     MoveScratch& scratch_;
+    HomeFrame home_;
     SurfaceGeometry geometry_;
     MoveOutcome outcome_;
     ImpactAnswer impact_;
     MotionLog log_;
     Vec3 start_;
+    Stored stored_;              // where something moves
     std::size_t first_segment_;  // of this step among those recorded
     double duration_;
     double remaining_;
@@ -109,17 +148,24 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
     const Vec3 departure = state().velocity;
     Path followed = path;
     const ContactQuery query{followed, state().radius, nullptr, {}, held};
-    Travel travelled{find_first_contact(geometry_, query, scratch_.contacts)};
-    while (travelled.found.contact) {
-        const std::optional<Path> next = shorter(travelled.found.contact->time, followed);
-        if (!next) break;
-        followed = *next;
-        travelled.found = find_first_contact(geometry_, query, scratch_.contacts);
+    const auto takes_shorter = [&](const std::optional<Contact>& contact) {
+        const std::optional<Path> next = contact ? shorter(contact->time, followed) : std::nullopt;
+        if (next) followed = *next;
+        return next.has_value();
+    };
+    Travel travelled;
+    if (rules_->bodies == nullptr) {
+        ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+        while (takes_shorter(found.contact)) found = find_first_contact(geometry_, query, scratch_.contacts);
+        travelled = go(query, found);
+    } else {
+        while (takes_shorter(first_contact_among_bodies(query))) {
+        }
+        travelled = travel_among_bodies(query);
     }
-    go(query, travelled);
     state().velocity = followed.velocity(travelled.elapsed);
     record_flown(followed, travelled.elapsed, departure, false);
-    return travelled.found.contact;
+    return travelled.contact;
 }
 
 template <class Found>

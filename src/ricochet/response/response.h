@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/motion_part.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/dynamics/coupled_member.h"
@@ -79,6 +80,19 @@ struct MovingParticle {
     /// own integrator says it. It must outlive the move.
     const Flight* planned = nullptr;
     ContactCandidates candidates = {};  ///< by this step (MoveOutcome::candidates of the last one)
+
+    // Where colliders move.
+
+    /// s, of the position as it is stored: before state.time where the particle was squeezed, and its clock stood
+    /// still.
+    double stored_time = 0.0;
+    double step_end = 0.0;  ///< s, the time that the next move begins at
+    /// How it rests on a body, in the body's frame, where it rides on one; with a contact that is kept.
+    struct Ridden {
+        Vec3 position;  ///< m
+        Vec3 spin;      ///< rad/s, relative to the body
+    };
+    std::optional<Ridden> ridden = std::nullopt;
 };
 
 /// How a particle ends a step.
@@ -101,6 +115,7 @@ struct MoveOutcome {
     std::uint32_t bounces = 0;      ///< impacts
     double unsimulated_time = 0.0;  ///< s that the budget cut off
     std::uint32_t stayed = 0;       ///< impacts after which no certified position nearer to the surface was found
+    std::uint32_t squeezed = 0;     ///< 1: its clock stood still, between surfaces that close on it
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
     double depth = 0.0;             ///< m, how deep it was seen behind a surface, before anything put it right
     /// s after the end of the move for which the particle, in free flight by steps of the run, certainly touches
@@ -114,6 +129,8 @@ struct MoveOutcome {
 /// Key of the random numbers that impacts draw; emitters use the numbers below.
 inline constexpr std::uint32_t kImpactStream = 0xFFFFFFFFU;
 
+class FrameForces;
+
 /// What a response works with. World, forces and materials must outlive it.
 struct ResponseRules {
     const CollisionWorld& world;
@@ -122,6 +139,9 @@ struct ResponseRules {
     ResponseSettings settings;
     double end = std::numeric_limits<double>::infinity();  ///< s, of the run: what comes later is of no interest
     bool look_ahead = true;                                ///< find out MoveOutcome::free_for
+    const MovingColliders* bodies = nullptr;               ///< null where no collider moves
+    /// Of the frame of one of them, in which `world` and `forces` are seen; null in the world.
+    const FrameForces* frame = nullptr;
 };
 
 /// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle

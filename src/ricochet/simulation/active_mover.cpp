@@ -78,8 +78,9 @@ void ActiveMover::move_block(std::span<const std::uint32_t> active, const TimeSp
 void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record) {
     const TimeSpan life = life_in(i, step);
     if (life.end <= life.begin) return;
-    grow_core(i);
+    grow_core(i, life.begin);
     MovingParticle particle = load(i, life.begin);
+    particle.step_end = life.end;
     scratch.segments.clear();
     const std::size_t first_record = scratch.records.size();
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
@@ -94,8 +95,8 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     if (outcome.bounces > 0 && goes_on && !scratch.flown.empty()) parts_.coupled.record_departure(i, scratch.flown);
     if (parts_.check != nullptr) {
         const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
-        parts_.check->check(i, parts_.store.particles(), particle.state, life.end, scratch.segments, record.violations,
-                            {before, after, scratch.motions});
+        parts_.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
+                            scratch.segments, record.violations, {before, after, scratch.motions});
     }
     for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
         scratch.records[k].radius = particle.state.whole_radius;
@@ -104,14 +105,15 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
 }
 
 /// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces.
-void ActiveMover::grow_core(std::size_t i) {
+void ActiveMover::grow_core(std::size_t i, double time) {
     ParticleStore& store = parts_.store;
     if (!store.cores().has(i) || store.is_fixed(i)) return;
     const Particles& particles = store.particles();
     if (particles.support[i][0] != kNoSupport) return;
     const Vec3& position = particles.position[i];
     const double radius = particles.radius[i];
-    const std::optional<Overlap> overlap = deepest_overlap(parts_.response.rules().world, position, radius);
+    const std::optional<Overlap> overlap =
+        deepest_overlap(parts_.response.rules().world, parts_.response.rules().bodies, position, radius, time);
     if (overlap) {
         store.set_core(i, std::max(store.cores().radius(i), core_radius(*overlap, position, radius)));
     } else {
@@ -124,7 +126,7 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
     for (std::size_t k = 0; k < system.size(); ++k) {
         const std::size_t i = range.begin + k;
         const TimeSpan life = life_in(i, step);
-        grow_core(i);
+        grow_core(i, life.begin);
         system[k].particle = load(i, life.begin);
         system[k].start = life.begin;
         system[k].stop = life.end;
@@ -140,8 +142,8 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
         if (parts_.store.is_fixed(i) || moved.stop <= moved.start) continue;
         BlockRecord& record = blocks[k / kParticleBlock];
         if (parts_.check != nullptr) {
-            parts_.check->check(i, parts_.store.particles(), moved.particle.state, moved.stop, moved.segments,
-                                record.violations);
+            parts_.check->check(i, parts_.store.particles(), moved.particle.state, {moved.stop, moved.stop},
+                                moved.segments, record.violations);
         }
         take_over(i, moved.particle, moved.outcome, moved.stop, record);
     }

@@ -101,7 +101,7 @@ private:
     void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record);
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
-    void grow_core(std::size_t i);
+    void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                    BlockRecord& record);

@@ -19,7 +19,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f53540004ULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f53540005ULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -51,10 +51,14 @@ void expect(Archive& a, const T& expected, const char* complaint) {
 // Colliders in world coordinates; a changed mesh file is a changed setup.
 std::uint64_t Simulation::Impl::collider_hash() const {
     StateHash hash;
-    for (const Vec3& vertex : world.vertices()) hash.add(vertex);
-    for (const Triangle& triangle : world.triangles()) {
-        for (const std::uint32_t corner : triangle) hash.add(static_cast<std::uint64_t>(corner));
-    }
+    const auto add = [&](const CollisionWorld& of) {
+        for (const Vec3& vertex : of.vertices()) hash.add(vertex);
+        for (const Triangle& triangle : of.triangles()) {
+            for (const std::uint32_t corner : triangle) hash.add(static_cast<std::uint64_t>(corner));
+        }
+    };
+    add(world);
+    for (BodyId body = 0; bodies && body < bodies->size(); ++body) add(bodies->world(body));
     hash.add(static_cast<std::uint64_t>(world.surface_count()));
     return hash.value();
 }
@@ -186,10 +190,10 @@ void Simulation::restore(const ByteSource& source) {
     impl().inside_step = true;  // until all is there
     impl().read_state(source);
     impl().forget_queries();
-    for (const double radius : impl().particles().radius) impl().world.prepare_radius(radius);
+    for (const double radius : impl().particles().radius) impl().prepare_radius(radius);
     impl().replay_emitters();
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
-    if (impl().check) impl().check->restart(impl().particles());
+    if (impl().check) impl().check->restart(impl().store, time());
     impl().inside_step = false;
 }
 

@@ -71,7 +71,7 @@ void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const Tim
         ForceInput moved = store_.force_input(i, step.end);
         moved.position = end.position;
         moved.velocity = end.velocity;
-        check_->check(i, particles, moved, step.end, {&segment, 1}, *violations);
+        check_->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, *violations);
     }
     particles.position[i] = end.position;
     particles.velocity[i] = end.velocity;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/moving_colliders.h"
 #include "ricochet/collision/overlap.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
@@ -51,7 +52,10 @@ struct Simulation::Impl {
     void add(Particle&& particle);
     [[nodiscard]] BirthTest birth_test() const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
+    [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
+    void prepare_radius(double radius);
     void hold_what_touches(std::size_t i);
+    bool hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position);
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
     /// A sentence about those of the setup's particles that are in overlap; nothing without any.
     [[nodiscard]] std::optional<std::string> overlap_warning() const;
@@ -82,8 +86,10 @@ struct Simulation::Impl {
     bool has_spheres;
     ForceField forces;
     std::vector<Material> materials;
-    std::shared_ptr<CollisionWorld> shared_world;
+    std::shared_ptr<ColliderList> colliders;
+    std::shared_ptr<CollisionWorld> shared_world;  ///< of the colliders at rest
     CollisionWorld& world;
+    std::unique_ptr<MovingColliders> bodies;  ///< null where no collider moves
     CollisionQueries queries;
     CoupledMotion coupled;
     std::vector<Emitter> emitters;

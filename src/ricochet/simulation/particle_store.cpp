@@ -1,6 +1,7 @@
 #include "ricochet/simulation/particle_store.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -17,8 +18,8 @@ std::uint32_t saturating_sum(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
-                             std::size_t colliders)
-    : colliders_(colliders), may_sleep_(may_sleep) {
+                             std::size_t colliders, bool keeps_rides)
+    : keeps_rides_(keeps_rides), colliders_(colliders), may_sleep_(may_sleep) {
     particles_.attributes = AttributeTable(std::move(attributes));
     particles_.keeps_origin = keeps_origin;
 }
@@ -35,11 +36,13 @@ void ParticleStore::append(Particle&& particle) {
     particles_.append(particle);
     cores_.append();
     sides_.resize(particles_.size() * colliders_);
+    if (keeps_rides_) rides_.emplace_back();
 }
 
 void ParticleStore::reserve(std::size_t more) {
     particles_.reserve(more);
     grow_capacity_by(sides_, more * colliders_);
+    if (keeps_rides_) grow_capacity_by(rides_, more);
 }
 
 void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
@@ -50,6 +53,11 @@ void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
         if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
     }
     sides_.erase(kept, sides_.end());
+    std::size_t kept_rides = 0;
+    for (std::size_t i = 0; keeps_rides_ && i < keep.size(); ++i) {
+        if (keep[i] != 0) rides_[kept_rides++] = rides_[i];
+    }
+    rides_.resize(kept_rides);
     cores_.compact(keep);
     particles_.compact(keep);
 }
@@ -67,6 +75,12 @@ MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact)
     if (cores_.has(i)) load_core(i, particle);
     if (in_contact) load_contact(i, particle.contact);
     particle.sides = sides_of(i);
+    particle.stored_time = start;
+    if (keeps_rides_) {
+        const RideMemory& ride = rides_[i];
+        if (!std::isnan(ride.stored_time)) particle.stored_time = ride.stored_time;
+        if (ride.is_ridden != 0) particle.ridden = ride.ridden;
+    }
     return particle;
 }
 
@@ -102,6 +116,10 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
     if (in_contact) store_contact(i, moved, outcome, may_be_held);
+    if (!keeps_rides_) return;
+    rides_[i] = {};
+    if (moved.stored_time < moved.step_end) rides_[i].stored_time = moved.stored_time;
+    if (moved.ridden) rides_[i].is_ridden = 1, rides_[i].ridden = *moved.ridden;
 }
 
 void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,

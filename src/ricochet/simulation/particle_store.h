@@ -3,8 +3,10 @@
 /// response and taken back.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,9 +20,9 @@ namespace ricochet {
 class ParticleStore {
 public:
     /// may_sleep: what holds a particle now holds it for good, so it need not be asked for again.
-    /// colliders: how many have sides that the response keeps; 0 where it keeps none.
+    /// colliders: how many have sides that the response keeps; 0 where it keeps none. keeps_rides: colliders move.
     ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
-                  std::size_t colliders);
+                  std::size_t colliders, bool keeps_rides = false);
 
     [[nodiscard]] const Particles& particles() const { return particles_; }
     [[nodiscard]] Particles& particles() { return particles_; }
@@ -70,6 +72,11 @@ public:
     /// Begins to fetch from memory what load() and store() use.
     void prefetch(std::size_t i) const;
 
+    /// s, of its position as it is stored: now, but where its clock stands still.
+    [[nodiscard]] double stored_time(std::size_t i, double now) const {
+        return keeps_rides_ && !std::isnan(rides_[i].stored_time) ? rides_[i].stored_time : now;
+    }
+
     /// The id of the next particle that is added.
     [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
 
@@ -85,6 +92,14 @@ private:
 
     Particles particles_;
     OverlapCores cores_;
+    /// What is kept of a particle where colliders move.
+    struct RideMemory {
+        double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, where its clock stands still; else NaN
+        std::uint8_t is_ridden = 0;
+        MovingParticle::Ridden ridden{};  ///< where it is
+    };
+    std::vector<RideMemory> rides_;  // one a particle, where they are kept
+    bool keeps_rides_ = false;
     std::vector<SideMemory> sides_;  // one a collider for every particle, for responses that keep sides
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
@@ -116,6 +131,10 @@ void ParticleStore::archive(Archive& a) {
         a(memory.side), a(memory.penetrating), a(memory.touching), a(memory.depth);
     };
     archive_entries(a, sides_, side_of, n * colliders_);
+    const auto ride_of = [&](RideMemory& ride) {
+        a(ride.stored_time), a(ride.is_ridden), a(ride.ridden.position), a(ride.ridden.spin);
+    };
+    archive_entries(a, rides_, ride_of, keeps_rides_ ? n : 0);
 }
 
 }  // namespace ricochet

@@ -83,11 +83,20 @@ BirthTest Simulation::Impl::birth_test() const {
 std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return std::nullopt;
-    return deepest_overlap(world, position, particle.radius);
+    return deepest_overlap(world, bodies.get(), position, particle.radius, particle.birth_time);
+}
+
+const CollisionWorld& Simulation::Impl::world_of(std::size_t collider) const {
+    return bodies ? bodies->world(bodies->body_of_collider(collider)) : world;
+}
+
+void Simulation::Impl::prepare_radius(double radius) {
+    world.prepare_radius(radius);
+    if (bodies) bodies->prepare_radius(radius);
 }
 
 void Simulation::Impl::add(Particle&& particle) {
-    world.prepare_radius(particle.radius);
+    prepare_radius(particle.radius);
     const std::optional<Overlap> overlap = overlap_of(particle);
     SimulationStatistics& statistics = recorder.statistics();
     statistics.started_in_overlap += overlap ? 1 : 0;
@@ -109,16 +118,26 @@ void Simulation::Impl::add(Particle&& particle) {
 void Simulation::Impl::hold_what_touches(std::size_t i) {
     const Vec3& position = particles().position[i];
     if (!is_finite(position) || max_abs(position) > kLargestCoordinate || particles().pinned[i] != 0) return;
+    if (hold_in(world, i, position)) return;
+    const double time = std::max(0.0, particles().birth_time[i]);
+    for (BodyId body = 0; bodies && body < bodies->size(); ++body) {
+        if (hold_in(bodies->world(body), i, bodies->pose(body, time).image(position))) return;
+    }
+}
+
+/// Those that stand in one frame, where the particle is at a position; false where there are none.
+bool Simulation::Impl::hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position) {
     KeptContact contact;
     const double reach = kTouchingOffsets * contact_offset(position);
-    for (const SurfaceId surface : surfaces_touched(world, position, particles().radius[i], reach)) {
+    for (const SurfaceId surface : surfaces_touched(of_frame, position, particles().radius[i], reach)) {
         // What chance answers, answers each touch.
-        if (materials[world.material_of(surface)].is_random()) return;
+        if (materials[world.material_of(surface)].is_random()) return true;
         contact.surfaces[0] = surface;
         contact.count = 1;
         contact.cascade_left = KeptContact::kPlaced;
     }
     store.set_contact(i, contact);
+    return contact.count > 0;
 }
 
 /// Points only: a sphere whose centre lies there is in overlap.

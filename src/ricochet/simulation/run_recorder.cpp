@@ -6,6 +6,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/particle_store.h"
 
 namespace ricochet {
 
@@ -62,6 +63,7 @@ void BlockRecord::add_to(SimulationStatistics& statistics) const {
     statistics.lost_impulses += lost_impulses;
     statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
     statistics.trials += trials;
+    statistics.squeezed += squeezed;
     statistics.penetrations += penetrations;
     statistics.penetration_sum += penetration_sum;
     statistics.penetration_deepest = std::max(statistics.penetration_deepest, penetration_deepest);
@@ -123,50 +125,69 @@ namespace {
 /// Particles per unit of parallel work.
 constexpr std::size_t kBlock = 64;
 
-/// The colliders as they collide; planes and shapes own one surface each.
-std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world) {
+/// The colliders as they collide, each in the frame that it stands in; planes and shapes own one surface each.
+std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders* bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        const ColliderShape& shape = world.colliders()[i].shape;
+        const CollisionWorld& own = bodies == nullptr ? world : bodies->world(bodies->body_of_collider(i));
+        const ColliderShape& shape = own.colliders()[i].shape;
         if (const auto* ball = std::get_if<BallShape>(&shape)) {
             surfaces[i] = VerifiedShape{world_from_unit(*ball), false};
         } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
             surfaces[i] = VerifiedShape{world_from_unit(*cylinder), true};
-        } else if (auto mesh = world.mesh_of(i)) {
+        } else if (auto mesh = own.mesh_of(i)) {
             surfaces[i] = std::move(*mesh);
         }
-    }
-    for (const auto& [plane, surface] : world.planes()) {
-        surfaces[world.name_of(surface).collider] = VerifiedPlane{plane.point, plane.normal};
+        for (const auto& [plane, surface] : own.planes()) {
+            if (own.name_of(surface).collider == i) surfaces[i] = VerifiedPlane{plane.point, plane.normal};
+        }
     }
     return surfaces;
 }
 
+VerifiedMotion motion_of(const CollisionWorld& world, const MovingColliders* bodies) {
+    VerifiedMotion motion;
+    if (bodies == nullptr) return motion;
+    motion.frames = bodies->frames();
+    for (const ColliderDescription& collider : world.colliders()) {
+        motion.frame_of.push_back(collider.frame.empty() ? std::nullopt : motion.frames->find(collider.frame));
+    }
+    return motion;
+}
+
 }  // namespace
 
-RunCheck::RunCheck(const CollisionWorld& world) : verifier_(surfaces_of(world)) {}
+RunCheck::RunCheck(const CollisionWorld& world, const MovingColliders* bodies)
+    : verifier_(surfaces_of(world, bodies), motion_of(world, bodies)) {}
 
 void RunCheck::watch_spawned(const Particles& particles) {
     const std::size_t first = watched_.size();
     watched_.resize(particles.size());
     parallel_for_blocks(particles.size() - first, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = first + begin; i < first + end; ++i) {
-            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i]);
+            const double time = std::max(0.0, particles.birth_time[i]);
+            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], time);
         }
     });
 }
 
-void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                      std::span<const Segment> segments, std::vector<Violation>& violations,
                      const RecordedParts& motion) {
-    const VerifiedStep step{particles.id[i], particles.position[i], moved.position, particles.radius[i], time, segments,
-                            motion};
+    const VerifiedStep step{
+        particles.id[i], particles.position[i], moved.position, particles.radius[i], times.end, segments,
+        motion,          times.stored};
     verifier_.check(step, watched_[i], violations);
 }
 
-void RunCheck::restart(const Particles& particles) {
-    watched_.clear();
-    watch_spawned(particles);
+void RunCheck::restart(const ParticleStore& store, double now) {
+    const Particles& particles = store.particles();
+    watched_.assign(particles.size(), {});
+    parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
+        }
+    });
 }
 
 void RunCheck::compact(const std::vector<std::uint8_t>& keep) {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/dynamics/forces.h"
@@ -20,6 +20,8 @@
 #include "ricochet/verify/verifier.h"
 
 namespace ricochet {
+
+class ParticleStore;
 
 // Hits and impulses of every surface, added up from any number of threads to the same bits.
 
@@ -80,6 +82,7 @@ struct BlockRecord {
     std::uint64_t frozen = 0;
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
+    std::uint64_t squeezed = 0;
     std::uint64_t trials = 0;
     std::uint64_t penetrations = 0;
     double penetration_sum = 0.0;
@@ -99,6 +102,7 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
     stayed += outcome.stayed;
     frozen += outcome.is_frozen() ? 1 : 0;
     bounces_max = std::max(bounces_max, outcome.bounces);
+    squeezed += outcome.squeezed;
     trials += outcome.trials;
     penetrations += outcome.depth > 0.0 ? 1 : 0;
     penetration_sum += outcome.depth;
@@ -158,16 +162,23 @@ private:
 /// The verifier with what it remembers of every living particle, in the order of Particles.
 class RunCheck {
 public:
-    explicit RunCheck(const CollisionWorld& world);
+    /// s, when a step ends, and that of the position as it is stored (MovingParticle::stored_time).
+    struct StepTimes {
+        double end = 0.0;
+        double stored = 0.0;
+    };
+
+    /// bodies: null where no collider moves; they must outlive it.
+    RunCheck(const CollisionWorld& world, const MovingColliders* bodies);
 
     /// Begins to watch the particles that have been appended since the last call. Not while others check.
     void watch_spawned(const Particles& particles);
     /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
     /// checked from several threads at once.
-    void check(std::size_t i, const Particles& particles, const ForceInput& moved, double time,
+    void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
-    /// Begins to watch all particles from where they are.
-    void restart(const Particles& particles);
+    /// Begins to watch all particles from where they are, at a time, s; where their clocks stand still, from theirs.
+    void restart(const ParticleStore& store, double now);
     /// Keeps what Particles::compact() keeps.
     void compact(const std::vector<std::uint8_t>& keep);
 

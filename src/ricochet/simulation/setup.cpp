@@ -100,6 +100,15 @@ std::vector<Emitter> make_emitters(SimulationSetup& setup) {
     return emitters;
 }
 
+/// Null where no collider moves.
+std::unique_ptr<MovingColliders> make_bodies(const CollisionWorld& world,
+                                             const std::shared_ptr<ColliderList>& colliders,
+                                             const std::shared_ptr<const FrameTree>& frames) {
+    auto bodies = std::make_unique<MovingColliders>(world, colliders, frames, kChordMargin);
+    if (bodies->empty()) bodies.reset();
+    return bodies;
+}
+
 /// Null where no emitter has a parent.
 std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, const SimulationOptions& options) {
     auto offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
@@ -132,7 +141,7 @@ std::optional<std::string> Simulation::Impl::overlap_warning() const {
     double deepest = 0.0;
     for (std::size_t i = 0; i < store.size() && recorder.statistics().started_in_overlap > 0; ++i) {
         const double radius = particles().radius[i];
-        const auto overlap = deepest_overlap(world, particles().position[i], radius);
+        const auto overlap = deepest_overlap(world, bodies.get(), particles().position[i], radius, 0.0);
         if (!overlap) continue;
         const double depth = radius - overlap->distance;
         if (count++ == 0) {
@@ -159,25 +168,31 @@ Simulation::Impl::Impl(SimulationSetup setup)
       has_spheres(makes_spheres(setup)),
       forces(std::move(setup.forces)),
       materials(std::move(setup.materials)),
-      shared_world(std::make_shared<CollisionWorld>(std::move(setup.colliders), chord_margin(acceleration, forces))),
+      colliders(std::make_shared<ColliderList>(std::move(setup.colliders))),
+      shared_world(std::make_shared<CollisionWorld>(colliders, std::string_view(), chord_margin(acceleration, forces))),
       world(*shared_world),
+      bodies(make_bodies(world, colliders, setup.frames)),
       queries(Simulation::queries_of(shared_world)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       emitters(make_emitters(setup)),
       offspring(make_offspring(emitters, options)),
       bounds(setup.bounds),
-      response(make_response(options.response,
-                             {world, forces, materials, options, options.duration, acceleration.look_ahead})),
-      store(setup.attributes, keeps_origin(emitters), acceleration.sleeping && forces.is_steady(),
-            response->keeps_sides() ? world.colliders().size() : 0),
+      response(make_response(options.response, {world, forces, materials, options, options.duration,
+                                                acceleration.look_ahead && !bodies, bodies.get()})),
+      store(setup.attributes, keeps_origin(emitters), acceleration.sleeping && forces.is_steady() && !bodies,
+            response->keeps_sides() ? world.colliders().size() : 0, bodies != nullptr),
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),
-      check(options.verify ? std::make_unique<RunCheck>(world) : nullptr),
+      check(options.verify ? std::make_unique<RunCheck>(world, bodies.get()) : nullptr),
       recorder(options.triangle_totals ? world.surface_count() : 0, options.record_contacts, offspring != nullptr),
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
+    if (bodies) {
+        bodies->set_culling(acceleration.culling);
+        bodies->begin_step(0.0, options.time_step);
+    }
     reserve(setup.particles.size());
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));

@@ -56,7 +56,9 @@ TimeSpan Simulation::Impl::begin_step() {
     inside_step = true;
     recorder.begin_step();
     schedule.begin_step(recorder.statistics().steps);
-    return clock.span_of(recorder.statistics().steps);
+    const TimeSpan step = clock.span_of(recorder.statistics().steps);
+    if (bodies) bodies->begin_step(step.begin, step.end);
+    return step;
 }
 
 // Coupled motion may take the step in several parts. Each is recorded for itself, so that what happens to a particle

@@ -290,6 +290,26 @@ void validate_names(const std::vector<Named>& all, std::string_view kind) {
     }
 }
 
+/// Only the exact response knows where a collider is within a step.
+void validate_moving_colliders(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
+        const ColliderDescription& collider = setup.colliders[k];
+        if (collider.frame.empty()) continue;
+        const Subject subject("collider", k, collider.name);
+        if (!setup.frames || !setup.frames->find(collider.frame)) {
+            subject.refuse("frame", collider.frame, "the name of a frame of the setup");
+        }
+        if (setup.options.response != ResponseKind::exact) {
+            subject.refuse("frame", collider.frame,
+                           fmt::format("none: the {} response knows no colliders that move, only exact does",
+                                       name_of(setup.options.response)));
+        }
+        if (setup.options.flow) {
+            subject.refuse("frame", collider.frame, "none: particles that a flow carries know no colliders that move");
+        }
+    }
+}
+
 }  // namespace
 
 const SimulationSetup& validated(const SimulationSetup& setup) {
@@ -301,6 +321,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
         Subject("options").refuse("most_particles", setup.options.most_particles,
                                   fmt::format("at least the {} particles that are there", setup.particles.size()));
     }
+    validate_moving_colliders(setup);
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
     validate_emitters(setup);

@@ -16,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "ricochet/core/frame_tree.h"
 #include "ricochet/core/motion_part.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/transform.h"
@@ -63,6 +64,12 @@ struct VerifiedShape {
 /// A collider in world coordinates. Triangles of a mesh without area take no part, as in collisions.
 using VerifiedSurface = std::variant<TriangleMesh, VerifiedPlane, VerifiedShape>;
 
+/// Which surfaces move, and how.
+struct VerifiedMotion {
+    std::shared_ptr<const FrameTree> frames;           ///< null where none moves
+    std::vector<std::optional<std::size_t>> frame_of;  ///< of each surface; its coordinates are the frame's
+};
+
 /// What the verifier remembers of a particle from one step to the next.
 struct VerifiedParticle {
     Vec3 position;
@@ -72,6 +79,7 @@ struct VerifiedParticle {
     bool is_on_surface = false;  ///< of any surface, open ones included
     /// False while it overlaps something from its birth on: its distance is not judged until it has been free once.
     bool has_been_free = true;
+    double time = 0.0;  ///< s, at which it stood there
 };
 
 /// How a particle's motion changed in a step, where that is recorded.
@@ -90,6 +98,7 @@ struct VerifiedStep {
     double time = 0.0;                  ///< s, at the end of the step
     std::span<const Segment> segments;  ///< in the order of time
     RecordedParts motion{};
+    double stored_time = 0.0;  ///< s, of its position now, where colliders move: before `time` for one that is squeezed
 };
 
 /// Immutable; safe from any number of threads. Copies share what they hold.
@@ -97,13 +106,14 @@ class Verifier {
 public:
     /// Collider i is surfaces[i]. A mesh is closed when every edge belongs to an even number of triangle sides. Throws
     /// InputError for numbers that are not finite, corners that are not there, and normals and shapes without extent.
-    explicit Verifier(const std::vector<VerifiedSurface>& surfaces);
+    explicit Verifier(const std::vector<VerifiedSurface>& surfaces, const VerifiedMotion& motion = {});
     ~Verifier();
     Verifier(const Verifier&);
     Verifier& operator=(const Verifier&);
 
-    /// Begins to watch a particle at its birth. A position that is not finite has no side and is not judged.
-    [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius) const;
+    /// Begins to watch a particle at its birth, at a time, s. A position that is not finite has no side and is not
+    /// judged.
+    [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius, double time = 0.0) const;
 
     /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then
     /// sides, then overlaps, each in the order of colliders and triangles, then energies in the order of the parts.

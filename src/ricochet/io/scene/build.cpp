@@ -322,7 +322,9 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_motion(context, forces, scene.setup.options);
     scene.setup.forces = forces.forces();
     build_bounds(context, scene.setup);
-    build_colliders(context, scene.setup);
+    std::vector<FrameDescription> frames = frames_of(context);
+    build_colliders(context, scene.setup, frames);
+    scene.setup.frames = std::make_shared<const FrameTree>(std::move(frames));
     build_attributes(context, scene.setup);
     build_reference_camera(context, scene.setup);
     build_emitters(context, scene.setup);

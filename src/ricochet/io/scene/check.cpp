@@ -243,10 +243,6 @@ private:
     }
 
     void check_value(JsonNode& node, const KeySpec& key, const std::string& path) {
-        if (!key.built) {
-            refuse(node, path, not_built(fmt::format("\"{}\"", key.name)));
-            return;
-        }
         switch (key.type) {
             case ValueType::object:
                 check_object(node, *key.content, path);

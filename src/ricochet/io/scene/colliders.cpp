@@ -25,8 +25,7 @@ Fields<MeshShape> mesh_fields() {
            "Materials of parts of an OBJ mesh: names that the file gives to its faces, each with one of the names in "
            "`materials`. A face goes by its `usemtl` name; where that is not listed by its `g` name (the whole line, "
            "then word by word), then by its `o` name. Faces without a listed name take the collider's material.",
-           Without{"the collider's material everywhere"}},
-          {"motion", ValueType::list, "Keyframes.", kNotBuilt}}});
+           Without{"the collider's material everywhere"}}}});
 }
 
 // A shape's own measures, then where it stands.
@@ -73,7 +72,8 @@ const ObjectSpec& surface_motion_spec() {
 
 class ColliderBuilder {
 public:
-    ColliderBuilder(SceneContext& context, SimulationSetup& setup) : context_(context), setup_(setup) {}
+    ColliderBuilder(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames)
+        : context_(context), setup_(setup), frames_(frames), scene_frames_(frames) {}
 
     void build() {
         build_materials();
@@ -83,6 +83,7 @@ public:
             collider.name = context_.unique_name(view, setup_.colliders.size(), "collider", taken);
             collider.material = material_of(view);
             collider.shape = shape_of(view, collider.material);
+            collider.frame = frame_of(view, collider.name);
             setup_.colliders.push_back(std::move(collider));
         }
         warn_about_unused_materials();
@@ -200,6 +201,28 @@ private:
         return mesh;
     }
 
+    // The name of the frame that it stands in; its own keys make one more.
+    std::string frame_of(const ObjectView& view, const std::string& name) {
+        std::string parent;
+        if (view.has("frame") && is_frame_named(context_, view, scene_frames_)) parent = view.text("frame");
+        const bool moves = !parent.empty() || view.has("motion");
+        if (moves && setup_.options.response != ResponseKind::exact) {
+            context_.error(view, parent.empty() ? "motion" : "frame",
+                           fmt::format("the response \"{}\" knows no colliders that move, expected none, or \"exact\"",
+                                       name_of(setup_.options.response)));
+        } else if (moves && setup_.options.flow) {
+            context_.error(view, parent.empty() ? "motion" : "frame",
+                           "particles that a flow carries know no colliders that move, expected none");
+        }
+        if (!view.has("motion")) return parent;
+        FrameDescription frame = frame_through(view.objects("motion"), context_.diagnostics());
+        frame.name = "motion of " + name;
+        while (scene_frames_.find(frame.name)) frame.name += "'";
+        frame.parent = parent;
+        frames_.push_back(frame);
+        return frame.name;
+    }
+
     void warn_about_unused_materials() {
         const std::vector<NamedObject> materials = context_.root().named_objects("materials");
         for (std::size_t i = 0; i < used_.size(); ++i) {
@@ -211,6 +234,8 @@ private:
 
     SceneContext& context_;
     SimulationSetup& setup_;
+    std::vector<FrameDescription>& frames_;
+    FrameTree scene_frames_;
     std::vector<bool> used_;  // one for every material of the scene
 };
 
@@ -255,11 +280,22 @@ const ObjectSpec& collider_spec() {
         "collider", "What particles bounce off. Both sides are solid.",
         {{"name", ValueType::text, "For messages, reports and emitters; no two colliders share one.",
           Without{"made from type and index in the list"}},
-         {"material", ValueType::text, "One of the names in `materials`.", Without{"restitution 1, no friction"}}},
+         {"material", ValueType::text, "One of the names in `materials`.", Without{"restitution 1, no friction"}},
+         {"frame", ValueType::text,
+          "One of the names in `frames`: the collider stands in it and moves with it. Only with the response "
+          "\"exact\".",
+          Without{"it stands in the world"}},
+         {"motion", ValueType::list,
+          "A frame of its own: poses in the order of time, at least one, each `{\"time\": ..., \"position\": ..., "
+          "\"rotation\": ...}`, within `frame` where that is given too. The collider's own position and rotation are "
+          "within that.",
+          Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         shapes());
     return spec;
 }
 
-void build_colliders(SceneContext& context, SimulationSetup& setup) { ColliderBuilder(context, setup).build(); }
+void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames) {
+    ColliderBuilder(context, setup, frames).build();
+}
 
 }  // namespace ricochet::detail

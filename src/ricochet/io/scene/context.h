@@ -159,12 +159,19 @@ private:
     std::map<std::string, FlowPointer, std::less<>> flows_;
 };
 
-void build_colliders(SceneContext& context, SimulationSetup& setup);
+/// frames: those of the scene; the ones that colliders move in by their own keys are added.
+void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
 /// The declared attributes, and those of appearance that emitters and explicit particles use. Reports names and
 /// defaults that cannot be.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);
 /// The scene's frames; without errors so far only, their parents too.
-[[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const SceneContext& context);
+[[nodiscard]] std::vector<FrameDescription> frames_of(const SceneContext& context);
+/// The keys of a frame that a collider has for itself, and what they say.
+[[nodiscard]] const ObjectSpec& key_pose_spec();
+[[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
+/// True when a key "frame" names one of them; reports otherwise.
+[[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
+/// In setup.frames.
 void build_emitters(SceneContext& context, SimulationSetup& setup);
 /// Sets an emitter's attributes and curves; reports those that are not declared or have other components.
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,

@@ -205,7 +205,7 @@ bool is_measurable(const EmitterShape& shape) {
 }
 
 // Puts the emitter into the frame that its key "frame" names.
-void attach(const SceneContext& context, const ObjectView& view, const std::shared_ptr<const FrameTree>& frames,
+void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
     if (!view.has("frame")) return;
     if (view.type() == "mesh" && view.has("collider")) {
@@ -217,15 +217,9 @@ void attach(const SceneContext& context, const ObjectView& view, const std::shar
         context.error(view, "frame", "children are born where their parents are, expected an emitter of another kind");
         return;
     }
-    const std::string name = view.text("frame");
-    if (const auto frame = frames->find(name)) {
-        emitter.frames = frames;
-        emitter.frame = *frame;
-        return;
-    }
-    std::vector<std::string_view> names;
-    for (std::size_t k = 0; k < frames->size(); ++k) names.push_back(frames->description(k).name);
-    context.error(view, "frame", unknown_name("frame", name, names));
+    if (!is_frame_named(context, view, *setup.frames)) return;
+    emitter.frames = setup.frames;
+    emitter.frame = *setup.frames->find(view.text("frame"));
 }
 
 double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
@@ -367,14 +361,13 @@ const ObjectSpec& emitter_spec() {
 }
 
 void build_emitters(SceneContext& context, SimulationSetup& setup) {
-    const std::shared_ptr<const FrameTree> frames = frames_of(context);
     std::set<std::string> taken;
     double births = 0.0;
     for (const ObjectView& view : context.objects("emitters")) {
         auto emitter = view.read<EmitterDescription>();
         emitter.name = context.unique_name(view, setup.emitters.size(), "emitter", taken);
         emitter.shape = shape_of(context, setup, view);
-        attach(context, view, frames, emitter);
+        attach(context, view, setup, emitter);
         check_volume(context, view, emitter.shape);
         read_looks(context, setup, view, emitter);
         if (view.type() == "child") {

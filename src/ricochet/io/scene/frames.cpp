@@ -179,8 +179,8 @@ const ObjectSpec& frame_spec() {
     using F = FrameDescription;
     static const ObjectSpec spec = object<F>(
         "frame",
-        "A moving frame of reference, for emitters. It stands in its parent like this: translation, rotation, then the "
-        "motions in their order.",
+        "A moving frame of reference, for emitters and colliders. It stands in its parent like this: translation, "
+        "rotation, then the motions in their order.",
         {{"parent", &F::parent, "One of the names in `frames`: what it stands in.", Without{"the world"}},
          {"translation", &F::translation, kCoordinate, "m", "Where its origin is in the parent's axes."},
          {"rotation",
@@ -192,7 +192,7 @@ const ObjectSpec& frame_spec() {
     return spec;
 }
 
-std::shared_ptr<const FrameTree> frames_of(const SceneContext& context) {
+std::vector<FrameDescription> frames_of(const SceneContext& context) {
     std::vector<FrameDescription> frames;
     std::vector<ObjectView> views;
     for (const NamedObject& named : context.root().named_objects("frames")) {
@@ -203,7 +203,43 @@ std::shared_ptr<const FrameTree> frames_of(const SceneContext& context) {
         for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still good
     }
     if (context.failed()) std::erase_if(frames, [](const auto& frame) { return frame.name.empty(); });
-    return std::make_shared<const FrameTree>(std::move(frames));
+    return frames;
+}
+
+bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames) {
+    const std::string name = view.text("frame");
+    if (frames.find(name)) return true;
+    std::vector<std::string_view> names;
+    for (std::size_t k = 0; k < frames.size(); ++k) names.push_back(frames.description(k).name);
+    context.error(view, "frame", unknown_name("frame", name, names));
+    return false;
+}
+
+const ObjectSpec& key_pose_spec() {
+    using P = KeyPose;
+    static const ObjectSpec spec = object<P>(
+        "key pose", "Where a collider's frame is at a time; between two keys it moves steadily and turns steadily.",
+        {{"time", &P::time, kCoordinate, "s", "When; later than the key before.", kRequired},
+         {"position", &P::position, kCoordinate, "m", "Of the frame's origin."},
+         {"rotation",
+          [](P& p) {
+              return RotationTarget{p.axis, p.degrees};
+          },
+          "How it is turned then.", Without{"not turned"}, &rotation_spec()}});
+    return spec;
+}
+
+FrameDescription frame_through(const std::vector<ObjectView>& views, Diagnostics& diagnostics) {
+    FrameDescription frame;
+    std::vector<KeyPose> poses;
+    if (!are_good_keys(views, diagnostics)) return frame;
+    for (const ObjectView& view : views) poses.push_back(view.read<KeyPose>());
+    try {
+        frame.motions = motions_through(poses);
+    } catch (const InputError& problem) {
+        diagnostics.error(views.front().location(), views.front().path(), problem.what());
+    }
+    return frame;
 }
 
 }  // namespace ricochet::detail

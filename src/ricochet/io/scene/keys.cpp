@@ -262,7 +262,6 @@ void set_option(KeySpec& key, Rule rule) {
     key.required = key.required || rule == Rule::required;
     key.not_zero = key.not_zero || rule == Rule::not_zero;
     key.not_empty = key.not_empty || rule == Rule::not_empty;
-    key.built = key.built && rule != Rule::not_built;
 }
 
 }  // namespace ricochet::detail

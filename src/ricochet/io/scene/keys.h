@@ -91,7 +91,6 @@ struct KeySpec {
     bool required = false;
     bool not_zero = false;        ///< vectors: not all components zero
     bool not_empty = false;       ///< lists: at least one object
-    bool built = true;            ///< false: part of the format, refused by name
     std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;

@@ -165,7 +165,6 @@ Json object_schema(const ObjectSpec& spec, const Variant* variant) {
         required.push_back("type");
     }
     for (const KeySpec* key : keys_of(spec, variant)) {
-        if (!key->built) continue;
         properties[std::string(key->name)] = key_schema(*key);
         if (key->required) required.push_back(key->name);
         if (!key->needs.empty()) needs[std::string(key->name)] = Json::array({key->needs});
@@ -320,7 +319,6 @@ std::string meaning(const KeySpec& key) {
 std::string key_table(const std::vector<KeySpec>& keys) {
     std::string text = "\n| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
     for (const KeySpec& key : keys) {
-        if (!key.built) continue;
         text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, cell(expectation(key)), cell(default_words(key)),
                             cell(meaning(key)));
     }
@@ -381,24 +379,9 @@ std::string heading_of(const KeySpec& key) {
     }
 }
 
-void append_not_built(const std::string& where, const std::vector<KeySpec>& keys, std::string& text) {
-    for (const KeySpec& key : keys) {
-        if (!key.built) text += fmt::format("- {}`{}`\n", where, key.name);
-    }
-}
-
-std::string not_built_section() {
-    std::string text =
-        "\n## Not built yet\n\nThese belong to the format; this version refuses them by name and never ignores "
-        "them:\n\n";
-    for (const KeySpec& key : detail::scene_spec().keys) {
-        if (key.content == nullptr) continue;
-        const std::string where = fmt::format("`{}` ", key.name);
-        append_not_built(where, key.content->keys, text);
-        for (const Variant& variant : key.content->variants) append_not_built(where, variant.keys, text);
-    }
-    return text + "- `particles` from .ply and .vtp files\n";
-}
+constexpr std::string_view kNotBuilt =
+    "\n## Not built yet\n\nThese belong to the format; this version refuses them by name and never ignores them:\n\n"
+    "- `particles` from .ply and .vtp files\n";
 
 }  // namespace
 
@@ -412,9 +395,10 @@ std::string scene_reference() {
     const ObjectSpec& motion = *find_key(detail::frame_spec(), nullptr, "motions")->content;
     text += object_section("rotation", detail::rotation_spec());
     text += object_section("motions of a frame (a list)", motion);
+    text += object_section("motion of a collider (a list)", detail::key_pose_spec());
     text += object_section("curve", detail::number_curve_spec());
     text += object_section("vector curve", detail::vector_curve_spec());
-    return text + kTables + not_built_section();
+    return text + kTables + std::string(kNotBuilt);
 }
 
 }  // namespace ricochet

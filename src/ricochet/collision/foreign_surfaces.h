@@ -1,0 +1,61 @@
+/// \file
+/// The surfaces near a path that stand in other frames than the path is given in: bodies that move, and the world as
+/// it is seen from a body.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/way_point.h"
+
+namespace ricochet {
+
+/// What queries in the frames of other bodies have found near one path, or near a piece of it. Each body sees the path
+/// as a cubic of its own; stored positions are what MovingPose::image() says.
+class ForeignSurfaces {
+public:
+    /// A body that is near.
+    struct Body {
+        BodyId id = kAtRest;
+        Path path;  ///< in its coordinates
+        NearSurfaces near;
+    };
+
+    /// start: of the path, stored. Bodies are added in ascending order of their queries.
+    ForeignSurfaces(const MovingView& view, const WayPoint& start) : view_(view), start_(start) {}
+
+    void add(Body body) { bodies_.push_back(std::move(body)); }
+
+    [[nodiscard]] const MovingView& view() const { return view_; }
+    [[nodiscard]] const WayPoint& start() const { return start_; }
+
+    /// As NearSurfaces says it of links.
+    [[nodiscard]] bool are_free(const WayPoint& p, const WayPoint& q) const;
+    [[nodiscard]] std::optional<SurfaceId> blocker(const WayPoint& p, const WayPoint& q) const;
+    [[nodiscard]] bool cover_chord(double from, double to) const;
+
+    // Of surfaces of other frames, as they are seen from the path's own.
+    [[nodiscard]] const CollisionWorld& world_of(SurfaceId surface) const {
+        return view_.bodies().world(view_.bodies().body_of(surface));
+    }
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] double signed_distance_from(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] int side_of_surface(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] double offset_at(const WayPoint& p) const;
+
+private:
+    [[nodiscard]] Vec3 image(const Body& body, const WayPoint& p) const {
+        return view_.image(body.id, p.world, p.time);
+    }
+    [[nodiscard]] Vec3 image_in(SurfaceId surface, const WayPoint& p) const {
+        return view_.image(view_.bodies().body_of(surface), p.world, p.time);
+    }
+
+    MovingView view_;
+    WayPoint start_;
+    std::vector<Body> bodies_;
+};
+
+}  // namespace ricochet

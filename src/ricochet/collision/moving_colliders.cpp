@@ -1,0 +1,137 @@
+#include "ricochet/collision/moving_colliders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Relative to the coordinates: more than the rounding of poses and sums.
+constexpr double kBoxRounding = 0x1p-40;
+
+bool meet(const Box3& a, const Box3& b) {
+    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+           a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
+Box3 everywhere() {
+    const Vec3 far{kInfinity, kInfinity, kInfinity};
+    return {-far, far};
+}
+
+Box3 placed(const MovingPose& pose, const Box3& box) {
+    const Vec3 center = pose.point(box.center());
+    const Vec3 half = 0.5 * box.size();
+    const AffineMap& map = pose.world_from_frame;
+    const Vec3 reach{dot(abs(map.row_x), half), dot(abs(map.row_y), half), dot(abs(map.row_z), half)};
+    return {center - reach, center + reach};
+}
+
+void grow(Box3& box, double by) {
+    const double rounding = kBoxRounding * std::max(max_abs(box.lower), max_abs(box.upper));
+    const double all = by + rounding;
+    box.lower -= Vec3{all, all, all};
+    box.upper += Vec3{all, all, all};
+}
+
+}  // namespace
+
+Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end) {
+    const double reach = length(max(abs(box.lower), abs(box.upper)));
+    Box3 all;
+    for (double from = begin; from < end || from == begin;) {
+        const double to = std::min(end, frames.next_key(frame, from));
+        const MotionBounds bounds = frames.bounds(frame, from, to);
+        Box3 part = placed(frames.at(frame, from), box);
+        part.include(placed(frames.at(frame, to), box));
+        // A point that is accelerated by at most a lies within a h^2 / 8 of the chord of its way, and within half the
+        // way that its speed allows of one of its ends.
+        const double h = to - from;
+        const double by_acceleration = (bounds.origin[2] + reach * bounds.rotation[2]) * h * h / 8.0;
+        const double by_speed = (bounds.origin[1] + reach * bounds.rotation[1]) * h / 2.0;
+        grow(part, std::min(by_acceleration, by_speed));
+        all.include(part);
+        if (!(to > from)) break;
+        from = to;
+    }
+    return all;
+}
+
+MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
+                                 std::shared_ptr<const FrameTree> frames, double chord_margin)
+    : at_rest_(at_rest), colliders_(colliders), frames_(std::move(frames)) {
+    for (const ColliderDescription& collider : colliders->all()) {
+        if (collider.frame.empty()) {
+            body_of_collider_.push_back(kAtRest);
+            continue;
+        }
+        const auto frame = frames_ ? frames_->find(collider.frame) : std::nullopt;
+        if (!frame) {
+            throw InputError("collider \"" + collider.name + "\": there is no frame '" + collider.frame + "'");
+        }
+        const auto known =
+            std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.frame == *frame; });
+        body_of_collider_.push_back(static_cast<BodyId>(known - bodies_.begin()));
+        if (known != bodies_.end()) continue;
+        bodies_.push_back(
+            {std::make_unique<CollisionWorld>(colliders, collider.frame, chord_margin), *frame, {}, {}, {}, {}});
+    }
+}
+
+void MovingColliders::prepare_radius(double radius) {
+    for (Body& body : bodies_) body.world->prepare_radius(radius);
+}
+
+void MovingColliders::set_culling(bool culls) {
+    for (Body& body : bodies_) body.world->set_culling(culls);
+}
+
+MovingPose MovingColliders::pose(BodyId body, double time) const {
+    if (body == kAtRest) return {};
+    const Body& moving = bodies_[body];
+    if (time == begin_ && begin_ < end_) return moving.at_begin;
+    if (time == end_ && begin_ < end_) return moving.at_end;
+    return frames_->at(moving.frame, time);
+}
+
+void MovingColliders::begin_step(double begin, double end) {
+    begin_ = begin;
+    end_ = end;
+    for (Body& body : bodies_) sweep(body);
+}
+
+void MovingColliders::sweep(Body& body) const {
+    body.at_begin = frames_->at(body.frame, begin_);
+    body.at_end = frames_->at(body.frame, end_);
+    body.bounds = frames_->bounds(body.frame, begin_, end_);
+    body.swept = body.world->planes().empty() ? swept_box(*frames_, body.frame, body.world->bounds(), begin_, end_)
+                                              : everywhere();
+}
+
+bool MovingColliders::stays_out(BodyId body, const Box3& box) const {
+    if (body != kAtRest) return !meet(bodies_[body].swept, box);
+    return at_rest_.planes().empty() && (at_rest_.empty() || !meet(at_rest_.bounds(), box));
+}
+
+void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& out) const {
+    if (except != kAtRest && !stays_out(kAtRest, box)) out.push_back(kAtRest);
+    for (BodyId body = 0; body < bodies_.size(); ++body) {
+        if (body != except && meet(bodies_[body].swept, box)) out.push_back(body);
+    }
+}
+
+const MotionBounds& MovingColliders::bounds(BodyId body) const {
+    static const MotionBounds at_rest{};
+    return body == kAtRest ? at_rest : bodies_[body].bounds;
+}
+
+double MovingColliders::next_key(BodyId body, double time) const {
+    return body == kAtRest ? kInfinity : frames_->next_key(bodies_[body].frame, time);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,89 @@
+/// \file
+/// The colliders of a scene that move: each frame's colliders as they stand in its coordinates, and how it moves.
+///
+/// In its own coordinates a collider never moves, so every predicate and hierarchy works there; what changes is the way
+/// of a particle, y(t) = M(t)^-1 x(t). Where a stored position x at a time t is in a frame is MovingPose::image() by
+/// definition: no crossing is lost between two coordinates.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ricochet/collision/collision_world.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/core/frame_tree.h"
+
+namespace ricochet {
+
+/// Number of a body: the colliders that stand in one moving frame.
+using BodyId = std::uint32_t;
+/// The colliders that stand in the world.
+inline constexpr BodyId kAtRest = 0xFFFFFFFFU;
+
+/// All bodies of a scene. Queries are safe from any number of threads, but not beside begin_step() and
+/// prepare_radius().
+class MovingColliders {
+public:
+    /// `at_rest`: the world of the same list. frames: has all frames that the list names; both must outlive it.
+    /// Throws InputError as CollisionWorld does, and for a frame that does not exist.
+    MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
+                    std::shared_ptr<const FrameTree> frames, double chord_margin);
+
+    [[nodiscard]] const std::shared_ptr<const FrameTree>& frames() const { return frames_; }
+    [[nodiscard]] std::size_t size() const { return bodies_.size(); }
+    [[nodiscard]] bool empty() const { return bodies_.empty(); }
+    /// The colliders of a body in its coordinates, or those at rest.
+    [[nodiscard]] const CollisionWorld& world(BodyId body) const {
+        return body == kAtRest ? at_rest_ : *bodies_[body].world;
+    }
+    /// The body that a surface belongs to.
+    [[nodiscard]] BodyId body_of(SurfaceId surface) const {
+        return body_of_collider_[colliders_->collider_of(surface)];
+    }
+    [[nodiscard]] BodyId body_of_collider(std::size_t collider) const { return body_of_collider_[collider]; }
+    /// Where a body is at a time, s, and how it moves.
+    [[nodiscard]] MovingPose pose(BodyId body, double time) const;
+    /// As CollisionWorld::prepare_radius().
+    void prepare_radius(double radius);
+    void set_culling(bool culls);
+
+    /// What follows is asked within [begin, end], s.
+    void begin_step(double begin, double end);
+    /// Appends the bodies that come into the box during the step, kAtRest first where its colliders do, in their order;
+    /// without `except`.
+    void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
+    /// True where a body certainly stays out of the box during the step.
+    [[nodiscard]] bool stays_out(BodyId body, const Box3& box) const;
+    /// Bounds of a body's motion during the step.
+    [[nodiscard]] const MotionBounds& bounds(BodyId body) const;
+    /// As FrameTree::next_key(); infinite for kAtRest.
+    [[nodiscard]] double next_key(BodyId body, double time) const;
+
+private:
+    struct Body {
+        std::unique_ptr<CollisionWorld> world;
+        std::size_t frame = 0;
+        Box3 swept;  ///< where it comes in the step; everywhere for planes
+        MotionBounds bounds;
+        MovingPose at_begin;
+        MovingPose at_end;
+    };
+
+    void sweep(Body& body) const;
+
+    const CollisionWorld& at_rest_;
+    std::shared_ptr<ColliderList> colliders_;
+    std::shared_ptr<const FrameTree> frames_;
+    std::vector<Body> bodies_;
+    std::vector<BodyId> body_of_collider_;
+    double begin_ = 0.0;
+    double end_ = 0.0;
+};
+
+/// The box that holds a body's box, in its own coordinates, wherever it is within [begin, end], s, rounded outward:
+/// about straight ways between its places there and at keys, by as much as its motion can lie beside them.
+[[nodiscard]] Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end);
+
+}  // namespace ricochet

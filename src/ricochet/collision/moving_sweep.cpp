@@ -1,0 +1,274 @@
+#include "ricochet/collision/moving_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+/// Pieces of one path between two keys; beyond that they are as long as this many leave them.
+constexpr double kMostPieces = 4096.0;
+
+/// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
+constexpr int kNewtonSteps = 4;
+
+/// The piece of a path between two times, from a start that may differ by rounding.
+Path piece_of(const Path& path, double from, double to, const Vec3& start) {
+    Path piece = path;
+    piece.c[0] = start;
+    piece.c[1] = path.velocity(from);
+    piece.c[2] = path.c[2] + (3.0 * from) * path.c[3];
+    piece.duration = to - from;
+    piece.end = path.position(to);
+    return piece;
+}
+
+Box3 box_of(const Path& path, double margin) {
+    Box3 box;
+    for (const Vec3& point : path.control_points()) box.include(point);
+    box.include(path.end);
+    const Vec3 by{margin, margin, margin};
+    return {box.lower - by, box.upper + by};
+}
+
+double binomial(int n, int k) {
+    constexpr std::array<std::array<double, 5>, 5> kTable{
+        {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}}};
+    return kTable[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
+}
+
+/// Bounds of the derivatives of a path.
+DerivativeBounds bounds_of(const Path& path) {
+    const double t = path.duration;
+    const double second = length(path.c[2]);
+    const double third = length(path.c[3]);
+    DerivativeBounds bounds{};
+    bounds[3] = 6.0 * third;
+    bounds[2] = 2.0 * second + 6.0 * t * third;
+    bounds[1] = length(path.c[1]) + t * (2.0 * second + 3.0 * t * third);
+    bounds[0] = length(path.c[0]) + t * bounds[1];
+    return bounds;
+}
+
+}  // namespace
+
+MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
+                         const WayPoint& start, ContactScratch& scratch)
+    : view_(view), geometry_(geometry), query_(query), start_(start), scratch_(scratch) {
+    find_near();
+    cut();
+}
+
+/// By the box of the path in the world; seen from a body everything may be near.
+void MovingSweep::find_near() {
+    const MovingColliders& bodies = view_.bodies();
+    const double largest = largest_coordinate(query_.path);
+    Box3 box = box_of(query_.path, query_.radius + kCandidateSlack * (largest + query_.radius));
+    if (view_.home() != kAtRest) {
+        const double from_origin = largest + query_.radius;
+        const Vec3 reach{from_origin, from_origin, from_origin};
+        box = {};
+        // Between the ends the frame moves by no more than its speed allows.
+        const MotionBounds& bounds = bodies.bounds(view_.home());
+        const double way = query_.path.duration *
+                           (bounds.origin[1] + bounds.rotation[1] * 2.0 * from_origin + bounds_of(query_.path)[1]);
+        const double margin = way + query_.radius + kCandidateSlack * (max_abs(start_.world) + query_.radius);
+        const Vec3 by{margin, margin, margin};
+        box.include(start_.world - by);
+        box.include(start_.world + by);
+    }
+    bodies.near(box, view_.home(), near_);
+}
+
+DerivativeBounds MovingSweep::world_bounds() const {
+    const DerivativeBounds own = bounds_of(query_.path);
+    const MotionBounds& frame = view_.bodies().bounds(view_.home());
+    DerivativeBounds bounds{};
+    for (int n = 0; n < 5; ++n) {
+        for (int k = 0; k <= n; ++k) {
+            bounds[static_cast<std::size_t>(n)] +=
+                binomial(n, k) * frame.rotation[static_cast<std::size_t>(k)] * own[static_cast<std::size_t>(n - k)];
+        }
+        bounds[static_cast<std::size_t>(n)] += frame.origin[static_cast<std::size_t>(n)];
+    }
+    return bounds;
+}
+
+/// A bound of that of the path in the coordinates of a body, m/s^4.
+double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world) const {
+    const MotionBounds& frame = view_.bodies().bounds(body);
+    DerivativeBounds relative = world;
+    for (std::size_t n = 1; n < relative.size(); ++n) relative[n] += frame.origin[n];
+    const Vec3 origin = view_.bodies().pose(body, view_.clock().begin).world_from_frame.translation;
+    relative[0] = length(start_.world - origin) + relative[1] * query_.path.duration;
+    double bound = 0.0;
+    for (int k = 0; k < 5; ++k) {
+        bound +=
+            binomial(4, k) * frame.rotation[static_cast<std::size_t>(k)] * relative[static_cast<std::size_t>(4 - k)];
+    }
+    return bound;
+}
+
+/// m, by which a body may see a piece of the path beside where it is.
+double MovingSweep::tolerance_of(BodyId body) const {
+    const CollisionWorld& world = view_.bodies().world(body);
+    const Vec3 at = view_.image(body, start_.world, 0.0);
+    const double size = std::max(max_abs(at), query_.radius);
+    double tolerance = kMovingPathTolerance * size;
+    if (!world.triangles().empty()) {
+        const TriangleBvh& bvh = world.bvh_for(query_.radius);
+        tolerance = std::min(tolerance, (bvh.margin() - query_.radius) / 64.0);
+    }
+    return std::max(tolerance, kSmallestContactOffset);
+}
+
+/// At the keys of all bodies that are near, and evenly between them.
+void MovingSweep::cut() {
+    const double duration = query_.path.duration;
+    const PathClock& clock = view_.clock();
+    std::vector<double> keys{0.0};
+    const auto add_keys = [&](BodyId body) {
+        for (double key = view_.bodies().next_key(body, clock.begin); key < clock.end;
+             key = view_.bodies().next_key(body, key)) {
+            const double at = key - clock.base - clock.offset;
+            if (at > 0.0 && at < duration) keys.push_back(at);
+        }
+    };
+    add_keys(view_.home());
+    for (const BodyId body : near_) add_keys(body);
+    keys.push_back(duration);
+    std::sort(keys.begin(), keys.end());
+    double rate = 0.0;  // pieces a second
+    const DerivativeBounds world = world_bounds();
+    for (const BodyId body : near_) {
+        rate = std::max(rate, std::pow(fourth_derivative(body, world) / (384.0 * tolerance_of(body)), 0.25));
+    }
+    cuts_.assign(1, 0.0);
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+        const double span = keys[k] - keys[k - 1];
+        if (!(span > 0.0)) continue;
+        const double count = std::clamp(std::ceil(span * rate), 1.0, kMostPieces);
+        for (double i = 1.0; i < count; ++i) cuts_.push_back(keys[k - 1] + span * (i / count));
+        cuts_.push_back(keys[k]);
+    }
+    if (cuts_.size() == 1) cuts_.push_back(duration);
+}
+
+/// The piece as a body sees it.
+Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& start) const {
+    const WayPoint end = view.point_at(piece_.end, piece_.duration);
+    const Vec3 from = view.image(body, start.world, 0.0);
+    const Vec3 to = view.image(body, end.world, piece_.duration);
+    const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
+    if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
+    const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration));
+    return hermite_path(from, leaving, to, arriving, piece_.duration);
+}
+
+/// Makes a contact with a body the first one where it is, or a part of it.
+void MovingSweep::take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const {
+    Contact contact = found;
+    if (body != view.home()) {
+        find_true_time(contact, body, view);
+        for (int k = 0; k < contact.count; ++k) {
+            Vec3& normal = contact.surfaces[static_cast<std::size_t>(k)].normal;
+            normal = view.direction_from(body, normal, contact.time);
+        }
+    }
+    if (!first) {
+        first = contact;
+        return;
+    }
+    if (contact.time < first->time) std::swap(contact, *first);
+    if (contact.time > first->time + kSimultaneousUlps * ulp(first->time)) return;
+    for (const ContactSurface& surface : contact.all()) {
+        if (first->count == Contact::kMostSurfaces) break;
+        first->surfaces[static_cast<std::size_t>(first->count++)] = surface;
+    }
+    const auto surfaces = std::span(first->surfaces).first(static_cast<std::size_t>(first->count));
+    std::sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
+}
+
+/// By Newton's method on the distance along the true way, from the time on the cubic.
+void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView& view) const {
+    const CollisionWorld& world = view.bodies().world(body);
+    const SurfaceId surface = contact.first().surface;
+    const double most = 4.0 * tolerance_of(body);
+    double time = contact.time;
+    for (int k = 0; k < kNewtonSteps; ++k) {
+        const WayPoint at = view.point_at(piece_.position(time), time);
+        const Vec3 image = view.image(body, at.world, time);
+        const Vec3 velocity = view.velocity_in(body, at, piece_.velocity(time));
+        double height = 0.0;
+        double rate = 0.0;
+        if (query_.radius > 0.0) {
+            const CollisionWorld::Nearest nearest = world.nearest(surface, image);
+            height = nearest.distance - query_.radius;
+            rate = dot(velocity, nearest.normal);
+        } else {
+            height = world.signed_distance_from(surface, image);
+            rate = dot(velocity, world.unit_normal_of(surface, image));
+        }
+        if (rate == 0.0 || std::fabs(height) > most) return;
+        const double next = std::clamp(time - height / rate, 0.0, piece_.duration);
+        if (std::fabs(next - contact.time) * std::fabs(rate) > most) return;
+        const bool is_there = std::fabs(next - time) <= ulp(time);
+        time = next;
+        if (is_there) break;
+    }
+    contact.time = time;
+    const Vec3 image = view.image(body, view.point_at(piece_.position(time), time).world, time);
+    for (int k = 0; k < contact.count; ++k) {
+        ContactSurface& touched = contact.surfaces[static_cast<std::size_t>(k)];
+        const Vec3 normal = query_.radius > 0.0 ? world.nearest(touched.surface, image).normal
+                                                : world.unit_normal_of(touched.surface, image);
+        touched.normal = dot(normal, touched.normal) < 0.0 ? -normal : normal;
+    }
+}
+
+ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) {
+    const double from = cuts_[piece];
+    const double to = cuts_[piece + 1];
+    piece_ = piece_of(query_.path, from, to, start.position);
+    clock_ = view_.clock().piece(from, to);
+    const MovingView view(view_.bodies(), view_.home(), clock_);
+    const WayPoint first_point{start.position, 0.0, start.world};
+    foreign_.emplace(view, first_point);
+    std::optional<Contact> first;
+    double beside = query_.beside;
+    for (const BodyId body : near_) beside = std::max(beside, 4.0 * tolerance_of(body));
+    ContactQueryResult own =
+        find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
+    if (own.contact) take(*own.contact, view.home(), view, first);
+    while (scratch_.foreign.size() < near_.size()) scratch_.foreign.push_back(std::make_unique<ContactScratch>());
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        ContactScratch& scratch = *scratch_.foreign[k];
+        const SurfaceGeometry geometry(view.bodies().world(near_[k]), scratch.plane_cache);
+        const Path path = path_in(near_[k], view, first_point);
+        const ContactQueryResult found =
+            find_first_contact(geometry, {path, query_.radius, nullptr, {}, {}, beside}, scratch);
+        if (found.contact) take(*found.contact, near_[k], view, first);
+        foreign_->add({near_[k], path, found.near});
+    }
+    own.contact = first;
+    own.near.join(*foreign_);
+    return own;
+}
+
+std::optional<Contact> MovingSweep::first_contact() {
+    for (std::size_t k = 0; k < pieces(); ++k) {
+        const MovingView view(view_.bodies(), view_.home(), view_.clock());
+        const WayPoint start = k == 0 ? start_ : view.point_at(query_.path.position(cuts_[k]), cuts_[k]);
+        std::optional<Contact> contact = sweep(k, start).contact;
+        if (!contact) continue;
+        contact->time += cuts_[k];
+        return contact;
+    }
+    return std::nullopt;
+}
+
+}  // namespace ricochet

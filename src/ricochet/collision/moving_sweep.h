@@ -1,0 +1,64 @@
+/// \file
+/// The first contact of a path among colliders that move: piece by piece, in the frame of each body that comes near.
+///
+/// In the coordinates of a body that turns the path is no polynomial. It is cut into pieces on which the cubic through
+/// both ends, with the velocities there, is within kMovingPathTolerance of it (h^4 / 384 times a bound of the fourth
+/// derivative; E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6). Those
+/// are swept as all paths are; the time of an impact is then found again on the true way. What is left of the
+/// approximation moves a graze; it lets nothing through, since every link is certified for stored positions.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/foreign_surfaces.h"
+#include "ricochet/collision/way_point.h"
+
+namespace ricochet {
+
+/// The pieces of one path. What it is given must outlive it; scratch memory of one thread.
+class MovingSweep {
+public:
+    /// query: of a path in the frame of view.home(); geometry: of the colliders there. start: of the path, stored.
+    MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
+                const WayPoint& start, ContactScratch& scratch);
+
+    /// How many pieces there are; each is swept by itself.
+    [[nodiscard]] std::size_t pieces() const { return cuts_.size() - 1; }
+    /// When a piece begins, s along the path; of the number after the last: its duration.
+    [[nodiscard]] double begin_of(std::size_t piece) const { return cuts_[piece]; }
+
+    /// Sweeps a piece. start: where it begins, stored. The result is in times of the piece, and is valid until the next
+    /// call; path() is then the piece in the frame of the query.
+    [[nodiscard]] ContactQueryResult sweep(std::size_t piece, const WayPoint& start);
+    [[nodiscard]] const Path& path() const { return piece_; }
+    [[nodiscard]] const PathClock& clock() const { return clock_; }
+
+    /// The first contact of the whole path, in its times, of one that goes on as it is.
+    [[nodiscard]] std::optional<Contact> first_contact();
+
+private:
+    void find_near();
+    void cut();
+    [[nodiscard]] double fourth_derivative(BodyId body, const DerivativeBounds& world) const;
+    [[nodiscard]] double tolerance_of(BodyId body) const;
+    [[nodiscard]] DerivativeBounds world_bounds() const;
+    [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const WayPoint& start) const;
+    void take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const;
+    void find_true_time(Contact& contact, BodyId body, const MovingView& view) const;
+
+    MovingView view_;
+    const SurfaceGeometry& geometry_;
+    const ContactQuery& query_;
+    WayPoint start_;
+    ContactScratch& scratch_;
+    std::vector<BodyId> near_;
+    std::vector<double> cuts_;
+    std::optional<ForeignSurfaces> foreign_;
+    Path piece_;
+    PathClock clock_;
+};
+
+}  // namespace ricochet

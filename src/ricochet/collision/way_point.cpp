@@ -1,0 +1,41 @@
+#include "ricochet/collision/way_point.h"
+
+namespace ricochet {
+namespace {
+
+/// Velocity in the world, with which a point at rest in the frame of a pose moves.
+Vec3 carried(const MovingPose& pose, const Vec3& world) {
+    return pose.velocity + cross(pose.angular_velocity, world - pose.world_from_frame.translation);
+}
+
+}  // namespace
+
+Vec3 MovingView::direction_from(BodyId body, const Vec3& d, double s) const {
+    if (body == home_) return d;
+    const double time = clock_.at(s);
+    const Vec3 world = body == kAtRest ? d : bodies_->pose(body, time).world_from_frame.direction(d);
+    return home_ == kAtRest ? world : bodies_->pose(home_, time).direction_image(world);
+}
+
+Vec3 MovingView::velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity) const {
+    const double time = clock_.at(at.time);
+    Vec3 world = velocity;
+    if (home_ != kAtRest) {
+        const MovingPose pose = bodies_->pose(home_, time);
+        world = pose.world_from_frame.direction(velocity) + carried(pose, at.world);
+    }
+    if (body == kAtRest) return world;
+    const MovingPose pose = bodies_->pose(body, time);
+    return pose.direction_image(world - carried(pose, at.world));
+}
+
+Vec3 MovingView::velocity_of(BodyId body, const WayPoint& at) const {
+    if (body == home_) return {};
+    const double time = clock_.at(at.time);
+    const Vec3 world = body == kAtRest ? Vec3{} : carried(bodies_->pose(body, time), at.world);
+    if (home_ == kAtRest) return world;
+    const MovingPose pose = bodies_->pose(home_, time);
+    return pose.direction_image(world - carried(pose, at.world));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,157 @@
+// A particle among colliders that move: its way in their frames, and what it does where they leave it no room.
+#include <algorithm>
+
+#include "ricochet/collision/obstacles.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/particle_step.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings of the way with a body until each link is free in the frames of all others.
+constexpr int kCarryDepth = 16;
+
+}  // namespace
+
+MovingView ParticleStep::view_of(const Path& path) const {
+    const double now = particle_.state.time;
+    const double end =
+        path.duration >= remaining_ ? particle_.step_end : std::min(now + path.duration, particle_.step_end);
+    return {*rules_->bodies, home_.body(), {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration}};
+}
+
+std::optional<Contact> ParticleStep::first_contact_among_bodies(const ContactQuery& query) {
+    const MovingView view = view_of(query.path);
+    return MovingSweep(view, geometry_, query, here(view), scratch_.contacts).first_contact();
+}
+
+/// Piece by piece, up to a contact.
+ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query) {
+    const MovingView view = view_of(query.path);
+    MovingSweep sweep(view, geometry_, query, here(view), scratch_.contacts);
+    Travel travel;
+    for (std::size_t k = 0; k < sweep.pieces() && !travel.contact; ++k) {
+        const WayPoint start{view.stored(stored_.position, sweep.begin_of(k))};
+        ContactQueryResult found = sweep.sweep(k, start);
+        const Travel part = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
+        travel.contact = part.contact;
+        const bool has_gone = part.elapsed >= sweep.path().duration;
+        travel.elapsed = has_gone ? sweep.begin_of(k + 1) : sweep.begin_of(k) + part.elapsed;
+        if (travel.contact) travel.contact->time = travel.elapsed;
+        if (!has_gone) break;
+    }
+    pass(travel.elapsed);
+    return travel;
+}
+
+void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* contact) {
+    const HomeFrame before = home_;
+    home_.set(body);
+    rules_ = &rules;
+    const RecordedMotion motion = home_.in_frame(
+        before.in_world({state().position, state().velocity, particle_.spin}, state().time), state().time);
+    state().position = home_.bodies().pose(body, stored_.time).image(stored_.position);
+    state().velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache);
+    start_ = state().position;
+    first_segment_ = scratch_.segments.size();
+    turn_contact(contact, before, home_);
+}
+
+void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
+    const HomeFrame before = home_;
+    const RecordedMotion motion = before.in_world({state().position, state().velocity, particle_.spin}, state().time);
+    home_.set(kAtRest);
+    scratch_.driven = true;  // to and fro between frames it is rounded
+    rules_ = &rules;
+    state().position = stored_.position;
+    state().velocity = motion.velocity;
+    particle_.spin = motion.spin;
+    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache);
+    start_ = state().position;
+    first_segment_ = scratch_.segments.size();
+    turn_contact(contact, before, home_);
+}
+
+void ParticleStep::turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const {
+    for (int k = 0; contact != nullptr && k < contact->count; ++k) {
+        Vec3& normal = contact->surfaces[static_cast<std::size_t>(k)].normal;
+        const double time = particle_.state.time;
+        normal = to.direction_in_frame(from.direction_in_world(normal, time), time);
+    }
+}
+
+/// Exact, in the frames of all colliders.
+bool ParticleStep::is_link_free(const Stored& from, const Stored& to) const {
+    const MovingColliders& bodies = *rules_->bodies;
+    const double radius = particle_.state.radius;
+    const auto is_free_in = [&](BodyId body) {
+        const CollisionWorld& world = bodies.world(body);
+        if (world.empty()) return true;
+        const Vec3 p = body == kAtRest ? from.position : bodies.pose(body, from.time).image(from.position);
+        const Vec3 q = body == kAtRest ? to.position : bodies.pose(body, to.time).image(to.position);
+        return !Obstacles(world, p, radius).block(q);
+    };
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        if (!is_free_in(body)) return false;
+    }
+    return is_free_in(kAtRest);
+}
+
+/// Goes with a frame until a time, as far as links are free. image: where it is in that frame.
+bool ParticleStep::carry(BodyId frame, const Vec3& image, double until, int depth) {
+    const MovingPose pose = rules_->bodies->pose(frame, until);
+    const Stored next{frame == kAtRest ? stored_.position : flush_tiny(pose.point(image)), until};
+    if (is_link_free(stored_, next)) {
+        if (scratch_.record_segments) {
+            scratch_.segments.push_back({stored_.position, next.position, stored_.time, stored_.time, until});
+        }
+        stored_ = next;
+        return true;
+    }
+    const double middle = 0.5 * (stored_.time + until);
+    if (depth == 0 || !(middle > stored_.time) || !(middle < until)) return false;
+    return carry(frame, image, middle, depth - 1) && carry(frame, image, until, depth - 1);
+}
+
+bool ParticleStep::carry_on(BodyId frame, double until) {
+    const Vec3 image =
+        frame == kAtRest ? stored_.position : rules_->bodies->pose(frame, stored_.time).image(stored_.position);
+    return carry(frame, image, until, kCarryDepth);
+}
+
+/// Stays until a time: where it is, or carried along by one of the bodies, by turns. False where none of that is free:
+/// its clock stands still then.
+bool ParticleStep::wait_out(double until) {
+    constexpr int kMostTurns = 8;
+    scratch_.driven = true;
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+        const double before = stored_.time;
+        if (carry_on(home_.body(), until)) break;
+        if (home_.is_moving() && carry_on(kAtRest, until)) break;
+        for (BodyId body = 0; body < rules_->bodies->size() && stored_.time < until; ++body) {
+            if (body != home_.body()) static_cast<void>(carry_on(body, until));
+        }
+        if (stored_.time >= until || stored_.time == before) break;
+    }
+    state().position =
+        home_.is_moving() ? rules_->bodies->pose(home_.body(), stored_.time).image(stored_.position) : stored_.position;
+    return stored_.time >= until;
+}
+
+bool ParticleStep::catch_up() {
+    if (!(stored_.time < particle_.state.time)) return true;
+    if (wait_out(particle_.state.time)) return true;
+    outcome_.unsimulated_time = remaining_;
+    outcome_.squeezed = 1;
+    remaining_ = 0.0;
+    return false;
+}
+
+void ParticleStep::store_position() {
+    particle_.state.position = stored_.position;
+    particle_.stored_time = stored_.time;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,347 @@
+// Do particles hit colliders that move at the right time, with the right speed, and does none get through?
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr long double kPiLong = 3.14159265358979323846L;
+
+FrameDescription frame_of(const std::string& name, std::vector<FrameMotion> motions, const Vec3& at = {}) {
+    FrameDescription frame;
+    frame.name = name;
+    frame.translation = at;
+    frame.motions = std::move(motions);
+    return frame;
+}
+
+KeyedTranslation steady(const Vec3& velocity, double until = 1000.0) {
+    return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
+}
+
+SimulationSetup setup_of(std::vector<FrameDescription> frames, std::vector<ColliderDescription> colliders,
+                         double time_step, double duration) {
+    SimulationSetup setup;
+    setup.options.time_step = time_step;
+    setup.options.duration = duration;
+    setup.options.record_contacts = true;
+    setup.options.verify = true;
+    setup.materials = {{"", 1.0, 0.0}};
+    setup.frames = std::make_shared<const FrameTree>(std::move(frames));
+    setup.colliders = std::move(colliders);
+    return setup;
+}
+
+Particle particle_at(const Vec3& position, const Vec3& velocity, double radius = 0.0, const Vec3& spin = {}) {
+    Particle particle;
+    particle.position = position;
+    particle.velocity = velocity;
+    particle.radius = radius;
+    particle.spin = spin;
+    return particle;
+}
+
+std::vector<ContactRecord> all_contacts(Simulation& simulation) {
+    std::vector<ContactRecord> all;
+    while (!simulation.finished()) {
+        simulation.step();
+        const auto& records = simulation.contact_records();
+        all.insert(all.end(), records.begin(), records.end());
+    }
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    return all;
+}
+
+// Between a wall at rest at 0 and one that comes from 1 m at 0.1 m/s: t of each impact from the one before.
+TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
+    for (const double radius : {0.0, 0.01}) {
+        auto setup = setup_of(
+            {frame_of("piston", {steady({-0.1, 0, 0})}, {1, 0, 0})},
+            {{"wall", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0}, {"piston", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0, "piston"}},
+            0.07, 5.0);
+        setup.particles = {particle_at({0.5, 0.1, 0.2}, {1.0, 0.3, 0}, radius)};
+        Simulation simulation(std::move(setup));
+        double speed = 1.0;
+        double x = 0.5;
+        double t = 0.0;
+        bool towards = true;
+        int hits = 0;
+        for (const ContactRecord& record : all_contacts(simulation)) {
+            const double to_go = towards ? 1.0 - radius - 0.1 * t - x : x - radius;
+            t += to_go / (towards ? speed + 0.1 : speed);
+            x = towards ? 1.0 - radius - 0.1 * t : radius;
+            if (towards) speed += 0.2;
+            ++hits;
+            EXPECT_NEAR(record.time, t, 1e-12 * hits);
+            EXPECT_NEAR(record.velocity_after.x, towards ? -speed : speed, 1e-12 * hits);
+            EXPECT_NEAR(record.surface_velocity.x, towards ? -0.1 : 0.0, 1e-15);
+            towards = !towards;
+        }
+        EXPECT_GT(hits, 8);
+    }
+}
+
+// A cloud in a cube that turns about a skew axis: nothing comes out, and the verifier, with its own arithmetic, agrees.
+TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
+    for (const double radius : {0.0, 0.02}) {
+        auto setup = setup_of({frame_of("spin", {Spin{{1, 2, 3}, 400.0}})},
+                              {{"box", CuboidShape{{1, 1, 1}, {}}, 0, "spin"}}, 0.02, 4.0);
+        RandomSequence random(7, 1, 0);
+        for (int k = 0; k < 200; ++k) {
+            const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+            const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+            setup.particles.push_back(particle_at(0.7 * p, 4.0 * v, radius));
+        }
+        Simulation simulation(std::move(setup));
+        const auto contacts = all_contacts(simulation);
+        EXPECT_GT(contacts.size(), 1000U);
+        const MovingPose pose = simulation.collider_pose(0, simulation.time());
+        for (const Vec3& p : simulation.particles().position) {
+            EXPECT_LT(max_abs(pose.image(p)), 0.5 - radius + 1e-9);
+        }
+        EXPECT_EQ(simulation.statistics().squeezed, 0U);
+    }
+}
+
+// The same cloud, as it is seen from a frame that moves steadily: the same impacts.
+TEST(Impacts, AreTheSameSeenFromAFrameThatMovesSteadily) {
+    const Vec3 drift{1.5, -0.7, 0.4};
+    for (const double radius : {0.0, 0.05}) {
+        std::vector<std::vector<ContactRecord>> contacts;
+        for (const bool moves : {false, true}) {
+            const std::string frame = moves ? "train" : "";
+            auto setup = setup_of({frame_of("train", {steady(drift)})},
+                                  {{"room", CuboidShape{{3, 3, 3}, {}}, 0, frame},
+                                   {"ball", BallShape{0.4, {{0.2, 0.1, 0}}}, 0, frame},
+                                   {"post", CylinderShape{0.3, 1.0, {{-0.7, -0.8, 0.1}, {1, 1, 0}, 30.0}}, 0, frame}},
+                                  0.05, 3.0);
+            RandomSequence random(3, 1, 0);
+            for (int k = 0; k < 40; ++k) {
+                const Vec3 p{random.uniform(), random.uniform(), random.uniform()};
+                const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+                const Vec3 from = Vec3{0.7, 0.6, 0.55} + 0.6 * p;
+                setup.particles.push_back(particle_at(from, 2.0 * v + (moves ? drift : Vec3{}), radius));
+            }
+            Simulation simulation(std::move(setup));
+            contacts.push_back(all_contacts(simulation));
+        }
+        ASSERT_EQ(contacts[0].size(), contacts[1].size());
+        EXPECT_GT(contacts[0].size(), 50U);
+        for (std::size_t k = 0; k < contacts[0].size(); ++k) {
+            const ContactRecord& a = contacts[0][k];
+            const ContactRecord& b = contacts[1][k];
+            ASSERT_EQ(a.particle, b.particle);
+            EXPECT_NEAR(a.time, b.time, 1e-11);
+            EXPECT_LT(length(b.position - a.time * drift - a.position), 1e-11);
+            EXPECT_LT(length(b.velocity_after - drift - a.velocity_after), 1e-11);
+            EXPECT_LT(length(b.normal - a.normal), 1e-10);
+        }
+    }
+}
+
+// Turning about its own axis shows nowhere, without friction.
+TEST(ABallAndACylinder, ThatTurnAboutTheirOwnAxisAreNoOthersThanAtRest) {
+    for (const double radius : {0.0, 0.05}) {
+        std::vector<std::vector<ContactRecord>> contacts;
+        for (const bool turns : {false, true}) {
+            auto setup = setup_of({frame_of("ball", {Spin{{1, 2, -1}, 500.0}}, {0.5, 0, 0}),
+                                   frame_of("roller", {Spin{{0, 0, 1}, -300.0}}, {-0.6, 0, 0})},
+                                  {{"shell", BallShape{2.0, {}}, 0}}, 0.05, 4.0);
+            setup.colliders.push_back(
+                {"ball", BallShape{0.4, {turns ? Vec3{} : Vec3{0.5, 0, 0}}}, 0, turns ? "ball" : ""});
+            setup.colliders.push_back(
+                {"roller", CylinderShape{0.3, 1.0, {turns ? Vec3{} : Vec3{-0.6, 0, 0}}}, 0, turns ? "roller" : ""});
+            setup.forces.push_back(make_gravity({0, 0, -1}));
+            RandomSequence random(3, 1, 0);
+            for (int k = 0; k < 40; ++k) {
+                const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+                setup.particles.push_back(particle_at({0, 0.5 + random.uniform(), random.uniform()}, 3.0 * v, radius));
+            }
+            Simulation simulation(std::move(setup));
+            contacts.push_back(all_contacts(simulation));
+        }
+        EXPECT_GT(contacts[0].size(), 100U);
+        // Chaos lets rounding grow with every impact on the convex walls: the first ten of each particle.
+        std::vector<int> seen(40, 0);
+        std::size_t other = 0;
+        for (const ContactRecord& a : contacts[0]) {
+            if (++seen[a.particle] > 6) continue;
+            while (other < contacts[1].size() && contacts[1][other].time < a.time - 1e-6) ++other;
+            const auto same = std::find_if(
+                contacts[1].begin() + static_cast<std::ptrdiff_t>(other), contacts[1].end(),
+                [&](const ContactRecord& b) { return a.particle == b.particle && std::fabs(a.time - b.time) < 1e-6; });
+            ASSERT_NE(same, contacts[1].end()) << a.particle << " " << a.time;
+            const double bound = 1e-12 * std::pow(10.0, seen[a.particle] - 1);
+            EXPECT_NEAR(a.time, same->time, bound) << seen[a.particle];
+            EXPECT_LT(length(a.velocity_after - same->velocity_after), 10.0 * bound);
+        }
+    }
+}
+
+// Seen from the frame that turns there are Coriolis and centrifugal forces, and walls at rest.
+TEST(Walls, ThatTurnAreWallsAtRestWithTheForcesOfTheirFrame) {
+    const Vec3 turning{0.3, -0.5, 1.2};  // rad/s
+    const double rate = length(turning);
+    for (const double radius : {0.0, 0.04}) {
+        std::vector<std::vector<ContactRecord>> contacts;
+        for (const bool turns : {true, false}) {
+            auto setup = setup_of({frame_of("turning", {Spin{turning, rate * 180.0 / kPi}})},
+                                  {{"box", CuboidShape{{1.1, 0.9, 1.0}, {}}, 0, turns ? "turning" : ""}}, 0.05, 6.0);
+            setup.options.integrator = {IntegratorKind::dormand_prince, {1e-14, 1e-14}};
+            setup.options.verify = turns;
+            if (!turns) {
+                setup.forces.push_back(make_acceleration([turning](const ForceInput& input) {
+                    return -2.0 * cross(turning, input.velocity) - cross(turning, cross(turning, input.position));
+                }));
+            }
+            RandomSequence random(11, 1, 0);
+            for (int k = 0; k < 10; ++k) {
+                const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+                const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+                // At 0 s both frames are the same.
+                setup.particles.push_back(
+                    particle_at(0.6 * p, 3.0 * v - (turns ? Vec3{} : cross(turning, 0.6 * p)), radius));
+            }
+            Simulation simulation(std::move(setup));
+            contacts.push_back(all_contacts(simulation));
+        }
+        std::vector<int> seen(10, 0);
+        for (const ContactRecord& a : contacts[0]) {
+            const int number = seen[a.particle]++;
+            if (number >= 10) continue;
+            int other = 0;
+            for (const ContactRecord& b : contacts[1]) {
+                if (b.particle != a.particle || other++ != number) continue;
+                EXPECT_NEAR(a.time, b.time, 1e-9) << a.particle << " " << number;
+                EXPECT_NEAR(dot(a.velocity_after - a.surface_velocity, a.normal), dot(b.velocity_after, b.normal),
+                            1e-9);
+                break;
+            }
+        }
+        EXPECT_GT(*std::min_element(seen.begin(), seen.end()), 5);
+    }
+}
+
+/// The first time at which a point on a straight way leaves a cube that turns about an axis through the origin: the
+/// true motion, looked at in small steps and bracketed, in long double.
+long double first_exit(const Vec3& from, const Vec3& velocity, const Vec3& axis, long double rate, double half) {
+    using Long = long double;
+    const auto outside = [&](Long t) {
+        const Long x[3] = {from.x + velocity.x * t, from.y + velocity.y * t, from.z + velocity.z * t};
+        const Long n = std::sqrt(Long(axis.x) * axis.x + Long(axis.y) * axis.y + Long(axis.z) * axis.z);
+        const Long u[3] = {axis.x / n, axis.y / n, axis.z / n};
+        const Long c = std::cos(-rate * t);
+        const Long s = std::sin(-rate * t);
+        const Long along = u[0] * x[0] + u[1] * x[1] + u[2] * x[2];
+        const Long turned[3] = {c * x[0] + s * (u[1] * x[2] - u[2] * x[1]) + (1 - c) * along * u[0],
+                                c * x[1] + s * (u[2] * x[0] - u[0] * x[2]) + (1 - c) * along * u[1],
+                                c * x[2] + s * (u[0] * x[1] - u[1] * x[0]) + (1 - c) * along * u[2]};
+        return std::max({std::fabs(turned[0]), std::fabs(turned[1]), std::fabs(turned[2])}) > half;
+    };
+    Long high = 0.0L;
+    while (!outside(high)) high += 1e-4L;
+    Long low = high - 1e-4L;
+    for (int k = 0; k < 80; ++k) {
+        const Long middle = 0.5L * (low + high);
+        (outside(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+TEST(APoint, HitsATurningCubeWhenItTrulyComesToIt) {
+    const Vec3 axis{2, -1, 0.5};
+    const double rate = 500.0;  // degrees/s
+    auto setup =
+        setup_of({frame_of("spin", {Spin{axis, rate}})}, {{"box", CuboidShape{{1, 1, 1}, {}}, 0, "spin"}}, 0.05, 0.5);
+    RandomSequence random(5, 1, 0);
+    for (int k = 0; k < 300; ++k) {
+        const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+        const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
+        setup.particles.push_back(particle_at(0.8 * p, 6.0 * v));
+    }
+    const std::vector<Particle> start = setup.particles;
+    Simulation simulation(std::move(setup));
+    std::vector<bool> hit(start.size(), false);
+    for (const ContactRecord& record : all_contacts(simulation)) {
+        if (hit[record.particle]) continue;
+        hit[record.particle] = true;
+        const Particle& p = start[record.particle];
+        const long double truth = first_exit(p.position, p.velocity, axis, rate * kPiLong / 180.0L, 0.5);
+        EXPECT_NEAR(record.time, static_cast<double>(truth), 1e-10) << record.particle;
+    }
+    EXPECT_GT(std::count(hit.begin(), hit.end(), true), 250);
+}
+
+// On a table that turns at w a sphere that rolls goes round in a circle at 2/7 of that (J. A. Burns, "Ball rolling on a
+// turntable", American Journal of Physics 49, 1981).
+TEST(ASphereOnATurntable, GoesRoundAtTwoSeventhsOfItsRate) {
+    const double w = 3.0;
+    const double radius = 0.05;
+    const Vec3 at{0.4, 0.1, radius};
+    const Vec3 v{0.1, 0.25, 0};
+    const auto error = [&](double step) {
+        auto setup = setup_of({frame_of("table", {Spin{{0, 0, 1}, w * 180.0 / kPi}})},
+                              {{"table", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "table"}}, step, 5.0);
+        setup.options.integrator = IntegratorKind::rk4;
+        setup.materials = {{"", 0.0, 0.8}};
+        setup.forces.push_back(make_gravity({0, 0, -9.81}));
+        const Vec3 slip = cross(Vec3{0, 0, w}, at) - v;
+        setup.particles = {particle_at(at, v, radius, -1.0 / radius * cross(Vec3{0, 0, 1}, slip))};
+        Simulation simulation(std::move(setup));
+        EXPECT_LE(all_contacts(simulation).size(), 1U);
+        const double angle = 2.0 / 7.0 * w * 5.0;
+        const double c = std::cos(angle);
+        const double s = std::sin(angle);
+        const Vec3 turned{c * v.x - s * v.y, s * v.x + c * v.y, 0};
+        EXPECT_LT(length(simulation.particles().velocity[0] - turned), 1.0 * step);
+        return length(simulation.particles().velocity[0] - turned);
+    };
+    const double coarse = error(0.01);
+    EXPECT_LT(error(0.005), std::max(0.3 * coarse, 1e-9)) << coarse;
+    EXPECT_LT(error(0.001), 1e-6);
+}
+
+TEST(ASphere, RestsOnABodyThatMovesUniformlyAndStaysWhereItIsOnItToTheLastBit) {
+    for (const Vec3& axis : {Vec3{0, 0, 1}}) {
+        auto setup = setup_of({frame_of("truck", {steady({2, 0.5, 0}), Spin{axis, 30.0}})},
+                              {{"floor", CuboidShape{{3, 3, 0.2}, {{0, 0, -0.1}}}, 0, "truck"}}, 0.01, 4.0);
+        setup.materials = {{"", 0.2, 0.6, 0.0, 0.1}};
+        setup.forces.push_back(make_gravity({0, 0, -9.81}));
+        setup.particles = {particle_at({0.3, 0.2, 0.05}, {2, 0.5, 0}, 0.05), particle_at({0.1, 0.4, 0.1}, {2, 0.5, 0})};
+        Simulation simulation(std::move(setup));
+        std::vector<Vec3> images(2);
+        int still = 0;
+        while (!simulation.finished()) {
+            simulation.step();
+            const MovingPose pose = simulation.collider_pose(0, simulation.time());
+            for (std::size_t i = 0; i < 2; ++i) {
+                const Vec3 image = pose.image(simulation.particles().position[i]);
+                if (simulation.time() > 3.0) {
+                    EXPECT_LT(length(image - images[i]), 4e-15 * (1.0 + max_abs(simulation.particles().position[i])));
+                    ++still;
+                    EXPECT_EQ(simulation.particles().resting[i], 1);
+                } else {
+                    images[i] = image;
+                }
+            }
+        }
+        EXPECT_GT(still, 100);
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

@@ -139,7 +139,7 @@ bool NearSurfaces::is_flat(SurfaceId surface) const {
 }
 
 double NearSurfaces::offset_at(const WayPoint& p) const {
-    const double own = contact_offset(p.position);
+    const double own = geometry_.contact_offset(p.position);
     return foreign_ == nullptr ? own : std::max(own, foreign_->offset_at(p));
 }
 

@@ -3,6 +3,7 @@
 /// with it the distances and normals of surfaces.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -47,8 +48,15 @@ private:
 /// last. One object serves one particle in one thread; world and cache must outlive it.
 class SurfaceGeometry {
 public:
-    SurfaceGeometry(const CollisionWorld& world, TrianglePlaneCache& cache) : world_(&world), cache_(&cache) {
+    /// least_offset: m, of contact_offset(), where coordinates are rounded as larger ones are: in a frame that moves.
+    SurfaceGeometry(const CollisionWorld& world, TrianglePlaneCache& cache, double least_offset = 0.0)
+        : world_(&world), cache_(&cache), least_offset_(least_offset) {
         cache.clear();
+    }
+
+    /// The contact offset at a position, m.
+    [[nodiscard]] double contact_offset(const Vec3& position) const {
+        return std::max(ricochet::contact_offset(position), least_offset_);
     }
 
     [[nodiscard]] const TrianglePlane& plane_of(std::uint32_t triangle) const { return cache_->of(*world_, triangle); }
@@ -69,6 +77,7 @@ public:
 private:
     const CollisionWorld* world_;
     TrianglePlaneCache* cache_;
+    double least_offset_ = 0.0;
 };
 
 /// Lists of one query; a query overwrites those of the one before.

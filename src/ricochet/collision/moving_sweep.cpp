@@ -126,6 +126,22 @@ double MovingSweep::tolerance_of(BodyId body) const {
     return std::max(tolerance, kSmallestContactOffset);
 }
 
+/// m, by which the images of stored positions may lie beside the path in a frame, and safe positions further: by the
+/// rounding of the world's coordinates and of the frames' origins.
+double MovingSweep::rounding() const {
+    Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
+    const auto include = [&](BodyId body) {
+        if (body == kAtRest) return;
+        const MovingPose pose = view_.bodies().pose(body, view_.clock().begin);
+        largest = max(largest, abs(pose.world_from_frame.translation));
+        const double way = view_.bodies().bounds(body).origin[1] * (view_.clock().end - view_.clock().begin);
+        largest += Vec3{way, way, way};
+    };
+    include(view_.home());
+    for (const BodyId body : near_) include(body);
+    return kLargestContactOffsetUlps / kContactOffsetUlps * contact_offset(largest);
+}
+
 /// At the keys of all bodies that are near, and evenly between them.
 void MovingSweep::cut() {
     const double duration = query_.path.duration;
@@ -239,8 +255,9 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
     const WayPoint first_point{start.position, 0.0, start.world};
     foreign_.emplace(view, first_point);
     std::optional<Contact> first;
-    double beside = query_.beside;
-    for (const BodyId body : near_) beside = std::max(beside, 4.0 * tolerance_of(body));
+    double tolerance = 0.0;
+    for (const BodyId body : near_) tolerance = std::max(tolerance, tolerance_of(body));
+    const double beside = query_.beside + 4.0 * tolerance + rounding();
     ContactQueryResult own =
         find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
     if (own.contact) take(*own.contact, view.home(), view, first);
@@ -250,7 +267,7 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
         const SurfaceGeometry geometry(view.bodies().world(near_[k]), scratch.plane_cache);
         const Path path = path_in(near_[k], view, first_point);
         const ContactQueryResult found =
-            find_first_contact(geometry, {path, query_.radius, nullptr, {}, {}, beside}, scratch);
+            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside}, scratch);
         if (found.contact) take(*found.contact, near_[k], view, first);
         foreign_->add({near_[k], path, found.near});
     }

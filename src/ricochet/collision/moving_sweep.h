@@ -44,6 +44,7 @@ private:
     void cut();
     [[nodiscard]] double fourth_derivative(BodyId body, const DerivativeBounds& world) const;
     [[nodiscard]] double tolerance_of(BodyId body) const;
+    [[nodiscard]] double rounding() const;
     [[nodiscard]] DerivativeBounds world_bounds() const;
     [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const WayPoint& start) const;
     void take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const;

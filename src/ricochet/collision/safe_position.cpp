@@ -139,7 +139,7 @@ std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
     Normals normals;
     for (const SurfaceId surface : near.surfaces_at(p)) normals.add(near.geometry().unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
-    double offset = contact_offset(p);
+    double offset = near.foreign() == nullptr ? contact_offset(p) : near.offset_at(near.start());
     for (int attempt = 0; attempt < kSafePositionAttempts; ++attempt, offset *= kContactOffsetWidening) {
         const Vec3 position = flush_tiny(p + offset * escape_direction(normals));
         if (length(position - p) > near.slack()) break;

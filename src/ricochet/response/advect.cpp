@@ -153,7 +153,7 @@ void Advector::finish() {
 
 /// Beside a rim half of what a path goes beyond it, so that at its end the surface is surely left.
 TouchRule Advector::touch_rule() const {
-    TouchRule rule = TouchRule::at(state_.position);
+    TouchRule rule = TouchRule::at(step_.geometry(), state_.position);
     rule.beyond_rim = 0.5 * reach();
     return rule;
 }

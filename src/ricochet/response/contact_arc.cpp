@@ -53,7 +53,7 @@ ContactArc::State ContactArc::at(double t) const {
     if (keeps_energy_) restore_energy(state, t);
     if (is_driven_) return state;
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
-    const double offset = length(forces(state, t)) * contact_offset(state.position);
+    const double offset = length(forces(state, t)) * geometry_.contact_offset(state.position);
     limit_energy(state.motion, particle_.radius, most, offset);
     return state;
 }
@@ -297,7 +297,7 @@ void ContactArc::put_on_surfaces(State& state) const {
             if (!holds_[i]) continue;
             const CollisionWorld::Nearest touched = nearest(i, state.position);
             normals[count] = touched.normal;
-            gaps[count++] = particle_.radius + contact_offset(state.position) - touched.distance;
+            gaps[count++] = particle_.radius + geometry_.contact_offset(state.position) - touched.distance;
         }
         state.position += shift_by({normals.data(), count}, {gaps.data(), count});
     }

@@ -128,7 +128,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
     if (!manifold_.is_driven(impact_)) {
-        limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * contact_offset(state_.position));
+        limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * step_.geometry().contact_offset(state_.position));
     }
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
@@ -141,7 +141,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
 ContactFollower::FlatWay ContactFollower::way_along(const FlatInterval& interval) const {
     Path path = interval.path(state_.position, interval.duration());
     if (!is_finite(path.end)) return {path, false};
-    const double slack = kEdgeOffsets * contact_offset(state_.position);
+    const double slack = kEdgeOffsets * step_.geometry().contact_offset(state_.position);
     double on = interval.duration();
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
@@ -166,7 +166,7 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
         const ContactSurface surface = manifold_[k];
         const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
-        const double lift = contact_offset(path.end) - height;
+        const double lift = step_.geometry().contact_offset(path.end) - height;
         if (!interval.is_held_by(k) && lift < 0.0) continue;
         normals[count] = surface.normal;
         lifts[count++] = lift;
@@ -192,7 +192,7 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     std::optional<ArcWay> way = way_along(arc);
     if (!way) return {std::nullopt, true, false};
     const Vec3& from = state_.position;
-    const bool is_short = length(way->end.position - from) <= kTouchingOffsets * contact_offset(from);
+    const bool is_short = length(way->end.position - from) <= kTouchingOffsets * step_.geometry().contact_offset(from);
     if (way->jams && (is_short || !(way->path.duration > 0.0))) {
         particle_.spin = Vec3{};
         return {std::nullopt, false, true};
@@ -267,7 +267,7 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
         const Vec3 there = arc.at(time).position;
         const double off = length(there - tried.position(time));
-        if (!(off > kTouchingOffsets * contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
+        if (!(off > kTouchingOffsets * step_.geometry().contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
         way.leaves_surface = way.jams = false;
         lead_until(time, arc, way);
         keep_to_pieces(arc, way);

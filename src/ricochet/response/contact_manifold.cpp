@@ -12,21 +12,21 @@ namespace ricochet {
 namespace {
 
 /// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
-double seam_turn(const ForceInput& particle) {
+double seam_turn(const SurfaceGeometry& geometry, const ForceInput& particle) {
     if (particle.radius == 0.0) return kSameNormal;
-    return kSeamTurn + 2.0 * kTouchingOffsets * contact_offset(particle.position) / particle.radius;
+    return kSeamTurn + 2.0 * kTouchingOffsets * geometry.contact_offset(particle.position) / particle.radius;
 }
 
 }  // namespace
 
-TouchRule TouchRule::at(const Vec3& position) {
-    const double reach = kTouchingOffsets * contact_offset(position);
+TouchRule TouchRule::at(const SurfaceGeometry& geometry, const Vec3& position) {
+    const double reach = kTouchingOffsets * geometry.contact_offset(position);
     return {reach, reach, reach};
 }
 
 bool ContactManifold::is_same_point(const ContactSurface& known, const ContactSurface& surface) const {
     const double turn = 1.0 - dot(known.normal, surface.normal);
-    return !(turn > kSameNormal) || (known.flat != surface.flat && turn <= seam_turn(particle_));
+    return !(turn > kSameNormal) || (known.flat != surface.flat && turn <= seam_turn(geometry_, particle_));
 }
 
 void ContactManifold::add(const ContactSurface& surface) {
@@ -60,7 +60,9 @@ void ContactManifold::set(std::size_t k, const ContactSurface& surface) {
 }
 
 void ContactManifold::remember(std::span<const ContactSurface> surfaces) {
-    for (const ContactSurface& surface : surfaces) remember(surface.surface);
+    for (const ContactSurface& surface : surfaces) {
+        if (geometry_.world().owns(surface.surface)) remember(surface.surface);
+    }
 }
 
 void ContactManifold::remember(SurfaceId surface) {
@@ -147,7 +149,7 @@ void ContactManifold::drop_left(double part) {
 
 std::optional<std::size_t> ContactManifold::point_of(const Vec3& normal) const {
     for (std::size_t k = 0; k < count_; ++k) {
-        if (1.0 - dot(normals_[k], normal) <= seam_turn(particle_)) return k;
+        if (1.0 - dot(normals_[k], normal) <= seam_turn(geometry_, particle_)) return k;
     }
     return std::nullopt;
 }
@@ -210,7 +212,7 @@ bool ContactManifold::is_turned(const ImpactAnswer& impact) const {
 }
 
 Grip ContactManifold::grip(double pressure, double step) const {
-    return {pressure, step / kShortestIntervals, kTouchingOffsets * contact_offset(particle_.position)};
+    return {pressure, step / kShortestIntervals, kTouchingOffsets * geometry_.contact_offset(particle_.position)};
 }
 
 void ContactManifold::record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const {

@@ -21,7 +21,7 @@ class ImpactAnswer;
 /// When a particle touches a surface.
 struct TouchRule {
     /// Within kTouchingOffsets contact offsets of the surface.
-    [[nodiscard]] static TouchRule at(const Vec3& position);
+    [[nodiscard]] static TouchRule at(const SurfaceGeometry& geometry, const Vec3& position);
 
     double above = 0.0;       ///< m, largest distance of the sphere (or the point) from the surface
     double overlap = 0.0;     ///< m, by how much a sphere may overlap the surface

@@ -38,7 +38,7 @@ ContactPhase::ContactPhase(ParticleStep& step)
 std::optional<Contact> ContactPhase::resume() {
     if (particle_.contact.count == 0) return std::nullopt;
     const KeptContact before = std::exchange(particle_.contact, KeptContact{});
-    manifold_.touch_again(before, TouchRule::at(state_.position));
+    manifold_.touch_again(before, TouchRule::at(step_.geometry(), state_.position));
     if (before.is_placed()) gather();
     const Vec3 forces = rules_.forces.acceleration(state_);
     const auto support = support_.hardest_pressed(forces);
@@ -77,7 +77,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
 }
 
 void ContactPhase::record_weight() {
-    manifold_.touch_again(particle_.contact, TouchRule::at(state_.position));
+    manifold_.touch_again(particle_.contact, TouchRule::at(step_.geometry(), state_.position));
     const Vec3 forces = rules_.forces.acceleration(state_);
     if (!manifold_.empty()) static_cast<void>(follower_.plan({forces}, step_.remaining()));
     const Vec3 change = -state_.velocity - step_.remaining() * forces;
@@ -90,7 +90,7 @@ void ContactPhase::record_weight() {
 
 /// What will hold it, of all that is touched at an impact.
 std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, const Contact& contact) {
-    manifold_.replace(contact.all(), TouchRule::at(state_.position));
+    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
     gather();
     // What the step's own kick put into the velocity is not the speed of a departure.
     const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : rules_.settings.resting_speed;
@@ -201,7 +201,11 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
             state_.velocity = along_all(state_.velocity, manifold_.normals());
             continue;
         }
-        if (stop.rests) return rest(forces, !kicked);
+        if (stop.rests) {
+            const double until = rules_.frame == nullptr ? step_.remaining() : time_at_rest();
+            if (until >= step_.remaining()) return rest(forces, !kicked);
+            if (auto contact = wait(until, forces)) return contact;
+        }
     }
     if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.kept();
     return std::nullopt;
@@ -209,13 +213,13 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
 
 /// Adds to the manifold all that is touched.
 void ContactPhase::gather() {
-    const TouchRule rule = TouchRule::at(state_.position);
+    const TouchRule rule = TouchRule::at(step_.geometry(), state_.position);
     step_.visit_near([&](SurfaceId surface) { manifold_.touch(surface, rule); });
 }
 
 /// Where a surface has ended: what holds it from there on, beside it or around its edge.
 void ContactPhase::find_next_surfaces() {
-    manifold_.touch_again(TouchRule::at(state_.position));
+    manifold_.touch_again(TouchRule::at(step_.geometry(), state_.position));
     gather();
     manifold_.drop_left(kTurningAway);
 }
@@ -225,6 +229,51 @@ bool ContactPhase::lands() const {
     return std::any_of(manifold_.normals().begin(), manifold_.normals().end(), [&](const Vec3& normal) {
         return -dot(state_.velocity, normal) > kSlowSlip * length(state_.velocity);
     });
+}
+
+/// What rests keeps off its surfaces by what the world's coordinates are rounded by, which may grow as it is carried.
+void ContactPhase::lift() {
+    std::array<Vec3, kMostHolding> normals;
+    std::array<double, kMostHolding> lifts{};
+    const double offset = step_.geometry().contact_offset(state_.position);
+    bool is_low = false;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        normals[k] = manifold_[k].normal;
+        const double height = step_.geometry().nearest(manifold_[k].surface, state_.position).distance - state_.radius;
+        lifts[k] = std::max(0.0, offset - height);
+        is_low = is_low || height < 0.5 * offset;
+    }
+    if (!is_low) return;
+    state_.position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
+}
+
+/// How long a body that moves holds it, s: its forces change meanwhile. At most what is left of the step.
+double ContactPhase::time_at_rest() {
+    constexpr int kLooks = 8;
+    constexpr int kHalvings = 52;
+    const double left = step_.remaining();
+    double low = 0.0;
+    double high = left;
+    for (int k = 1; k <= kLooks; ++k) {
+        high = k < kLooks ? left * k / kLooks : left;
+        if (!rests_on(high)) break;
+        low = high;
+    }
+    for (int k = 0; k < kHalvings && low < high; ++k) {
+        const double middle = 0.5 * (low + high);
+        (rests_on(middle) ? low : high) = middle;
+    }
+    static_cast<void>(rests_on(0.0));  // loads the manifold as it is now
+    return low < left ? high : left;
+}
+
+/// True where it would rest at a time, s from now.
+bool ContactPhase::rests_on(double time) {
+    ForceInput later = state_;
+    later.velocity = {};
+    later.time += time;
+    const Vec3 forces = rules_.forces.acceleration(later);
+    return support_.is_pressed(forces) && follower_.plan({forces}, step_.remaining()).at_rest;
 }
 
 /// Time passes at rest; the surfaces carry the weight. Returns what comes to it there.
@@ -241,9 +290,16 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     }
     step_.log().note_impact();
     const double left = step_.remaining();
+    lift();
     const auto contact = step_.wait(duration, std::span(kept.surfaces).first(kept.count));
     const double elapsed = left - step_.remaining();
-    manifold_.record_push(-before - elapsed * forces, elapsed, impact_);
+    Vec3 mean = forces;
+    if (rules_.frame != nullptr) {
+        ForceInput middle = state_;
+        middle.time -= 0.5 * elapsed;
+        mean = rules_.forces.acceleration(middle);
+    }
+    manifold_.record_push(-before - elapsed * mean, elapsed, impact_);
     step_.log().note_contact({}, false);
     return contact;
 }
@@ -251,7 +307,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
 /// Rests for what is left of the step. held: until the forces change. Returns what comes to it before.
 std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.start();
-    const bool is_back = length(state_.position - start) <= kTouchingOffsets * contact_offset(start);
+    const bool is_back = length(state_.position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
     // Landing again from one contact offset above, step after step, it would creep downhill.
     if (state_.position != start && is_back && rules_.bodies == nullptr) step_.return_to_start();
     if (const auto contact = wait(step_.remaining(), forces)) return contact;

@@ -47,6 +47,9 @@ private:
     [[nodiscard]] bool lands() const;
     [[nodiscard]] std::optional<Contact> wait(double duration, const Vec3& forces);
     [[nodiscard]] std::optional<Contact> rest(const Vec3& forces, bool held);
+    [[nodiscard]] double time_at_rest();
+    void lift();
+    [[nodiscard]] bool rests_on(double time);
     [[nodiscard]] Vec3 forces_now(const Flight& flight) const;
     [[nodiscard]] double slow_restitution(SurfaceId surface) const;
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_phase.h"
 #include "ricochet/response/riding.h"
+#include "ricochet/response/shared_contact.h"
 
 namespace ricochet {
 namespace {
@@ -15,6 +17,11 @@ namespace {
 /// is that something is near. Looking ahead all the same cost the narrow cavity of `ricochet bench --suite pinball` 6
 /// to 9 % (docs/decisions/2026-11-23-what-pays.md).
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
+
+/// Bounces among colliders that move after which a particle's progress is looked at, and what of a step at least has to
+/// have passed by then.
+constexpr std::uint32_t kBouncesToClose = 64;
+constexpr double kLeastProgress = 1e-3;
 
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
@@ -37,11 +44,13 @@ public:
 private:
     std::optional<Contact> fly(Flight& flight, bool is_first);
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
+    [[nodiscard]] bool has_room();
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Flight& flight, const Contact& contact,
                                                     const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> begin_shared(const Flight& flight, const Contact& contact);
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
@@ -51,6 +60,8 @@ private:
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;
+    std::uint32_t bounces_at_look_ = 0;  // of has_room()
+    double remaining_at_look_ = std::numeric_limits<double>::infinity();
     bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
 };
 
@@ -62,7 +73,7 @@ MoveOutcome ParticleMover::run() {
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
-        while (contact && !outcome.is_absorbed() && outcome.bounces < rules_.settings.bounce_budget) {
+        while (contact && !outcome.is_absorbed() && outcome.bounces < rules_.settings.bounce_budget && has_room()) {
             contact = answer(flight, *contact);
         }
         if (outcome.is_absorbed()) break;
@@ -76,12 +87,35 @@ MoveOutcome ParticleMover::run() {
     return outcome;
 }
 
-/// Contact that lasted to the end of the last step goes on.
+/// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
+bool ParticleMover::has_room() {
+    if (rides_ == nullptr || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
+    bounces_at_look_ = step_.outcome().bounces;
+    const double before = std::exchange(remaining_at_look_, step_.remaining());
+    return before - step_.remaining() > kLeastProgress * step_.duration();
+}
+
+/// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several until those of
+/// one are left.
 std::optional<Contact> ParticleMover::resume() {
-    const KeptContact& kept = particle_.contact;
-    const BodyId body = rides_ != nullptr && kept.count > 0 ? rules_.bodies->body_of(kept.surfaces[0]) : kAtRest;
-    if (body == kAtRest) return contact_phase_.resume();
-    return ride(body, nullptr, [&](ContactPhase& phase) { return phase.resume(); });
+    if (rides_ == nullptr) return contact_phase_.resume();
+    constexpr int kMostTurns = 4;
+    std::optional<Contact> next;
+    for (int turn = 0; turn < kMostTurns && particle_.contact.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
+        const KeptContact& kept = particle_.contact;
+        const BodyId body = rules_.bodies->body_of(kept.surfaces[0]);
+        const bool is_shared =
+            std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
+                        [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
+        if (is_shared) {
+            next = SharedContact(step_).follow();
+        } else if (body == kAtRest) {
+            next = contact_phase_.resume();
+        } else {
+            next = ride(body, nullptr, [&](ContactPhase& phase) { return phase.resume(); });
+        }
+    }
+    return next;
 }
 
 /// Contact in the frame of a body, which is left for the world again.
@@ -112,6 +146,10 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     std::size_t count = 0;
     for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
     std::sort(bodies.begin(), bodies.begin() + count);
+    if (bodies[0] != bodies[count - 1] && step_.remaining() > 0.0 &&
+        SharedContact(step_).is_slow(contact, arriving)) {
+        return begin_shared(flight, contact);
+    }
     for (std::size_t k = count; k-- > 0;) {  // those at rest first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
         Contact own = contact;
@@ -126,6 +164,21 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
         if (next || step_.remaining() < before || particle_.contact.count > 0) return next;
     }
     return std::nullopt;
+}
+
+/// On surfaces of several frames at once. What a kick has done along them for the time that is left, forces do again.
+std::optional<Contact> ParticleMover::begin_shared(const Flight& flight, const Contact& contact) {
+    if (flight.kick_duration > 0.0) {
+        std::array<Vec3, 3> normals;
+        std::size_t count = 0;
+        for (const ContactSurface& surface : contact.all()) {
+            if (count < normals.size()) normals[count++] = surface.normal;
+        }
+        particle_.state.velocity -= step_.remaining() * project_off(flight.acceleration, {normals.data(), count});
+    }
+    flies_anew_ = true;
+    const auto next = SharedContact(step_).follow();
+    return next || particle_.contact.count == 0 || !(step_.remaining() > 0.0) ? next : resume();
 }
 
 std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Flight& flight, const Contact& contact,

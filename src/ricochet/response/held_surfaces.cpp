@@ -29,7 +29,7 @@ void HeldSurfaces::find() {
 
 void HeldSurfaces::find_beside() {
     if (state_.radius == 0.0) return;
-    const double reach = state_.radius + kTouchingOffsets * contact_offset(state_.position);
+    const double reach = state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position);
     step_.visit_near([&](SurfaceId surface) {
         const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
         const auto point = manifold_.point_of(nearest.normal);
@@ -39,7 +39,7 @@ void HeldSurfaces::find_beside() {
 }
 
 bool HeldSurfaces::touches_next_part(const Vec3& position) const {
-    const double reach = kTouchingOffsets * contact_offset(state_.position);
+    const double reach = kTouchingOffsets * geometry_.contact_offset(state_.position);
     std::array<CollisionWorld::Nearest, kMostHolding> points;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const SurfaceId surface = manifold_[k].surface;
@@ -72,7 +72,7 @@ bool HeldSurfaces::has_left_face(const Vec3& position) const {
 /// True where the foot of a position on a face's plane is so far beyond the face that it holds the particle no more.
 bool HeldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
     const Vec3 height = geometry_.signed_distance_from(surface, position) * geometry_.unit_normal_of(surface, position);
-    return geometry_.nearest(surface, position - height).distance > kEdgeOffsets * contact_offset(position);
+    return geometry_.nearest(surface, position - height).distance > kEdgeOffsets * geometry_.contact_offset(position);
 }
 
 void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path) {
@@ -89,11 +89,11 @@ void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifol
         for (const double part : {0.25, 0.5, 0.75}) {
             const Vec3 p = path.position(part * path.duration);
             const double distance = side * geometry.signed_distance_from(surface.surface, p);
-            behind = std::max(behind, radius + contact_offset(p) - distance);
+            behind = std::max(behind, radius + geometry.contact_offset(p) - distance);
         }
         if (behind <= 0.5 * radius) continue;
         const Vec3 middle = path.position(0.5 * path.duration);
-        const Vec3 lift = (4.0 * (behind + contact_offset(middle)) * side / path.duration) * normal_at(middle);
+        const Vec3 lift = (4.0 * (behind + geometry.contact_offset(middle)) * side / path.duration) * normal_at(middle);
         path.c[1] += lift;
         path.c[2] -= lift / path.duration;
         path.degree = std::max(path.degree, 2);
@@ -121,7 +121,7 @@ void HeldSurfaces::take_part_in(Contact& contact) const {
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
                                           [&](const ContactSurface& other) { return other.surface == surface; });
         const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
-        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * contact_offset(state_.position)) continue;
+        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position)) continue;
         // A point next to a rim: the direction from the rim is rounding.
         const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
         contact.surfaces[static_cast<std::size_t>(contact.count++)] =
@@ -130,7 +130,7 @@ void HeldSurfaces::take_part_in(Contact& contact) const {
 }
 
 void HeldSurfaces::touch_again(const Vec3& turning_point) {
-    const TouchRule rule = TouchRule::at(state_.position);
+    const TouchRule rule = TouchRule::at(geometry_, state_.position);
     manifold_.touch_again(rule);
     for (const SurfaceId surface : surfaces_) manifold_.touch(surface, rule);
     for (const Beside& other : beside_) {

@@ -53,7 +53,12 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     state().position = home_.bodies().pose(body, stored_.time).image(stored_.position);
     state().velocity = motion.velocity;
     particle_.spin = motion.spin;
-    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache);
+    // The world's coordinates are what is stored: contact is felt as they are rounded, and a carried place stays off.
+    const MotionBounds& bounds = home_.bodies().bounds(body);
+    const double way = remaining_ * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
+    const double reach = max_abs(stored_.position) + way +
+                         max_abs(home_.bodies().pose(body, stored_.time).world_from_frame.translation);
+    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, contact_offset({reach, 0.0, 0.0}));
     start_ = state().position;
     first_segment_ = scratch_.segments.size();
     turn_contact(contact, before, home_);

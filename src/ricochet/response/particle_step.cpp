@@ -152,12 +152,26 @@ void ParticleStep::return_to_start() {
 }
 
 void ParticleStep::leave_surface(const NearSurfaces& near) {
-    if (!step_off_surface(near, state(), scratch_)) {
+    if (!(near.foreign() == nullptr ? step_off_surface(near, state(), scratch_) : step_off_in_frame(near))) {
         stop();
         return;
     }
     first_segment_ = scratch_.segments.size();
-    start_ = stored_.position = state().position;
+    start_ = state().position;
+}
+
+/// Where colliders move: by a link that is free in all frames, after it has left the surface in its own.
+bool ParticleStep::step_off_in_frame(const NearSurfaces& near) {
+    const auto position = step_off(near, state().position);
+    if (!position) return false;
+    const WayPoint to = near.point_at(*position, 0.0);
+    if (!near.is_free_after(state().position, to.position) || !near.foreign()->are_free(near.start(), to)) return false;
+    if (scratch_.record_segments) {
+        scratch_.segments.push_back({stored_.position, to.world, state().time, stored_.time, stored_.time});
+    }
+    stored_.position = to.world;
+    state().position = to.position;
+    return true;
 }
 
 void ParticleStep::record_chain(const NearSurfaces& near) {

@@ -55,6 +55,9 @@ public:
     /// Calls found(surface) for all surfaces near the particle: planes, shapes, triangles, each in ascending order.
     template <class Found>
     void visit_near(const Found& found);
+    /// The same of the surfaces of a frame near a position there.
+    template <class Found>
+    void visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, const Found& found);
     /// Lets time pass where the particle is, s. Returns what comes to it there.
     std::optional<Contact> wait(double duration, std::span<const SurfaceId> held = {});
     /// Gives up the time that is left.
@@ -119,6 +122,7 @@ private:
     void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
+    [[nodiscard]] bool step_off_in_frame(const NearSurfaces& near);
     void record_chain(const NearSurfaces& near);
     void pass(double duration);
     /// Of a piece of what the particle has flown, after it.
@@ -170,9 +174,14 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
 
 template <class Found>
 void ParticleStep::visit_near(const Found& found) {
-    const Path here = line_path(state().position, Vec3{}, 0.0);
-    (void)find_first_contact(geometry_, {here, state().radius}, scratch_.contacts);
-    const CollisionWorld& world = geometry_.world();
+    visit_near_in(geometry_, state().position, found);
+}
+
+template <class Found>
+void ParticleStep::visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, const Found& found) {
+    const Path here = line_path(position, Vec3{}, 0.0);
+    (void)find_first_contact(geometry, {here, state().radius}, scratch_.contacts);
+    const CollisionWorld& world = geometry.world();
     for (const std::uint32_t k : scratch_.contacts.planes) found(world.planes()[k].surface);
     for (const std::uint32_t k : scratch_.contacts.shapes) {
         const CollisionWorld::ShapeSurface& shape = world.shapes()[k];

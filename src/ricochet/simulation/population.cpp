@@ -220,7 +220,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     }
     statistics.asleep = 0;
     impl().forces = std::move(field);
-    impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady());
+    impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady() && !impl().bodies);
     impl().forget_queries();
 }
 

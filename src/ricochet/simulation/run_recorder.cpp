@@ -95,6 +95,8 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
     const std::vector<CutOff> all = in_order_of_particles(blocks, &BlockRecord::cut_off);
     for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;
     statistics_.budget_exhausted += all.size();
+    // Where surfaces close on a particle more bounces would not help.
+    for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.squeezed;
 }
 
 void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {

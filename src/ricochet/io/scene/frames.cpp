@@ -51,12 +51,12 @@ Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
 }
 
 // What the table cannot say: later and later.
-bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics) {
+bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics, bool has_values = true) {
     bool good = !keys.empty();
     double before = 0.0;
     for (const ObjectView& key : keys) {
         const double time = key.node("time").number().value_or(0.0);
-        good = good && key.has("time") && key.has("value");
+        good = good && key.has("time") && (!has_values || key.has("value"));
         if (&key != &keys.front() && good && !(before < time)) {
             diagnostics.error(
                 key.location_of("time"), key.path_of("time"),
@@ -232,7 +232,7 @@ const ObjectSpec& key_pose_spec() {
 FrameDescription frame_through(const std::vector<ObjectView>& views, Diagnostics& diagnostics) {
     FrameDescription frame;
     std::vector<KeyPose> poses;
-    if (!are_good_keys(views, diagnostics)) return frame;
+    if (!are_good_keys(views, diagnostics, false)) return frame;
     for (const ObjectView& view : views) poses.push_back(view.read<KeyPose>());
     try {
         frame.motions = motions_through(poses);

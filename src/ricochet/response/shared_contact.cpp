@@ -1,0 +1,286 @@
+#include "ricochet/response/shared_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/impact_problem.h"
+
+namespace ricochet {
+namespace {
+
+/// Intervals of a step before the particle is set free again.
+constexpr int kMostIntervals = 64;
+
+/// rad, by which surfaces turn, or bend under the particle, in one interval.
+constexpr double kMostSharedTurn = 0.02;
+
+/// Corrections of an interval's end; each leaves the square of what was wrong.
+constexpr int kCorrections = 3;
+
+}  // namespace
+
+MovingView SharedContact::view_at(double time) const {
+    return {*step_.rules().bodies, kAtRest, {time, time, time, 0.0, 0.0}};
+}
+
+bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
+    const ImpactAnswer& impact = step_.impact();
+    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        const Material& material = impact.material_of(surface.surface);
+        const double approach = impact.advance_of(surface) - dot(arriving.velocity, surface.normal);
+        if (!(approach > 0.0)) return true;
+        return !material.is_random() &&
+               material.restitution_at(approach) * approach < step_.rules().settings.resting_speed;
+    });
+}
+
+/// All that is touched, of all frames, but what is left.
+void SharedContact::gather() {
+    const double margin = state_.radius + kEdgeOffsets * contact_offset(state_.position);
+    const Vec3 by{margin, margin, margin};
+    std::vector<BodyId> near{kAtRest};
+    step_.rules().bodies->near({state_.position - by, state_.position + by}, kAtRest, near);
+    count_ = 0;
+    for (const BodyId body : near) gather_in(body);
+}
+
+void SharedContact::gather_in(BodyId body) {
+    const MovingView view = view_at(state_.time);
+    const CollisionWorld& world = view.bodies().world(body);
+    if (world.empty()) return;
+    ForceInput seen = state_;
+    seen.position = view.image(body, state_.position, 0.0);
+    seen.velocity = view.velocity_in(body, {state_.position, 0.0, state_.position}, state_.velocity);
+    TrianglePlaneCache planes;
+    const SurfaceGeometry geometry(world, planes);
+    ContactManifold manifold(geometry, seen);
+    const double offset = std::max(contact_offset(seen.position), contact_offset(state_.position));
+    const double reach = kTouchingOffsets * offset;
+    const TouchRule rule{reach, reach, reach, step_.rules().settings.resting_speed};
+    step_.visit_near_in(geometry, seen.position, [&](SurfaceId surface) { manifold.touch(surface, rule); });
+    for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
+        Touched& touched = touched_[count_++];
+        touched.surface = manifold[k];
+        touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
+        touched.body = body;
+        touched.velocity = step_.impact().velocity_of(touched.surface);
+        touched.turning = view.bodies().pose(body, state_.time).angular_velocity;
+    }
+}
+
+/// Loses what leads into the surfaces; false where they leave it no way out.
+bool SharedContact::land() {
+    ImpactAnswer& impact = step_.impact();
+    const Vec3 before = state_.velocity;
+    std::array<ImpactSurface, kMostHolding> surfaces;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const ContactSurface& surface = touched_[k].surface;
+        const Material& material = impact.material_of(surface.surface);
+        surfaces[k] = {surface.normal,
+                       0.0,
+                       material.friction,
+                       material.rolling_friction,
+                       material.spinning_friction,
+                       touched_[k].velocity,
+                       impact.angular_velocity_of(surface.surface),
+                       impact.advance_of(surface)};
+    }
+    const ImpactResult result =
+        solve_impact({state_.velocity, particle_.spin}, state_.radius, std::span(surfaces).first(count_));
+    state_.velocity = result.after.velocity;
+    particle_.spin = result.after.spin;
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (result.push[k] != Vec3{}) impact.push(touched_[k].surface.surface, result.push[k], false);
+    }
+    const double scale = length(before) + length(state_.velocity);
+    return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
+        return impact.departure_from(one.surface) >= -kSlowSlip * (scale + length(one.velocity));
+    });
+}
+
+/// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
+/// (omega x n) . (v - w), and by what its curvature adds; a_s: of its own point there.
+HoldingSurface SharedContact::holding(const Touched& touched, const Vec3& shift) const {
+    const ImpactAnswer& impact = step_.impact();
+    const Material& material = impact.material_of(touched.surface.surface);
+    const Vec3& n = touched.surface.normal;
+    const Vec3 relative = touched.velocity - shift;
+    HoldingSurface held{n,
+                        material.friction,
+                        material.rolling_friction,
+                        material.spinning_friction,
+                        relative - dot(relative, n) * n,
+                        impact.angular_velocity_of(touched.surface.surface)};
+    const MovingView view = view_at(state_.time);
+    const MovingPose pose = view.bodies().pose(touched.body, state_.time);
+    const Vec3 arm = state_.position - pose.world_from_frame.translation;
+    const Vec3& turning = pose.angular_velocity;
+    const Vec3 carried = cross(turning, arm);
+    const Vec3 of_surface = pose.acceleration + cross(pose.angular_acceleration, arm) + cross(turning, carried);
+    const Vec3 slip = state_.velocity - pose.velocity - carried;
+    held.bend = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
+    const Vec3 change = of_surface + cross(turning, slip);
+    held.slip_bend = dot(change, n) * n - change;
+    if (touched.surface.flat) return held;
+    ForceInput seen = state_;
+    seen.position = view.image(touched.body, state_.position, 0.0);
+    TrianglePlaneCache planes;
+    const SurfaceGeometry geometry(view.bodies().world(touched.body), planes);
+    const ContactSurface in_frame{touched.surface.surface, pose.direction_image(n), false};
+    held.bend += ContactArc::bend_of(geometry, seen, in_frame, pose.direction_image(slip));
+    return held;
+}
+
+/// s, in which surfaces turn little, and bend little under the particle.
+double SharedContact::longest() const {
+    double rate = 0.0;
+    for (const Touched& one : touched()) {
+        rate = std::max(rate, length(one.turning));
+        if (one.surface.flat) continue;
+        const double size = std::max(state_.radius, step_.rules().bodies->world(one.body).size_of(one.surface.surface));
+        rate = std::max(rate, length(state_.velocity - one.velocity) / size);
+    }
+    return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
+}
+
+/// Plans the next interval in the frame in which none of the surfaces advances.
+SharedContact::Hold SharedContact::plan(double duration) {
+    std::array<Vec3, kMostHolding> normals;
+    std::array<double, kMostHolding> advances{};
+    std::array<HoldingSurface, kMostHolding> surfaces;
+    for (std::size_t k = 0; k < count_; ++k) {
+        normals[k] = touched_[k].surface.normal;
+        advances[k] = dot(touched_[k].velocity, normals[k]);
+    }
+    shift_ = shift_by({normals.data(), count_}, {advances.data(), count_});
+    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = holding(touched_[k], shift_);
+    const Vec3 forces = step_.rules().forces.acceleration(state_);
+    const double reach = kTouchingOffsets * contact_offset(state_.position);
+    const Grip grip{1.0, step_.duration() / kShortestIntervals, reach};
+    interval_ = plan_interval({state_.velocity - shift_, particle_.spin}, state_.radius, forces,
+                              std::span(surfaces).first(count_), grip, duration);
+    std::optional<BodyId> holder;
+    bool is_shared = false;
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (interval_.push[k] == Vec3{}) continue;
+        is_shared = is_shared || (holder && *holder != touched_[k].body);
+        holder = touched_[k].body;
+    }
+    if (!holder) return Hold::none;
+    if (is_shared) return Hold::shared;
+    // One frame's surfaces hold it; others are only touched.
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (touched_[k].body == *holder) touched_[kept++] = touched_[k];
+    }
+    count_ = kept;
+    return Hold::single;
+}
+
+/// A position at a time, s from now, put at the contact offset from the surfaces that hold it.
+Vec3 SharedContact::kept_off(Vec3 end, double time) const {
+    const MovingView view = view_at(time);
+    for (int pass = 0; pass < kCorrections; ++pass) {
+        std::array<Vec3, kMostHolding> normals;
+        std::array<double, kMostHolding> lifts{};
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (interval_.push[k] == Vec3{}) continue;
+            const BodyId body = touched_[k].body;
+            const CollisionWorld& world = view.bodies().world(body);
+            const SurfaceId surface = touched_[k].surface.surface;
+            const Vec3 image = view.image(body, end, 0.0);
+            Vec3 normal = view.direction_from(body, world.unit_normal_of(surface, image), 0.0);
+            double height = world.signed_distance_from(surface, image);
+            if (!touched_[k].surface.flat && !world.is_shape(surface)) {
+                const CollisionWorld::Nearest nearest = world.nearest(surface, image);
+                normal = view.direction_from(body, nearest.normal, 0.0);
+                height = nearest.distance;
+            }
+            if (dot(normal, touched_[k].surface.normal) < 0.0) {
+                normal = -normal;
+                height = -height;
+            }
+            const double offset = std::max(contact_offset(end), contact_offset(image));
+            normals[count] = normal;
+            lifts[count++] = state_.radius + 2.0 * offset - height;
+        }
+        end += shift_by({normals.data(), count}, {lifts.data(), count});
+    }
+    return flush_tiny(end);
+}
+
+/// Along the interval, to where the surfaces will be.
+Path SharedContact::way(double duration) const {
+    const Vec3 velocity = interval_.motion.velocity + shift_;
+    const Vec3 last = velocity + duration * interval_.acceleration;
+    const Vec3 end = state_.position + duration * (velocity + (0.5 * duration) * interval_.acceleration);
+    const double until = duration >= step_.remaining() ? particle_.step_end : state_.time + duration;
+    return hermite_path(state_.position, velocity, kept_off(end, until), last, duration);
+}
+
+std::vector<SurfaceId> SharedContact::held() const {
+    std::vector<SurfaceId> list;
+    for (const Touched& one : touched()) list.push_back(one.surface.surface);
+    std::sort(list.begin(), list.end());
+    return list;
+}
+
+/// What holds it takes part in its impact on something else.
+void SharedContact::take_part_in(Contact& contact) const {
+    for (const Touched& one : touched()) {
+        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
+            return other.surface == one.surface.surface;
+        });
+        if (is_there || contact.count == Contact::kMostSurfaces) continue;
+        contact.surfaces[static_cast<std::size_t>(contact.count++)] = one.surface;
+    }
+}
+
+KeptContact SharedContact::kept() const {
+    KeptContact kept;
+    for (const Touched& one : touched()) kept.surfaces[kept.count++] = one.surface.surface;
+    return kept;
+}
+
+std::optional<Contact> SharedContact::follow() {
+    particle_.contact = {};
+    for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
+        gather();
+        if (count_ == 0) return std::nullopt;
+        if (!land()) {
+            step_.log().note_impact();
+            step_.stop();
+            return std::nullopt;
+        }
+        const Hold hold = plan(std::min(step_.remaining(), longest()));
+        if (hold == Hold::single) particle_.contact = kept();
+        if (hold != Hold::shared) return std::nullopt;
+        step_.log().note_impact();
+        const double before = step_.remaining();
+        const Vec3 forces = step_.rules().forces.acceleration(state_);
+        const Vec3 velocity = interval_.motion.velocity + shift_;
+        // What ends at once has ended after the shortest interval.
+        const double shortest = std::min(before, step_.duration() / kShortestIntervals);
+        const double duration = interval_.duration > 0.0 ? interval_.duration : shortest;
+        std::optional<Contact> contact = step_.follow(way(duration), held());
+        const double elapsed = before - step_.remaining();
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Vec3 push = elapsed * interval_.push[k];
+            if (push != Vec3{}) step_.impact().push(touched_[k].surface.surface, push, false);
+        }
+        if (!contact) state_.velocity = velocity + elapsed * interval_.acceleration;
+        particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
+        step_.log().note_contact(forces, true);
+        if (contact) {
+            take_part_in(*contact);
+            return contact;
+        }
+    }
+    if (step_.remaining() <= 0.0) particle_.contact = kept();
+    return std::nullopt;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,65 @@
+/// \file
+/// Private to the exact response: contact that lasts with surfaces of different frames, such as the floor and a blade
+/// that pushes along it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/held_motion.h"
+#include "ricochet/response/particle_step.h"
+
+namespace ricochet {
+
+/// One particle on the surfaces of several frames in one step. It is followed in the world, in intervals in which the
+/// surfaces count as the planes that they are at the contact, with their velocities, and with how fast their normals
+/// turn. A plane that advances is one at rest, seen from what moves with all of them: the intervals are planned there.
+class SharedContact {
+public:
+    /// In the world. The step must outlive it.
+    explicit SharedContact(ParticleStep& step) : step_(step), particle_(step.particle()), state_(step.state()) {}
+
+    /// True where an impact is so slow, on all surfaces that it approaches, that it begins or goes on. arriving: the
+    /// motion before.
+    [[nodiscard]] bool is_slow(const Contact& contact, const Motion& arriving) const;
+    /// Lands on all that is touched and goes along it. Returns the next contact when the particle comes to one; without
+    /// time left it is done; else nothing holds it any more, or surfaces of one frame do (`particle.contact`).
+    std::optional<Contact> follow();
+
+private:
+    /// A surface that is touched, as the world sees it.
+    struct Touched {
+        ContactSurface surface;
+        BodyId body = kAtRest;
+        Vec3 velocity;  ///< m/s, of the surface and its material at the contact
+        Vec3 turning;   ///< rad/s, of the body
+    };
+    enum class Hold { shared, single, none };
+
+    void gather();
+    void gather_in(BodyId body);
+    [[nodiscard]] bool land();
+    [[nodiscard]] Hold plan(double duration);
+    [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
+    [[nodiscard]] double longest() const;
+    [[nodiscard]] Path way(double duration) const;
+    [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
+    [[nodiscard]] std::vector<SurfaceId> held() const;
+    void take_part_in(Contact& contact) const;
+    [[nodiscard]] KeptContact kept() const;
+    [[nodiscard]] std::span<const Touched> touched() const { return {touched_.data(), count_}; }
+    [[nodiscard]] MovingView view_at(double time) const;
+
+    ParticleStep& step_;
+    MovingParticle& particle_;
+    ForceInput& state_;
+    std::array<Touched, kMostHolding> touched_;
+    std::size_t count_ = 0;
+    Vec3 shift_;  ///< m/s, of the frame that the interval is planned in
+    ContactInterval interval_;
+};
+
+}  // namespace ricochet

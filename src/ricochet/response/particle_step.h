@@ -11,6 +11,7 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/safe_position.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/response/impact_answer.h"
 #include "ricochet/response/motion_log.h"
 #include "ricochet/response/riding.h"
@@ -55,9 +56,9 @@ public:
     /// Calls found(surface) for all surfaces near the particle: planes, shapes, triangles, each in ascending order.
     template <class Found>
     void visit_near(const Found& found);
-    /// The same of the surfaces of a frame near a position there.
+    /// The same of the surfaces of a frame near a position there. beside: as ContactQuery::beside.
     template <class Found>
-    void visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, const Found& found);
+    void visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, double beside, const Found& found);
     /// Lets time pass where the particle is, s. Returns what comes to it there.
     std::optional<Contact> wait(double duration, std::span<const SurfaceId> held = {});
     /// Gives up the time that is left.
@@ -174,13 +175,15 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
 
 template <class Found>
 void ParticleStep::visit_near(const Found& found) {
-    visit_near_in(geometry_, state().position, found);
+    const double beside = home_.is_moving() ? kTouchingOffsets * geometry_.contact_offset(state().position) : 0.0;
+    visit_near_in(geometry_, state().position, beside, found);
 }
 
 template <class Found>
-void ParticleStep::visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, const Found& found) {
+void ParticleStep::visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, double beside,
+                                 const Found& found) {
     const Path here = line_path(position, Vec3{}, 0.0);
-    (void)find_first_contact(geometry, {here, state().radius}, scratch_.contacts);
+    (void)find_first_contact(geometry, {here, state().radius, nullptr, {}, {}, beside}, scratch_.contacts);
     const CollisionWorld& world = geometry.world();
     for (const std::uint32_t k : scratch_.contacts.planes) found(world.planes()[k].surface);
     for (const std::uint32_t k : scratch_.contacts.shapes) {

@@ -59,7 +59,7 @@ void SharedContact::gather_in(BodyId body) {
     const double offset = std::max(contact_offset(seen.position), contact_offset(state_.position));
     const double reach = kTouchingOffsets * offset;
     const TouchRule rule{reach, reach, reach, step_.rules().settings.resting_speed};
-    step_.visit_near_in(geometry, seen.position, [&](SurfaceId surface) { manifold.touch(surface, rule); });
+    step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
         Touched& touched = touched_[count_++];
         touched.surface = manifold[k];
@@ -98,6 +98,42 @@ bool SharedContact::land() {
     return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
         return impact.departure_from(one.surface) >= -kSlowSlip * (scale + length(one.velocity));
     });
+}
+
+double SharedContact::departure_from(const Touched& touched) const {
+    return dot(state_.velocity - touched.velocity, touched.surface.normal);
+}
+
+/// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What
+/// does not press is left.
+SharedContact::Hold SharedContact::settle(double duration) {
+    const Vec3 leaving = state_.velocity;
+    for (;;) {
+        std::array<Vec3, kMostHolding> normals;
+        std::array<double, kMostHolding> departures{};
+        for (std::size_t k = 0; k < count_; ++k) {
+            normals[k] = touched_[k].surface.normal;
+            departures[k] = -departure_from(touched_[k]);
+        }
+        state_.velocity += shift_by({normals.data(), count_}, {departures.data(), count_});
+        const std::size_t before = count_;
+        const Hold hold = plan(duration);
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const bool is_left = interval_.push[k] == Vec3{} && departures[k] < 0.0;
+            if (!is_left) touched_[kept++] = touched_[k];
+        }
+        if (kept == before || kept == 0 || hold != Hold::shared) {
+            // Surfaces of one frame answer the departure from them by themselves.
+            if (hold != Hold::shared) state_.velocity = leaving;
+            if (hold == Hold::shared) {
+                step_.impact().push(touched_[0].surface.surface, state_.velocity - leaving, false);
+            }
+            return hold;
+        }
+        count_ = kept;
+        state_.velocity = leaving;
+    }
 }
 
 /// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
@@ -255,7 +291,7 @@ std::optional<Contact> SharedContact::follow() {
             step_.stop();
             return std::nullopt;
         }
-        const Hold hold = plan(std::min(step_.remaining(), longest()));
+        const Hold hold = settle(std::min(step_.remaining(), longest()));
         if (hold == Hold::single) particle_.contact = kept();
         if (hold != Hold::shared) return std::nullopt;
         step_.log().note_impact();

@@ -42,6 +42,8 @@ private:
     void gather();
     void gather_in(BodyId body);
     [[nodiscard]] bool land();
+    [[nodiscard]] Hold settle(double duration);
+    [[nodiscard]] double departure_from(const Touched& touched) const;
     [[nodiscard]] Hold plan(double duration);
     [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
     [[nodiscard]] double longest() const;

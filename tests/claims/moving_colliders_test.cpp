@@ -387,8 +387,8 @@ TEST(ABallOnAnOscillatingTable, LandsWhenItTrulyComesToItEachTime) {
             }
             if (after < 2e-3) continue;  // contact that lasts
             const double height = amplitude * std::sin(omega * before.time) + 1e-13;
-            EXPECT_NEAR(contacts[k].time,
-                        next_landing(before.time, height, before.velocity_after.z, amplitude, omega), 1e-10)
+            EXPECT_NEAR(contacts[k].time, next_landing(before.time, height, before.velocity_after.z, amplitude, omega),
+                        1e-10)
                 << k;
             ++compared;
         }
@@ -448,10 +448,10 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     const double u = 0.5;
     const double friction = 0.4;
     for (const double radius : {0.0, 0.05}) {
-        auto setup = setup_of({frame_of("blade", {steady({u, 0, 0})})},
-                              {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0},
-                               {"blade", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 1, "blade"}},
-                              0.01, 3.0);
+        auto setup = setup_of(
+            {frame_of("blade", {steady({u, 0, 0})})},
+            {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0}, {"blade", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 1, "blade"}},
+            0.01, 3.0);
         setup.materials = {{"floor", 0.0, friction}, {"blade", 0.3, 0.0}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         setup.particles = {particle_at({radius + 0.1, 0, radius + 1e-15}, {}, radius)};
@@ -464,7 +464,8 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
         EXPECT_NEAR(p.position[0].x, u * 3.0 + radius, 1e-12);
         EXPECT_NEAR(p.velocity[0].x, u, 1e-12);
         EXPECT_NEAR(p.position[0].z, radius, 1e-13);
-        // A point slides: the blade makes up for friction. A sphere rolls, and the blade, without friction, does nothing.
+        // A point slides: the blade makes up for friction. A sphere rolls, and the blade, without friction, does
+        // nothing.
         const double push = radius > 0.0 ? 0.0 : friction * kG * (3.0 - start);
         EXPECT_NEAR(before - simulation.triangle_totals(1).impulse[0].x, push, 1e-9);
         EXPECT_EQ(simulation.statistics().violations, 0U);
@@ -484,9 +485,9 @@ TEST(ACup, LosesNothingThroughItsWalls) {
         std::erase_if(cup.triangles, [&](const Triangle& t) {  // without its lid
             return cup.vertices[t[0]].z > 0.0 && cup.vertices[t[1]].z > 0.0 && cup.vertices[t[2]].z > 0.0;
         });
-        auto setup = setup_of(
-            {frame_of("cup", motions)},
-            {{"cup", MeshShape{std::make_shared<const TriangleMesh>(cup), {}, "", {}}, 0, "cup"}}, step, 3.0);
+        auto setup =
+            setup_of({frame_of("cup", motions)},
+                     {{"cup", MeshShape{std::make_shared<const TriangleMesh>(cup), {}, "", {}}, 0, "cup"}}, step, 3.0);
         setup.materials = {{"", 0.4, 0.3}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         RandomSequence random(2, 1, 0);
@@ -497,6 +498,109 @@ TEST(ACup, LosesNothingThroughItsWalls) {
         Simulation simulation(std::move(setup));
         static_cast<void>(all_contacts(simulation));
     }
+}
+
+/// A frame that rises at 1 m/s until 0.47 s, in a direction, and then stands still.
+FrameDescription stopping(const Vec3& velocity) {
+    return frame_of("table", {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.47, 0.47 * velocity}})}});
+}
+
+// Where a body's velocity jumps, what lies on it goes on with its own.
+TEST(APointOnATable, IsThrownOffOrSlidesOnWhereTheTableStopsAtOnce) {
+    for (const double step : {0.01, 0.03}) {
+        for (const Vec3& velocity : {Vec3{0, 0, 1}, Vec3{1, 0, 0}}) {
+            auto setup =
+                setup_of({stopping(velocity)}, {{"table", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "table"}}, step, 0.57);
+            setup.materials = {{"", 0.0, 0.2}};
+            setup.forces.push_back(make_gravity({0, 0, -kG}));
+            setup.particles = {particle_at({0, 0, 1e-9}, velocity)};
+            Simulation simulation(std::move(setup));
+            static_cast<void>(all_contacts(simulation));
+            const Vec3 way = simulation.particles().position[0] - 0.47 * velocity;
+            const bool is_thrown = velocity.z > 0.0;
+            const double force = is_thrown ? kG : 0.2 * kG;
+            EXPECT_NEAR(is_thrown ? way.z : way.x, 0.1 - 0.5 * force * 0.01, 1e-8) << step;
+            const Vec3& v = simulation.particles().velocity[0];
+            EXPECT_NEAR(is_thrown ? v.z : v.x, 1.0 - force * 0.1, 1e-8) << step;
+        }
+    }
+}
+
+// Its frame's coordinates are near zero there, and the world's are not: what is kept off must be more than they round.
+TEST(APointAtTheOriginOfItsFrame, IsCarriedAndNotLostByRounding) {
+    for (const double direction : {1.0, -0.1}) {
+        for (const bool is_box : {false, true}) {
+            ColliderShape shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
+            if (is_box) shape = CuboidShape{{1, 1, 0.2}, {{0, 0, -0.1}}};
+            auto setup =
+                setup_of({frame_of("lift", {steady({0, 0, direction})})}, {{"table", shape, 0, "lift"}}, 0.01, 2.0);
+            setup.materials = {{"", 0.0, 0.5}};
+            setup.forces.push_back(make_gravity({0, 0, -kG}));
+            setup.particles = {particle_at({0, 0, 1e-9}, {0, 0, direction})};
+            Simulation simulation(std::move(setup));
+            static_cast<void>(all_contacts(simulation));
+            EXPECT_NEAR(simulation.particles().position[0].z, 2.0 * direction, 1e-12);
+        }
+    }
+}
+
+// A centre exactly on a surface has no side: it begins on the one that the normal points to.
+TEST(AParticleThatIsBornOnAMovingSurface, LeavesIt) {
+    for (const double radius : {0.0, 0.01}) {
+        auto setup = setup_of({frame_of("floor", {steady({0.5, 0, 0.1})})},
+                              {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "floor"}}, 0.01, 0.3);
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.particles = {particle_at({0.1, 0.2, 0}, {0, 0, 3}, radius)};
+        Simulation simulation(std::move(setup));
+        EXPECT_EQ(simulation.statistics().started_inside, 1U);
+        static_cast<void>(all_contacts(simulation));
+        EXPECT_NEAR(simulation.particles().position[0].z, 0.9 - 0.5 * kG * 0.09, 1e-9) << radius;
+    }
+}
+
+// In a frame that stands still nothing is other than in the world, by every integrator.
+TEST(LastingContact, InAFrameThatStandsStillIsThatOfTheWorldByEveryIntegrator) {
+    for (const IntegratorKind kind :
+         {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler, IntegratorKind::implicit_euler,
+          IntegratorKind::ballistic, IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4,
+          IntegratorKind::dormand_prince}) {
+        for (const double radius : {0.0, 0.05}) {
+            auto setup =
+                setup_of({frame_of("still", {})}, {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "still"}}, 0.01, 1.3);
+            setup.materials = {{"", 0.5, 0.0}};
+            setup.options.integrator = kind;
+            setup.forces.push_back(make_gravity({0, 0, -kG}));
+            setup.particles = {particle_at({0.3, 0, 0.05 + radius}, {1, 0, 0}, radius)};
+            Simulation simulation(std::move(setup));
+            static_cast<void>(all_contacts(simulation));
+            const auto what = static_cast<int>(kind);
+            EXPECT_NEAR(simulation.particles().position[0].x, 1.6, 1e-12) << what;
+            // Straight flights with forward Euler's kicks at their ends hop by some g h^2.
+            const double hop = kind == IntegratorKind::forward_euler ? 2e-3 : 1e-12;
+            EXPECT_NEAR(simulation.particles().position[0].z, radius, hop) << what;
+            EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0) << what;
+        }
+    }
+}
+
+// A spring that lands on a plane that moves along itself, without friction, does what it does on one at rest.
+TEST(ASpring, LandsOnAPlaneThatMovesAlongItselfAsOnOneAtRest) {
+    std::vector<Vec3> upper;
+    for (const bool moves : {false, true}) {
+        auto setup = setup_of({frame_of("slide", {steady({0.1, 0, 0})})},
+                              {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, moves ? "slide" : ""}}, 0.002, 0.5);
+        setup.materials = {{"", 0.1, 0.0}};
+        setup.options.integrator = IntegratorKind::velocity_verlet;
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.particles = {particle_at({0, 0, 0.1}, {}, 0.02), particle_at({0, 0, 0.22}, {}, 0.02)};
+        for (Particle& particle : setup.particles) particle.mass = 0.01;
+        setup.springs.push_back({0, 1, 20.0, 0.02, 0.12});
+        Simulation simulation(std::move(setup));
+        static_cast<void>(all_contacts(simulation));
+        upper.push_back(simulation.particles().position[1]);
+        EXPECT_NEAR(simulation.particles().velocity[0].x, 0.0, 1e-12);
+    }
+    EXPECT_LT(length(upper[0] - upper[1]), 1e-5);
 }
 
 // Numbers of threads, the order of colliders, and a restart in the middle change no bit.

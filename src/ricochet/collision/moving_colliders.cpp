@@ -11,6 +11,8 @@ namespace ricochet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Keys of a body that are looked at one by one in a step.
+constexpr int kMostKeys = 256;
 /// Relative to the coordinates: more than the rounding of poses and sums.
 constexpr double kBoxRounding = 0x1p-40;
 
@@ -44,8 +46,10 @@ void grow(Box3& box, double by) {
 Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end) {
     const double reach = length(max(abs(box.lower), abs(box.upper)));
     Box3 all;
-    for (double from = begin; from < end || from == begin;) {
-        const double to = std::min(end, frames.next_key(frame, from));
+    int count = 0;
+    for (double from = begin; from < end || from == begin; ++count) {
+        // Over many keys at once the bounds hold as well.
+        const double to = count < kMostKeys ? std::min(end, frames.next_key(frame, from)) : end;
         const MotionBounds bounds = frames.bounds(frame, from, to);
         Box3 part = placed(frames.at(frame, from), box);
         part.include(placed(frames.at(frame, to), box));
@@ -132,6 +136,22 @@ const MotionBounds& MovingColliders::bounds(BodyId body) const {
 
 double MovingColliders::next_key(BodyId body, double time) const {
     return body == kAtRest ? kInfinity : frames_->next_key(bodies_[body].frame, time);
+}
+
+std::optional<double> MovingColliders::next_jump(BodyId body, double from, double until) const {
+    constexpr double kSameVelocity = 1e-12;
+    const auto differs = [](const Vec3& a, const Vec3& b) {
+        return length(a - b) > kSameVelocity * (length(a) + length(b));
+    };
+    double key = next_key(body, from);
+    for (int count = 0; count < kMostKeys && key <= until; ++count, key = next_key(body, key)) {
+        const MovingPose before = pose(body, std::nextafter(key, from));
+        const MovingPose after = pose(body, key);
+        if (differs(before.velocity, after.velocity) || differs(before.angular_velocity, after.angular_velocity)) {
+            return key;
+        }
+    }
+    return std::nullopt;
 }
 
 }  // namespace ricochet

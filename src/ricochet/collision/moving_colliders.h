@@ -60,6 +60,8 @@ public:
     [[nodiscard]] const MotionBounds& bounds(BodyId body) const;
     /// As FrameTree::next_key(); infinite for kAtRest.
     [[nodiscard]] double next_key(BodyId body, double time) const;
+    /// The first key after `from` and not after `until`, s, at which the body's velocity jumps.
+    [[nodiscard]] std::optional<double> next_jump(BodyId body, double from, double until) const;
 
 private:
     struct Body {

@@ -13,6 +13,10 @@ namespace {
 /// Pieces of one path between two keys; beyond that they are as long as this many leave them.
 constexpr double kMostPieces = 4096.0;
 
+/// Keys of a body at which one path is cut; of more, as in a curve that repeats much faster than a step, the pieces
+/// take what is between.
+constexpr int kMostKeys = 256;
+
 /// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
 constexpr int kNewtonSteps = 4;
 
@@ -148,8 +152,8 @@ void MovingSweep::cut() {
     const PathClock& clock = view_.clock();
     std::vector<double> keys{0.0};
     const auto add_keys = [&](BodyId body) {
-        for (double key = view_.bodies().next_key(body, clock.begin); key < clock.end;
-             key = view_.bodies().next_key(body, key)) {
+        double key = view_.bodies().next_key(body, clock.begin);
+        for (int count = 0; count < kMostKeys && key < clock.end; ++count, key = view_.bodies().next_key(body, key)) {
             const double at = key - clock.base - clock.offset;
             if (at > 0.0 && at < duration) keys.push_back(at);
         }
@@ -161,7 +165,7 @@ void MovingSweep::cut() {
     double rate = 0.0;  // pieces a second
     const DerivativeBounds world = world_bounds();
     for (const BodyId body : near_) {
-        rate = std::max(rate, std::pow(fourth_derivative(body, world) / (384.0 * tolerance_of(body)), 0.25));
+        rate = std::max(rate, std::sqrt(std::sqrt(fourth_derivative(body, world) / (384.0 * tolerance_of(body)))));
     }
     cuts_.assign(1, 0.0);
     for (std::size_t k = 1; k < keys.size(); ++k) {
@@ -181,7 +185,7 @@ Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& s
     const Vec3 to = view.image(body, end.world, piece_.duration);
     const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
-    const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration));
+    const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration), MovingView::Limit::before);
     return hermite_path(from, leaving, to, arriving, piece_.duration);
 }
 

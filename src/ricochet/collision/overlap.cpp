@@ -52,6 +52,29 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const Movi
     return deepest;
 }
 
+std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time) {
+    constexpr double kOffsets = 4.0;
+    std::optional<Vec3> off;
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        const MovingPose pose = bodies.pose(body, time);
+        const CollisionWorld& world = bodies.world(body);
+        const Vec3 position = off.value_or(center);
+        const Vec3 image = pose.image(position);
+        const double offset = contact_offset(abs(position) + abs(pose.world_from_frame.translation) + abs(image));
+        std::vector<SurfaceId> under;
+        visit_distances(world, image, offset, [&](SurfaceId surface, double /*distance*/) {
+            if (world.point_on(surface, image)) under.push_back(surface);
+            return offset;
+        });
+        std::sort(under.begin(), under.end());
+        Vec3 normal;
+        for (const SurfaceId surface : under) normal += world.unit_normal_of(surface, image);
+        if (normal == Vec3{}) continue;
+        off = flush_tiny(pose.point(image + kOffsets * offset * normalized(normal)));
+    }
+    return off;
+}
+
 std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius, double reach) {
     std::vector<SurfaceId> touched;
     if (!is_finite(center)) return touched;

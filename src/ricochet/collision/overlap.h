@@ -25,6 +25,10 @@ struct Overlap {
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies,
                                                      const Vec3& center, double radius, double time);
 
+/// A position beside `center`, off the surfaces of bodies that it lies on exactly at a time, s: a few contact offsets
+/// to where their normals point. Nothing where it lies on none.
+[[nodiscard]] std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time);
+
 /// The surfaces that a sphere, or a point (radius 0), touches: those from whose distance its radius differs by at most
 /// `reach`, m, by number. Not one that a point lies exactly on. One query of a point.
 [[nodiscard]] std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius,

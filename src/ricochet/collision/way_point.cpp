@@ -1,5 +1,8 @@
 #include "ricochet/collision/way_point.h"
 
+#include <cmath>
+#include <limits>
+
 namespace ricochet {
 namespace {
 
@@ -17,8 +20,9 @@ Vec3 MovingView::direction_from(BodyId body, const Vec3& d, double s) const {
     return home_ == kAtRest ? world : bodies_->pose(home_, time).direction_image(world);
 }
 
-Vec3 MovingView::velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity) const {
-    const double time = clock_.at(at.time);
+Vec3 MovingView::velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity, Limit limit) const {
+    double time = clock_.at(at.time);
+    if (limit == Limit::before) time = std::nextafter(time, -std::numeric_limits<double>::infinity());
     Vec3 world = velocity;
     if (home_ != kAtRest) {
         const MovingPose pose = bodies_->pose(home_, time);

@@ -61,7 +61,10 @@ public:
     /// A direction of a body in the axes of this frame.
     [[nodiscard]] Vec3 direction_from(BodyId body, const Vec3& d, double s) const;
     /// Velocity, in a body's coordinates, of what is at a point of the world and moves with a velocity in this frame.
-    [[nodiscard]] Vec3 velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity) const;
+    /// At a key, where that may jump: `before` it or after.
+    enum class Limit { before, after };
+    [[nodiscard]] Vec3 velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity,
+                                   Limit limit = Limit::after) const;
     /// Velocity, as this frame sees it, of the material point of a body that is at a point of the world.
     [[nodiscard]] Vec3 velocity_of(BodyId body, const WayPoint& at) const;
 

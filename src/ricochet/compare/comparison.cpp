@@ -60,6 +60,7 @@ SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
     for (const auto& force : forces_) copy.forces.push_back(std::make_unique<SharedForce>(force));
     copy.materials = setup_.materials;
     copy.colliders = setup_.colliders;
+    copy.frames = setup_.frames;
     copy.emitters = setup_.emitters;
     copy.particles = setup_.particles;
     copy.bounds = setup_.bounds;

@@ -111,8 +111,9 @@ std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<For
 
 }  // namespace
 
-ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
+ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_coupling)
     : forces_(without_null(std::move(forces))),
+      adds_coupling_(adds_coupling),
       uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
       steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })),
       conservative_(
@@ -125,7 +126,7 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces)
 
 Vec3 ForceField::acceleration(const ForceInput& input) const {
     if (input.whole_radius > 0.0) return acceleration(whole(input));
-    Vec3 sum = input.coupling != nullptr ? input.coupling->acceleration(input) : Vec3{};
+    Vec3 sum = input.coupling != nullptr && adds_coupling_ ? input.coupling->acceleration(input) : Vec3{};
     for (const auto& force : forces_) sum += force->acceleration(input);
     return sum;
 }

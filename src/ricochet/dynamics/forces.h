@@ -85,7 +85,8 @@ class ForceField {
 public:
     ForceField() = default;
     /// Throws InputError for a null pointer.
-    explicit ForceField(std::vector<std::unique_ptr<Force>> forces);
+    /// adds_coupling: false where the forces themselves account for ForceInput::coupling.
+    explicit ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_coupling = true);
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const;
     /// Sum of the potentials, J; nothing when one force has none.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const;
@@ -108,6 +109,7 @@ public:
 
 private:
     std::vector<std::unique_ptr<Force>> forces_;
+    bool adds_coupling_ = true;
     bool uniform_ = true;
     bool steady_ = true;
     bool conservative_ = true;

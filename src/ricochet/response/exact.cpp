@@ -44,13 +44,17 @@ public:
 private:
     std::optional<Contact> fly(Flight& flight, bool is_first);
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
+    /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
+    [[nodiscard]] Integrator integrator() const {
+        return is_without_kick_ ? Integrator{IntegratorKind::ballistic} : rules_.settings.integrator;
+    }
+    std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
     [[nodiscard]] bool has_room();
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
-    [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Flight& flight, const Contact& contact,
-                                                    const Motion& arriving);
-    [[nodiscard]] std::optional<Contact> begin_shared(const Flight& flight, const Contact& contact);
+    [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> begin_shared();
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
@@ -62,7 +66,8 @@ private:
     ContactPhase contact_phase_;
     std::uint32_t bounces_at_look_ = 0;  // of has_room()
     double remaining_at_look_ = std::numeric_limits<double>::infinity();
-    bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
+    bool flies_anew_ = false;       // the next flight does not go on from one before: it comes from a ride
+    bool is_without_kick_ = false;  // for the rest of the step
 };
 
 MoveOutcome ParticleMover::run() {
@@ -87,6 +92,13 @@ MoveOutcome ParticleMover::run() {
     return outcome;
 }
 
+/// Among colliders that move: what a kick has done for the time that is left is taken back, and done by the forces.
+std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, const Contact& contact) {
+    if (!flies_anew_) particle_.state.velocity -= step_.remaining() * flight.acceleration;
+    flies_anew_ = is_without_kick_ = true;
+    return answer(Flight{}, contact);
+}
+
 /// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
 bool ParticleMover::has_room() {
     if (rides_ == nullptr || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
@@ -104,9 +116,8 @@ std::optional<Contact> ParticleMover::resume() {
     for (int turn = 0; turn < kMostTurns && particle_.contact.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
         const KeptContact& kept = particle_.contact;
         const BodyId body = rules_.bodies->body_of(kept.surfaces[0]);
-        const bool is_shared =
-            std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
-                        [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
+        const bool is_shared = std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
+                                           [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
         if (is_shared) {
             next = SharedContact(step_).follow();
         } else if (body == kAtRest) {
@@ -128,13 +139,22 @@ std::optional<Contact> ParticleMover::ride(BodyId body, Contact* contact, const 
         particle_.state.velocity = {};
         particle_.spin = ridden->spin;
     }
+    const std::optional<double> jump = rules_.bodies->next_jump(body, particle_.state.time, particle_.step_end);
+    if (jump) step_.begin_part(*jump);
     ContactPhase phase(step_);
     std::optional<Contact> next = go(phase);
-    if (step_.outcome().is_resting() && particle_.contact.count > 0) {
+    const bool is_let_go = jump && step_.remaining() <= 0.0;
+    if (is_let_go) {
+        // The body goes on with another velocity, and the particle with its own.
+        particle_.contact = {};
+        step_.outcome().end = MoveEnd::moving;
+    } else if (step_.outcome().is_resting() && particle_.contact.count > 0) {
         particle_.ridden = {particle_.state.position, particle_.spin};
     }
     step_.leave(rules_, next ? &*next : nullptr);
+    step_.end_part();
     flies_anew_ = true;
+    is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
     return next;
 }
 
@@ -146,9 +166,8 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     std::size_t count = 0;
     for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
     std::sort(bodies.begin(), bodies.begin() + count);
-    if (bodies[0] != bodies[count - 1] && step_.remaining() > 0.0 &&
-        SharedContact(step_).is_slow(contact, arriving)) {
-        return begin_shared(flight, contact);
+    if (bodies[0] != bodies[count - 1] && step_.remaining() > 0.0 && SharedContact(step_).is_slow(contact, arriving)) {
+        return begin_shared();
     }
     for (std::size_t k = count; k-- > 0;) {  // those at rest first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
@@ -159,36 +178,22 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
             own.surfaces[static_cast<std::size_t>(own.count++)] = surface;
         }
         const double before = step_.remaining();
-        const auto next = bodies[k] == kAtRest ? contact_phase_.begin(flight, own, arriving)
-                                               : begin_ride(bodies[k], flight, own, arriving);
+        const auto next =
+            bodies[k] == kAtRest ? contact_phase_.begin(flight, own, arriving) : begin_ride(bodies[k], own, arriving);
         if (next || step_.remaining() < before || particle_.contact.count > 0) return next;
     }
     return std::nullopt;
 }
 
-/// On surfaces of several frames at once. What a kick has done along them for the time that is left, forces do again.
-std::optional<Contact> ParticleMover::begin_shared(const Flight& flight, const Contact& contact) {
-    if (flight.kick_duration > 0.0) {
-        std::array<Vec3, 3> normals;
-        std::size_t count = 0;
-        for (const ContactSurface& surface : contact.all()) {
-            if (count < normals.size()) normals[count++] = surface.normal;
-        }
-        particle_.state.velocity -= step_.remaining() * project_off(flight.acceleration, {normals.data(), count});
-    }
+/// On surfaces of several frames at once.
+std::optional<Contact> ParticleMover::begin_shared() {
     flies_anew_ = true;
+    is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
     const auto next = SharedContact(step_).follow();
     return next || particle_.contact.count == 0 || !(step_.remaining() > 0.0) ? next : resume();
 }
 
-std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Flight& flight, const Contact& contact,
-                                                 const Motion& arriving) {
-    // What a kick has done along the surface for the time that is left, forces do again.
-    if (flight.kick_duration > 0.0) {
-        const Vec3& n = contact.first().normal;
-        const Vec3 along = flight.acceleration - dot(flight.acceleration, n) * n;
-        particle_.state.velocity -= step_.remaining() * along;
-    }
+std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Contact& contact, const Motion& arriving) {
     const double time = particle_.state.time;
     HomeFrame frame(rules_.bodies);
     frame.set(body);
@@ -203,11 +208,15 @@ std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Flight& flig
 /// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
 std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     const double remaining = step_.remaining();
-    flight = is_first ? first_flight(rules_, particle_, remaining)
-                      : resume_flight(rules_.settings.integrator, rules_.forces, particle_.state, flight, remaining);
+    if (is_first && is_without_kick_) {
+        flight = begin_flight(integrator(), rules_.forces, particle_.state, remaining);
+    } else {
+        flight = is_first ? first_flight(rules_, particle_, remaining)
+                          : resume_flight(integrator(), rules_.forces, particle_.state, flight, remaining);
+    }
     const auto look_ahead = look_ahead_of(flight);
     step_.log().note_impact();
-    const auto contact = step_.follow(flight, look_ahead ? &*look_ahead : nullptr,
+    const auto contact = step_.follow(flight, integrator(), look_ahead ? &*look_ahead : nullptr,
                                       is_first ? particle_.candidates : ContactCandidates{});
     step_.log().note_flight();
     return contact;
@@ -215,6 +224,7 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
 
 /// Answers an impact. Returns the next contact when the particle slides into one.
 std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact& contact) {
+    if (rides_ != nullptr && flight.kick_duration > 0.0) return answer_without_kick(flight, contact);
     ++step_.outcome().bounces;
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};

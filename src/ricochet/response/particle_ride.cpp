@@ -1,5 +1,7 @@
 // A particle among colliders that move: its way in their frames, and what it does where they leave it no room.
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
@@ -56,8 +58,8 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     // The world's coordinates are what is stored: contact is felt as they are rounded, and a carried place stays off.
     const MotionBounds& bounds = home_.bodies().bounds(body);
     const double way = remaining_ * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
-    const double reach = max_abs(stored_.position) + way +
-                         max_abs(home_.bodies().pose(body, stored_.time).world_from_frame.translation);
+    const double reach =
+        max_abs(stored_.position) + way + max_abs(home_.bodies().pose(body, stored_.time).world_from_frame.translation);
     geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, contact_offset({reach, 0.0, 0.0}));
     start_ = state().position;
     first_segment_ = scratch_.segments.size();
@@ -66,7 +68,10 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
 
 void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
     const HomeFrame before = home_;
-    const RecordedMotion motion = before.in_world({state().position, state().velocity, particle_.spin}, state().time);
+    // At a key, as the body moved before it.
+    const bool is_at_key = part_end_ && remaining_ <= 0.0;
+    const double time = is_at_key ? std::nextafter(*part_end_, 0.0) : state().time;
+    const RecordedMotion motion = before.in_world({state().position, state().velocity, particle_.spin}, time);
     home_.set(kAtRest);
     scratch_.driven = true;  // to and fro between frames it is rounded
     rules_ = &rules;
@@ -77,6 +82,33 @@ void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
     start_ = state().position;
     first_segment_ = scratch_.segments.size();
     turn_contact(contact, before, home_);
+}
+
+/// What others that it is joined with see: the cubic through both ends.
+void ParticleStep::record_flown_in_world(const Path& path, double duration, const Vec3& departure) {
+    const double time = state().time - duration;
+    const RecordedMotion begin = home_.in_world({path.c[0], departure, {}}, time);
+    const RecordedMotion end = home_.in_world({path.position(duration), state().velocity, {}}, state().time);
+    const Path seen = duration > 0.0
+                          ? hermite_path(begin.position, begin.velocity, end.position, end.velocity, duration)
+                          : line_path(begin.position, begin.velocity, 0.0);
+    scratch_.flown.push_back({seen, time, duration, begin.velocity, end.velocity, false});
+}
+
+void ParticleStep::begin_part(double until) {
+    part_end_ = until;
+    const double part = std::clamp(until - state().time, 0.0, remaining_);
+    rest_after_part_ = remaining_ - part;
+    remaining_ = part;
+    whole_step_end_ = std::exchange(particle_.step_end, until);
+}
+
+void ParticleStep::end_part() {
+    if (!part_end_) return;
+    if (remaining_ <= 0.0) state().time = *part_end_;
+    remaining_ += rest_after_part_;
+    particle_.step_end = whole_step_end_;
+    part_end_.reset();
 }
 
 void ParticleStep::turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const {

@@ -8,13 +8,13 @@
 
 namespace ricochet {
 
-std::optional<Contact> ParticleStep::follow(const Flight& flight, const LookAhead* look_ahead,
-                                            const ContactCandidates& candidates) {
+std::optional<Contact> ParticleStep::follow(const Flight& flight, const Integrator& integrator,
+                                            const LookAhead* look_ahead, const ContactCandidates& candidates) {
     const Path& path = flight.path;
     if (!can_follow(path)) return std::nullopt;
     const Vec3 departure = state().velocity;
     const Travel travelled = travel({path, state().radius, look_ahead, candidates});
-    state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, travelled.elapsed);
+    state().velocity = velocity_at(integrator, rules_->forces, flight, travelled.elapsed);
     record_flown(path, travelled.elapsed, departure, true);
     if (look_ahead != nullptr && !travelled.contact && state().position == path.end) {
         const LookAheadResult& ahead = travelled.ahead;

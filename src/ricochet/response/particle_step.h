@@ -41,7 +41,7 @@ public:
 
     /// Moves the particle along the flight: to its end, or to a safe position at the contact that is returned. It is
     /// frozen where it cannot be followed. With a look-ahead the outcome tells how long it remains free.
-    std::optional<Contact> follow(const Flight& flight, const LookAhead* look_ahead,
+    std::optional<Contact> follow(const Flight& flight, const Integrator& integrator, const LookAhead* look_ahead,
                                   const ContactCandidates& candidates);
     /// The same in contact with surfaces.
     std::optional<Contact> follow(const Flight& flight);
@@ -73,6 +73,9 @@ public:
     void enter(BodyId body, const ResponseRules& rules, Contact* contact);
     /// From now on it is that in the world again.
     void leave(const ResponseRules& rules, Contact* contact);
+    /// Until end_part(): the step ends at this time, s, after which the body's velocity may be another.
+    void begin_part(double until);
+    void end_part();
     /// The frame that the state is given in.
     [[nodiscard]] const HomeFrame& home() const { return home_; }
     /// Where the clock of the particle stood still in steps before: makes it go on, if it can. False where it cannot.
@@ -114,6 +117,7 @@ private:
     [[nodiscard]] Travel travel_among_bodies(const ContactQuery& query);
     [[nodiscard]] std::optional<Contact> first_contact_among_bodies(const ContactQuery& query);
     [[nodiscard]] MovingView view_of(const Path& path) const;
+    void record_flown_in_world(const Path& path, double duration, const Vec3& departure);
     [[nodiscard]] WayPoint here(const MovingView& view) const { return view.stored(stored_.position, 0.0); }
     void turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const;
     [[nodiscard]] bool carry_on(BodyId frame, double until);
@@ -129,6 +133,10 @@ private:
     /// Of a piece of what the particle has flown, after it.
     void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
         if (!scratch_.record_flown) return;
+        if (home_.is_moving()) {
+            record_flown_in_world(path, duration, departure);
+            return;
+        }
         scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
     }
 
@@ -141,8 +149,11 @@ private:
     ImpactAnswer impact_;
     MotionLog log_;
     Vec3 start_;
-    Stored stored_;              // where something moves
-    std::size_t first_segment_;  // of this step among those recorded
+    Stored stored_;                   // where something moves
+    std::optional<double> part_end_;  // s, of begin_part()
+    double rest_after_part_ = 0.0;    // s
+    double whole_step_end_ = 0.0;     // s
+    std::size_t first_segment_;       // of this step among those recorded
     double duration_;
     double remaining_;
 };

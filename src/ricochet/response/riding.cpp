@@ -50,7 +50,7 @@ Vec3 FrameForces::spin_change(const Vec3& spin, double time) const {
 
 Rides::Ride::Ride(const ResponseRules& rules_at_rest, BodyId body, std::unique_ptr<FrameForces> seen)
     : frame(*seen),
-      forces(only(std::move(seen))),
+      forces(only(std::move(seen)), false),
       rules{rules_at_rest.bodies->world(body),
             forces,
             rules_at_rest.materials,

@@ -181,6 +181,16 @@ double SharedContact::longest() const {
     return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
 }
 
+/// s, when one of the bodies goes on with another velocity, in this step.
+std::optional<double> SharedContact::next_jump() const {
+    std::optional<double> first;
+    for (const Touched& one : touched()) {
+        const auto jump = step_.rules().bodies->next_jump(one.body, state_.time, particle_.step_end);
+        if (jump && (!first || *jump < *first)) first = jump;
+    }
+    return first;
+}
+
 /// Plans the next interval in the frame in which none of the surfaces advances.
 SharedContact::Hold SharedContact::plan(double duration) {
     std::array<Vec3, kMostHolding> normals;
@@ -283,6 +293,7 @@ KeptContact SharedContact::kept() const {
 
 std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
+    bool has_jumped = false;
     for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
         gather();
         if (count_ == 0) return std::nullopt;
@@ -291,16 +302,20 @@ std::optional<Contact> SharedContact::follow() {
             step_.stop();
             return std::nullopt;
         }
-        const Hold hold = settle(std::min(step_.remaining(), longest()));
+        const std::optional<double> jump = next_jump();
+        double most = std::min(step_.remaining(), longest());
+        if (jump) most = std::clamp(*jump - state_.time, 0.0, most);
+        const Hold hold = settle(most);
         if (hold == Hold::single) particle_.contact = kept();
         if (hold != Hold::shared) return std::nullopt;
         step_.log().note_impact();
         const double before = step_.remaining();
+        const double before_time = state_.time;
         const Vec3 forces = step_.rules().forces.acceleration(state_);
         const Vec3 velocity = interval_.motion.velocity + shift_;
         // What ends at once has ended after the shortest interval.
         const double shortest = std::min(before, step_.duration() / kShortestIntervals);
-        const double duration = interval_.duration > 0.0 ? interval_.duration : shortest;
+        const double duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
         std::optional<Contact> contact = step_.follow(way(duration), held());
         const double elapsed = before - step_.remaining();
         for (std::size_t k = 0; k < count_; ++k) {
@@ -314,8 +329,11 @@ std::optional<Contact> SharedContact::follow() {
             take_part_in(*contact);
             return contact;
         }
+        has_jumped = jump && duration >= *jump - before_time;
+        if (has_jumped) break;
     }
-    if (step_.remaining() <= 0.0) particle_.contact = kept();
+    // At a jump a body goes on with another velocity, and the particle with its own.
+    if (step_.remaining() <= 0.0 && !has_jumped) particle_.contact = kept();
     return std::nullopt;
 }
 

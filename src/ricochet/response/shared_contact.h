@@ -47,6 +47,7 @@ private:
     [[nodiscard]] Hold plan(double duration);
     [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
     [[nodiscard]] double longest() const;
+    [[nodiscard]] std::optional<double> next_jump() const;
     [[nodiscard]] Path way(double duration) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
     [[nodiscard]] std::vector<SurfaceId> held() const;

@@ -97,10 +97,15 @@ void Simulation::Impl::prepare_radius(double radius) {
 
 void Simulation::Impl::add(Particle&& particle) {
     prepare_radius(particle.radius);
+    const std::optional<Vec3> off =
+        bodies && is_finite(particle.position) && max_abs(particle.position) <= kLargestCoordinate
+            ? off_bodies(*bodies, flush_tiny(particle.position), std::max(0.0, particle.birth_time))
+            : std::nullopt;
+    if (off) particle.position = *off;
     const std::optional<Overlap> overlap = overlap_of(particle);
     SimulationStatistics& statistics = recorder.statistics();
     statistics.started_in_overlap += overlap ? 1 : 0;
-    statistics.started_inside += overlap || starts_on_surface(particle) ? 1 : 0;
+    statistics.started_inside += overlap || off || starts_on_surface(particle) ? 1 : 0;
     schedule.append(particle.pinned);
     free_flights.append();
     store.append(std::move(particle));

@@ -88,7 +88,8 @@ Variant mesh_variant() {
         "Uniform by area on a mesh, just off its surface on the side that the triangles' normals point to, and "
         "launched along them.",
         joined<MeshKeys>({{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF."},
-                           {"collider", ValueType::text, "The name of a mesh collider: its surface, where it stands."}},
+                           {"collider", ValueType::text,
+                            "The name of a mesh collider: its surface, in the frame that it stands in."}},
                           placement_fields(&MeshKeys::placement, Needs{"file"}),
                           {{"volume", &MeshKeys::volume,
                             "true: uniform in the inside, launched in any direction; the mesh must be closed."}}}),
@@ -204,13 +205,23 @@ bool is_measurable(const EmitterShape& shape) {
     return (surface == nullptr || surface->mesh) && (volume == nullptr || volume->mesh);
 }
 
-// Puts the emitter into the frame that its key "frame" names.
+// Puts the emitter into the frame that its key "frame" names, or into that of the collider that it is on.
 void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
+    const bool is_on_collider = view.type() == "mesh" && view.has("collider");
+    if (is_on_collider && !view.has("frame")) {
+        const auto collider = std::find_if(setup.colliders.begin(), setup.colliders.end(),
+                                           [&](const auto& other) { return other.name == view.text("collider"); });
+        const auto frame = collider == setup.colliders.end() ? std::nullopt : setup.frames->find(collider->frame);
+        if (!frame) return;
+        emitter.frames = setup.frames;
+        emitter.frame = *frame;
+        return;
+    }
     if (!view.has("frame")) return;
-    if (view.type() == "mesh" && view.has("collider")) {
+    if (is_on_collider) {
         context.error(view, "frame",
-                      "a collider's surface stands still, expected an emitter of another kind or a file");
+                      "the emitter is in its collider's frame, expected an emitter of another kind or a file");
         return;
     }
     if (view.type() == "child") {

@@ -104,6 +104,14 @@ ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const
 
 CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
                           std::vector<WayPoint>& chain) {
+    // Most paths are free as a whole.
+    if (near.foreign() == nullptr && (path.degree == 1 || near.covers_chord(path, 0.0, until)) &&
+        near.is_free(path.c[0], target)) {
+        chain.resize(2);
+        chain[0] = {path.c[0], 0.0, path.c[0]};
+        chain[1] = {target, until, target};
+        return {chain[1], std::nullopt};
+    }
     PathFollower follower(near, path, near.start(), chain);
     (void)follower.follow_to(near.point_at(target, until), path.degree > 1 || near.foreign() ? kCertificateDepth : 0);
     return follower.followed();

@@ -44,13 +44,10 @@ public:
 private:
     std::optional<Contact> fly(Flight& flight, bool is_first);
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
-    /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
-    [[nodiscard]] Integrator integrator() const {
-        return is_without_kick_ ? Integrator{IntegratorKind::ballistic} : rules_.settings.integrator;
-    }
     std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
     [[nodiscard]] bool has_room();
     [[nodiscard]] std::optional<Contact> resume();
+    [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
@@ -66,14 +63,15 @@ private:
     ContactPhase contact_phase_;
     std::uint32_t bounces_at_look_ = 0;  // of has_room()
     double remaining_at_look_ = std::numeric_limits<double>::infinity();
-    bool flies_anew_ = false;       // the next flight does not go on from one before: it comes from a ride
-    bool is_without_kick_ = false;  // for the rest of the step
+    bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
+    /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
+    bool is_without_kick_ = false;
 };
 
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
-    std::optional<Contact> contact;
-    if (rides_ == nullptr || step_.catch_up()) contact = resume();
+    // What is copied here is large: no contact is assigned without need.
+    std::optional<Contact> contact = resume();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
@@ -111,6 +109,10 @@ bool ParticleMover::has_room() {
 /// one are left.
 std::optional<Contact> ParticleMover::resume() {
     if (rides_ == nullptr) return contact_phase_.resume();
+    return step_.catch_up() ? resume_among_bodies() : std::nullopt;
+}
+
+std::optional<Contact> ParticleMover::resume_among_bodies() {
     constexpr int kMostTurns = 4;
     std::optional<Contact> next;
     for (int turn = 0; turn < kMostTurns && particle_.contact.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
@@ -190,7 +192,7 @@ std::optional<Contact> ParticleMover::begin_shared() {
     flies_anew_ = true;
     is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
     const auto next = SharedContact(step_).follow();
-    return next || particle_.contact.count == 0 || !(step_.remaining() > 0.0) ? next : resume();
+    return next || particle_.contact.count == 0 || !(step_.remaining() > 0.0) ? next : resume_among_bodies();
 }
 
 std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Contact& contact, const Motion& arriving) {
@@ -208,15 +210,12 @@ std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Contact& con
 /// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
 std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     const double remaining = step_.remaining();
-    if (is_first && is_without_kick_) {
-        flight = begin_flight(integrator(), rules_.forces, particle_.state, remaining);
-    } else {
-        flight = is_first ? first_flight(rules_, particle_, remaining)
-                          : resume_flight(integrator(), rules_.forces, particle_.state, flight, remaining);
-    }
+    const Integrator integrator = is_without_kick_ ? IntegratorKind::ballistic : rules_.settings.integrator;
+    flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
+                      : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     const auto look_ahead = look_ahead_of(flight);
     step_.log().note_impact();
-    const auto contact = step_.follow(flight, integrator(), look_ahead ? &*look_ahead : nullptr,
+    const auto contact = step_.follow(flight, integrator, look_ahead ? &*look_ahead : nullptr,
                                       is_first ? particle_.candidates : ContactCandidates{});
     step_.log().note_flight();
     return contact;

@@ -27,6 +27,14 @@ std::optional<Contact> ParticleStep::first_contact_among_bodies(const ContactQue
     return MovingSweep(view, geometry_, query, here(view), scratch_.contacts).first_contact();
 }
 
+std::optional<Contact> ParticleStep::follow_among_bodies(const Flight& flight, const Integrator& integrator) {
+    const Vec3 departure = state().velocity;
+    const Travel travelled = travel_among_bodies({flight.path, state().radius, nullptr, {}});
+    state().velocity = velocity_at(integrator, rules_->forces, flight, travelled.elapsed);
+    record_flown(flight.path, travelled.elapsed, departure, true);
+    return travelled.contact;
+}
+
 /// Piece by piece, up to a contact.
 ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query) {
     const MovingView view = view_of(query.path);
@@ -35,10 +43,10 @@ ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query
     for (std::size_t k = 0; k < sweep.pieces() && !travel.contact; ++k) {
         const WayPoint start{view.stored(stored_.position, sweep.begin_of(k))};
         ContactQueryResult found = sweep.sweep(k, start);
-        const Travel part = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
-        travel.contact = part.contact;
-        const bool has_gone = part.elapsed >= sweep.path().duration;
-        travel.elapsed = has_gone ? sweep.begin_of(k + 1) : sweep.begin_of(k) + part.elapsed;
+        const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
+        travel.contact = found.contact;
+        const bool has_gone = elapsed >= sweep.path().duration;
+        travel.elapsed = has_gone ? sweep.begin_of(k + 1) : sweep.begin_of(k) + elapsed;
         if (travel.contact) travel.contact->time = travel.elapsed;
         if (!has_gone) break;
     }

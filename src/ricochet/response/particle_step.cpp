@@ -12,26 +12,31 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const Integrat
                                             const LookAhead* look_ahead, const ContactCandidates& candidates) {
     const Path& path = flight.path;
     if (!can_follow(path)) return std::nullopt;
+    if (rules_->bodies != nullptr) return follow_among_bodies(flight, integrator);
     const Vec3 departure = state().velocity;
-    const Travel travelled = travel({path, state().radius, look_ahead, candidates});
-    state().velocity = velocity_at(integrator, rules_->forces, flight, travelled.elapsed);
-    record_flown(path, travelled.elapsed, departure, true);
-    if (look_ahead != nullptr && !travelled.contact && state().position == path.end) {
-        const LookAheadResult& ahead = travelled.ahead;
+    const ContactQuery query{path, state().radius, look_ahead, candidates};
+    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+    const double elapsed = go(query, found);
+    state().velocity = velocity_at(integrator, rules_->forces, flight, elapsed);
+    record_flown(path, elapsed, departure, true);
+    if (look_ahead != nullptr && !found.contact && state().position == path.end) {
+        const LookAheadResult& ahead = found.ahead;
         outcome_.free_for = std::max(0.0, ahead.free_until - path.duration);
         outcome_.candidates_for = std::max(0.0, ahead.candidates_until - path.duration);
         outcome_.candidates = ahead.candidates;
     }
-    return travelled.contact;
+    return found.contact;
 }
 
 std::optional<Contact> ParticleStep::follow(const Flight& flight) {
     if (!can_follow(flight.path)) return std::nullopt;
     const Vec3 departure = state().velocity;
-    const Travel travelled = travel({flight.path, state().radius, nullptr, {}});
-    state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, travelled.elapsed);
-    record_flown(flight.path, travelled.elapsed, departure, false);
-    return travelled.contact;
+    const ContactQuery query{flight.path, state().radius, nullptr, {}};
+    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+    const double elapsed = go(query, found);
+    state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, elapsed);
+    record_flown(flight.path, elapsed, departure, false);
+    return found.contact;
 }
 
 bool ParticleStep::can_follow(const Path& path) {
@@ -41,22 +46,15 @@ bool ParticleStep::can_follow(const Path& path) {
     return false;
 }
 
-/// The first contact of a path, and the certified segments to the safe position there or to the path's end.
-ParticleStep::Travel ParticleStep::travel(const ContactQuery& query) {
-    if (rules_->bodies != nullptr) return travel_among_bodies(query);
-    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
-    return go(query, found);
-}
-
-/// To the contact found, or to the end of the path.
-ParticleStep::Travel ParticleStep::go(const ContactQuery& query, ContactQueryResult& found) {
-    Travel travel = go_along(query, found);
-    pass(travel.elapsed);
-    return travel;
+/// To the contact found, or to the end of the path; what is met on the way is the contact then. s, that it has taken.
+double ParticleStep::go(const ContactQuery& query, ContactQueryResult& found) {
+    const double elapsed = go_along(query, found);
+    pass(elapsed);
+    return elapsed;
 }
 
 /// The same without its time.
-ParticleStep::Travel ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& found) {
+double ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& found) {
     const Path& path = query.path;
     const NearSurfaces& near = found.near;
     std::optional<Contact>& contact = found.contact;
@@ -64,7 +62,8 @@ ParticleStep::Travel ParticleStep::go_along(const ContactQuery& query, ContactQu
         contact ? contact->time == 0.0 : query.radius > 0.0 && query.held.empty() && near.starts_in_overlap();
     if (starts_there && !near.surfaces_at(path.c[0]).empty()) {
         leave_surface(near);
-        return {};
+        contact.reset();
+        return 0.0;
     }
     if (contact) {
         stop_at_contact(query, found);
@@ -74,7 +73,7 @@ ParticleStep::Travel ParticleStep::go_along(const ContactQuery& query, ContactQu
         if (followed.blocker) contact = contact_with_blocker(near, path, followed);
     }
     record_chain(near);
-    return {contact, contact ? contact->time : path.duration, found.ahead};
+    return contact ? contact->time : path.duration;
 }
 
 /// What blocks the way to the contact is met before.

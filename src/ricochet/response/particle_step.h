@@ -97,11 +97,10 @@ public:
     [[nodiscard]] const Vec3& start() const { return start_; }
 
 private:
-    /// How far a particle has come along a path.
+    /// How far a particle has come along a path among bodies.
     struct Travel {
         std::optional<Contact> contact{};  ///< what it has come to
         double elapsed = 0.0;              ///< s
-        LookAheadResult ahead{};           ///< only without a contact
     };
 
     [[nodiscard]] bool can_follow(const Path& path);
@@ -111,9 +110,9 @@ private:
         double time = 0.0;  ///< s
     };
 
-    [[nodiscard]] Travel travel(const ContactQuery& query);
-    [[nodiscard]] Travel go(const ContactQuery& query, ContactQueryResult& found);
-    [[nodiscard]] Travel go_along(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] double go(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] double go_along(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] std::optional<Contact> follow_among_bodies(const Flight& flight, const Integrator& integrator);
     [[nodiscard]] Travel travel_among_bodies(const ContactQuery& query);
     [[nodiscard]] std::optional<Contact> first_contact_among_bodies(const ContactQuery& query);
     [[nodiscard]] MovingView view_of(const Path& path) const;
@@ -169,19 +168,20 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
         if (next) followed = *next;
         return next.has_value();
     };
-    Travel travelled;
-    if (rules_->bodies == nullptr) {
-        ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
-        while (takes_shorter(found.contact)) found = find_first_contact(geometry_, query, scratch_.contacts);
-        travelled = go(query, found);
-    } else {
+    if (rules_->bodies != nullptr) {
         while (takes_shorter(first_contact_among_bodies(query))) {
         }
-        travelled = travel_among_bodies(query);
+        const Travel travelled = travel_among_bodies(query);
+        state().velocity = followed.velocity(travelled.elapsed);
+        record_flown(followed, travelled.elapsed, departure, false);
+        return travelled.contact;
     }
-    state().velocity = followed.velocity(travelled.elapsed);
-    record_flown(followed, travelled.elapsed, departure, false);
-    return travelled.contact;
+    ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
+    while (takes_shorter(found.contact)) found = find_first_contact(geometry_, query, scratch_.contacts);
+    const double elapsed = go(query, found);
+    state().velocity = followed.velocity(elapsed);
+    record_flown(followed, elapsed, departure, false);
+    return found.contact;
 }
 
 template <class Found>

@@ -108,14 +108,15 @@ void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides
     std::fill(sides.begin(), sides.end(), SideMemory{});
 }
 
-Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration) {
+Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
+                    const Integrator& integrator) {
     const ForceInput& state = particle.state;
     if (particle.planned != nullptr) {
         const Flight& plan = *particle.planned;
         const bool untouched = state.position == plan.start.position && state.velocity == plan.start.velocity;
         if (untouched && duration == plan.path.duration) return plan;
     }
-    return begin_flight(rules.settings.integrator, rules.forces, state, duration);
+    return begin_flight(integrator, rules.forces, state, duration);
 }
 
 std::unique_ptr<Response> make_response(ResponseKind kind, const ResponseRules& rules) {

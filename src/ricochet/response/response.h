@@ -146,7 +146,11 @@ struct ResponseRules {
 
 /// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle
 /// yet, else that of its integrator.
-[[nodiscard]] Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration);
+[[nodiscard]] Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
+                                  const Integrator& integrator);
+[[nodiscard]] inline Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration) {
+    return first_flight(rules, particle, duration, rules.settings.integrator);
+}
 
 /// Moves particles one at a time. Safe from any number of threads.
 class Response {

@@ -261,7 +261,9 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
     std::optional<Contact> first;
     double tolerance = 0.0;
     for (const BodyId body : near_) tolerance = std::max(tolerance, tolerance_of(body));
+    // What lies beside the path here lies further beside the cubic that a body sees.
     const double beside = query_.beside + 4.0 * tolerance + rounding();
+    const double beside_there = 2.0 * beside;
     ContactQueryResult own =
         find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
     if (own.contact) take(*own.contact, view.home(), view, first);
@@ -271,7 +273,7 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
         const SurfaceGeometry geometry(view.bodies().world(near_[k]), scratch.plane_cache);
         const Path path = path_in(near_[k], view, first_point);
         const ContactQueryResult found =
-            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside}, scratch);
+            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside_there}, scratch);
         if (found.contact) take(*found.contact, near_[k], view, first);
         foreign_->add({near_[k], path, found.near});
     }

@@ -46,6 +46,11 @@ private:
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
     std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
     [[nodiscard]] bool has_room();
+    [[nodiscard]] bool has_moving(const Contact& contact) const {
+        return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+            return rules_.bodies->body_of(surface.surface) != kAtRest;
+        });
+    }
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
@@ -227,6 +232,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     ++step_.outcome().bounces;
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
+    if (rides_ != nullptr && has_moving(contact)) step_.impact().note_driven();
     step_.impact().reflect(contact.all());
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();

@@ -30,6 +30,8 @@ public:
 
     /// Records an impulse, as the change of velocity that it made.
     void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
+    /// What is recorded next has surfaces that move in it.
+    void note_driven() { scratch_.driven = true; }
     /// Removes the particle when an impact that changes its momentum by mass times this velocity shatters it.
     void shatter_by(const Vec3& velocity_change);
     /// Keeps an impact for the contact log; the velocity after it is the present one.

@@ -101,7 +101,9 @@ CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const Contac
         for (std::size_t k = 1; k < 4; ++k) {
             const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
             const WayPoint next = near.point_at(outside.point[k], time);
-            if (!near.is_link_free(chain.back(), next)) return false;
+            if (!near.is_free(chain.back().position, next.position)) return false;
+            // In other frames it is no hull of the path, near which alone their surfaces are known.
+            if (near.foreign() != nullptr && !is_link_free(*near.foreign(), chain.back(), next)) return false;
             chain.push_back(next);
         }
         return true;

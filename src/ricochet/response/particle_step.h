@@ -122,6 +122,10 @@ private:
     [[nodiscard]] bool carry_on(BodyId frame, double until);
     [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
     [[nodiscard]] bool is_link_free(const Stored& from, const Stored& to) const;
+    [[nodiscard]] bool is_link_free(const ForeignSurfaces& foreign, const WayPoint& from, const WayPoint& to) const {
+        const PathClock& clock = foreign.view().clock();
+        return is_link_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
+    }
     [[nodiscard]] bool wait_out(double until);
     void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);

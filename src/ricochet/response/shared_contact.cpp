@@ -295,6 +295,7 @@ std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
     bool has_jumped = false;
     for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
+        step_.impact().note_driven();
         gather();
         if (count_ == 0) return std::nullopt;
         if (!land()) {
@@ -324,6 +325,7 @@ std::optional<Contact> SharedContact::follow() {
         }
         if (!contact) state_.velocity = velocity + elapsed * interval_.acceleration;
         particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
+        step_.impact().note_driven();
         step_.log().note_contact(forces, true);
         if (contact) {
             take_part_in(*contact);

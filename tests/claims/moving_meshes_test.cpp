@@ -1,0 +1,78 @@
+// Nothing leaks out of meshes that tumble: points and spheres that begin inside, with gravity, friction and contact
+// that lasts, stay inside in the mesh's own frame; the verifier checks every link with its own arithmetic.
+//
+// A long run: ten thousand particles, and a thousand steps more.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "claims/hard_meshes.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/shared_meshes.h"
+
+namespace ricochet::testing {
+namespace {
+
+/// A frame that spins about a skew axis, swings, and is shaken, by a mesh's size, m.
+FrameDescription tumbling(double size, double spin) {
+    FrameDescription frame;
+    frame.name = "tumbling";
+    frame.translation = {0.3 * size, -0.2 * size, 0.1 * size};
+    frame.motions = {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.4, {size, 0, 0}}, {1.0, {0, size, -size}}},
+                                                       Interpolation::cubic_spline, CurveEnds::repeat)},
+                     Spin{{1, 2, 3}, spin}, Swing{{0, 1, 0}, 40.0, 1.3, 20.0},
+                     Oscillation{{0, 0.02 * size, 0.05 * size}, 7.0, 0.0}};
+    return frame;
+}
+
+class TumblingMesh : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TumblingMesh, LosesNothingThatBeginsInside) {
+    const auto mesh = mesh_by_name(GetParam());
+    if (!mesh) GTEST_SKIP() << missing_mesh_sentence(GetParam());
+    const Box3 box = bounds(mesh->mesh);
+    const double size = box.diagonal();
+    const auto inside = std::make_shared<const TriangleMesh>(mesh->mesh);
+    for (const auto& [radius, spin, step] :
+         {std::tuple{0.0, 300.0, 0.01}, std::tuple{0.004, 90.0, 0.01}, std::tuple{0.002, 1500.0, 0.02}}) {
+        SimulationSetup setup;
+        setup.options.time_step = step;
+        setup.options.duration = step * (test::is_long_run() ? 1040 : 40);
+        setup.options.verify = true;
+        setup.options.seed = 11;
+        setup.materials = {{"", 0.6, 0.3}};
+        setup.forces.push_back(make_gravity({0, 0, -9.81 * size}));
+        setup.frames = std::make_shared<const FrameTree>(std::vector{tumbling(size, spin)});
+        setup.colliders = {{"mesh", MeshShape{inside, {}, "", {}}, 0, "tumbling"}};
+        EmitterDescription emitter;
+        emitter.shape = MeshVolumeShape{inside};
+        emitter.frames = setup.frames;
+        emitter.burst = static_cast<std::uint64_t>(test::scaled(test::is_long_run() ? 10000 : 40));
+        emitter.speed = {size, 0.5 * size};
+        emitter.radius = {radius * size, 0.0};
+        setup.emitters.push_back(std::move(emitter));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const SimulationStatistics& statistics = simulation.statistics();
+        EXPECT_EQ(statistics.violations, 0U) << radius << " " << spin;
+        EXPECT_EQ(statistics.energy_violations, 0U) << radius << " " << spin;
+        EXPECT_EQ(statistics.frozen, 0U);
+        EXPECT_GT(statistics.contacts, statistics.emitted);
+    }
+}
+
+std::string name_of_mesh(const ::testing::TestParamInfo<std::string>& mesh) {
+    return mesh.param.substr(0, mesh.param.find_first_of(".-"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Made, TumblingMesh, ::testing::Values("box", "sphere", "star"), name_of_mesh);
+INSTANTIATE_TEST_SUITE_P(Real, TumblingMesh, ::testing::Values("spot.obj", "bunny-closed.off"), name_of_mesh);
+
+}  // namespace
+}  // namespace ricochet::testing

@@ -474,6 +474,47 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     }
 }
 
+// A plane that turns about the origin pushes it along a wall one metre away: it stays at x = tan(omega t).
+TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
+    for (const double step : {0.01, 0.04}) {
+        for (const double rate : {0.5, 1.0}) {
+            const double until = 0.8 / rate;
+            auto setup = setup_of(
+                {frame_of("arm", {Spin{{0, 0, 1}, -rate * 180.0 / kPi}})},
+                {{"wall", PlaneShape{{0, 1, 0}, {0, -1, 0}}, 0}, {"arm", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0, "arm"}},
+                step, until);
+            setup.materials = {{"", 0.0, 0.0}};
+            setup.options.integrator = IntegratorKind::rk4;
+            setup.forces.push_back(make_gravity({0, kG, 0}));
+            setup.particles = {particle_at({0.03, 0.97, 0}, {})};
+            Simulation simulation(std::move(setup));
+            static_cast<void>(all_contacts(simulation));
+            EXPECT_NEAR(simulation.particles().position[0].x, std::tan(0.8), 1e-12) << step << " " << rate;
+            EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+        }
+    }
+}
+
+// A blade sweeps it over the inside of a ball, where no frame has both at rest: it spirals outward along the blade.
+TEST(APointBeforeATurningBlade, IsSweptThroughABowl) {
+    std::vector<Vec3> ends;
+    for (const double step : {0.01, 0.005}) {
+        auto setup = setup_of({frame_of("rotor", {Spin{{0, 0, 1}, 150.0}})},
+                              {{"bowl", BallShape{6.0, {{0, 0, 6}}}, 0},
+                               {"blade", CuboidShape{{1.6, 0.05, 0.4}, {{0, 0, 0.215}}}, 0, "rotor"}},
+                              step, 1.0);
+        setup.materials = {{"", 0.0, 0.3}};
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.particles = {particle_at({0.3, 0.3, 0.016018797}, {})};
+        Simulation simulation(std::move(setup));
+        static_cast<void>(all_contacts(simulation));
+        EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+        ends.push_back(simulation.particles().position[0]);
+    }
+    EXPECT_LT(length(ends[0] - ends[1]), 1e-2);
+    EXPECT_GT(length(ends[0]), 0.5);
+}
+
 // An open cup full of spheres, carried, tipped and shaken in steps up to a tenth of a second.
 TEST(ACup, LosesNothingThroughItsWalls) {
     for (const double step : {0.01, 0.1}) {

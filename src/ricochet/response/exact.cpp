@@ -20,7 +20,7 @@ constexpr std::uint32_t kBouncesInNarrowGap = 2;
 
 /// Bounces among colliders that move after which a particle's progress is looked at, and what of a step at least has to
 /// have passed by then.
-constexpr std::uint32_t kBouncesToClose = 64;
+constexpr std::uint32_t kBouncesToClose = 16;
 constexpr double kLeastProgress = 1e-3;
 
 /// Parts of the run's time step that a step may last by the rounding of the clock.

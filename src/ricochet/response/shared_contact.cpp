@@ -74,6 +74,11 @@ void SharedContact::gather_in(BodyId body) {
 bool SharedContact::land() {
     ImpactAnswer& impact = step_.impact();
     const Vec3 before = state_.velocity;
+    // What goes on along all of them has landed already.
+    const bool is_along = std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
+        return departure_from(one) >= -kStopRounding * (length(before) + length(one.velocity));
+    });
+    if (is_along) return true;
     std::array<ImpactSurface, kMostHolding> surfaces;
     for (std::size_t k = 0; k < count_; ++k) {
         const ContactSurface& surface = touched_[k].surface;
@@ -225,37 +230,60 @@ SharedContact::Hold SharedContact::plan(double duration) {
     return Hold::single;
 }
 
-/// A position at a time, s from now, put at the contact offset from the surfaces that hold it.
-Vec3 SharedContact::kept_off(Vec3 end, double time) const {
+SharedContact::Height SharedContact::height_above(const Touched& touched, const Vec3& position, double time) const {
     const MovingView view = view_at(time);
+    const CollisionWorld& world = view.bodies().world(touched.body);
+    const SurfaceId surface = touched.surface.surface;
+    const Vec3 image = view.image(touched.body, position, 0.0);
+    Vec3 normal = world.unit_normal_of(surface, image);
+    double height = world.signed_distance_from(surface, image);
+    if (!touched.surface.flat && !world.is_shape(surface)) {
+        const CollisionWorld::Nearest nearest = world.nearest(surface, image);
+        normal = nearest.normal;
+        height = nearest.distance;
+    }
+    normal = view.direction_from(touched.body, normal, 0.0);
+    const double side = dot(normal, touched.surface.normal) < 0.0 ? -1.0 : 1.0;
+    return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(image))};
+}
+
+/// A position at a time put at the contact offset from the surfaces that hold it.
+Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
         std::array<Vec3, kMostHolding> normals;
         std::array<double, kMostHolding> lifts{};
         std::size_t count = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             if (interval_.push[k] == Vec3{}) continue;
-            const BodyId body = touched_[k].body;
-            const CollisionWorld& world = view.bodies().world(body);
-            const SurfaceId surface = touched_[k].surface.surface;
-            const Vec3 image = view.image(body, end, 0.0);
-            Vec3 normal = view.direction_from(body, world.unit_normal_of(surface, image), 0.0);
-            double height = world.signed_distance_from(surface, image);
-            if (!touched_[k].surface.flat && !world.is_shape(surface)) {
-                const CollisionWorld::Nearest nearest = world.nearest(surface, image);
-                normal = view.direction_from(body, nearest.normal, 0.0);
-                height = nearest.distance;
-            }
-            if (dot(normal, touched_[k].surface.normal) < 0.0) {
-                normal = -normal;
-                height = -height;
-            }
-            const double offset = std::max(contact_offset(end), contact_offset(image));
-            normals[count] = normal;
-            lifts[count++] = state_.radius + 2.0 * offset - height;
+            const Height height = height_above(touched_[k], end, time);
+            normals[count] = height.normal;
+            lifts[count++] = state_.radius + height.offset - height.above;
         }
         end += shift_by({normals.data(), count}, {lifts.data(), count});
     }
     return flush_tiny(end);
+}
+
+/// Between its ends the path of a point can be behind surfaces that turn, by the cubic's error, where it would be
+/// stopped: lifts it, by 4 s (1 - s) of a height over its duration.
+void SharedContact::lift_middle(Path& path) const {
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (interval_.push[k] == Vec3{}) continue;
+        double behind = 0.0;
+        Vec3 normal;
+        for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+            const double time = part * path.duration;
+            const Height height = height_above(touched_[k], path.position(time), state_.time + time);
+            const double missing = state_.radius + height.offset - height.above;
+            behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
+            normal = height.normal;
+        }
+        if (behind <= 0.5 * state_.radius) continue;
+        const Vec3 lift = (4.0 * behind / path.duration) * normal;
+        path.c[1] += lift;
+        path.c[2] -= lift / path.duration;
+        path.degree = std::max(path.degree, 2);
+    }
 }
 
 /// Along the interval, to where the surfaces will be.
@@ -264,7 +292,9 @@ Path SharedContact::way(double duration) const {
     const Vec3 last = velocity + duration * interval_.acceleration;
     const Vec3 end = state_.position + duration * (velocity + (0.5 * duration) * interval_.acceleration);
     const double until = duration >= step_.remaining() ? particle_.step_end : state_.time + duration;
-    return hermite_path(state_.position, velocity, kept_off(end, until), last, duration);
+    Path path = hermite_path(state_.position, velocity, kept_off(end, until), last, duration);
+    if (path.duration > 0.0) lift_middle(path);
+    return path;
 }
 
 std::vector<SurfaceId> SharedContact::held() const {

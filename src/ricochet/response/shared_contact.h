@@ -49,7 +49,15 @@ private:
     [[nodiscard]] double longest() const;
     [[nodiscard]] std::optional<double> next_jump() const;
     [[nodiscard]] Path way(double duration) const;
+    /// Of a surface, from a position at a time.
+    struct Height {
+        Vec3 normal;
+        double above = 0.0;   ///< m, of the centre
+        double offset = 0.0;  ///< m, the contact offset there
+    };
+    [[nodiscard]] Height height_above(const Touched& touched, const Vec3& position, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
+    void lift_middle(Path& path) const;
     [[nodiscard]] std::vector<SurfaceId> held() const;
     void take_part_in(Contact& contact) const;
     [[nodiscard]] KeptContact kept() const;

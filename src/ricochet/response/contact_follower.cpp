@@ -128,7 +128,8 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
     if (!manifold_.is_driven(impact_)) {
-        limit_energy(motion, state_.radius, most + 2.0 * work, length(forces) * step_.geometry().contact_offset(state_.position));
+        limit_energy(motion, state_.radius, most + 2.0 * work,
+                     length(forces) * step_.geometry().contact_offset(state_.position));
     }
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
@@ -267,7 +268,8 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
         const Vec3 there = arc.at(time).position;
         const double off = length(there - tried.position(time));
-        if (!(off > kTouchingOffsets * step_.geometry().contact_offset(there)) || ++closer_looks > kMostCloserLooks) return {};
+        if (!(off > kTouchingOffsets * step_.geometry().contact_offset(there)) || ++closer_looks > kMostCloserLooks)
+            return {};
         way.leaves_surface = way.jams = false;
         lead_until(time, arc, way);
         keep_to_pieces(arc, way);

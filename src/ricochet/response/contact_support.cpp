@@ -51,7 +51,8 @@ double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& f
     if (kicked || impact_.material_of(surface.surface).is_random()) return 0.0;
     if (dies_out) return resting_speed;
     const double pressing = std::max(0.0, pressing_on(surface, forces));
-    return std::min(resting_speed, std::sqrt(2.0 * pressing * kTouchingOffsets * step_.geometry().contact_offset(state_.position)));
+    return std::min(resting_speed,
+                    std::sqrt(2.0 * pressing * kTouchingOffsets * step_.geometry().contact_offset(state_.position)));
 }
 
 std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {

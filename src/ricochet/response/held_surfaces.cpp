@@ -121,7 +121,8 @@ void HeldSurfaces::take_part_in(Contact& contact) const {
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
                                           [&](const ContactSurface& other) { return other.surface == surface; });
         const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
-        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position)) continue;
+        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position))
+            continue;
         // A point next to a rim: the direction from the rim is rounding.
         const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
         contact.surfaces[static_cast<std::size_t>(contact.count++)] =

@@ -114,6 +114,18 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     return result;
 }
 
+const std::vector<ColliderTotals>& Simulation::collider_totals() const { return impl().recorder.loads(); }
+
+std::vector<BodyState> Simulation::bodies() const {
+    std::vector<BodyState> states;
+    for (const DrivenBody& body : impl().driven.bodies()) {
+        states.push_back({body.description().frame, body.center(), body.velocity(), body.angular_velocity(),
+                          body.angular_momentum(), body.description().mass, body.coordinate(), body.rate(),
+                          body.kinetic_energy()});
+    }
+    return states;
+}
+
 const std::vector<Violation>& Simulation::last_violations() const { return impl().recorder.last_violations(); }
 
 bool Simulation::is_penetrating(std::size_t i) const {
@@ -179,6 +191,10 @@ std::uint64_t Simulation::state_hash() const {
         hash.add(impl().particles().id[i]);
         hash.add(impl().particles().position[i]);
         hash.add(impl().particles().velocity[i]);
+    }
+    for (const BodyState& body : bodies()) {
+        for (const Vec3& v : {body.center, body.velocity, body.angular_velocity}) hash.add(v);
+        hash.add(body.coordinate);
     }
     return hash.value();
 }

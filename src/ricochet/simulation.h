@@ -16,6 +16,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/byte_stream.h"
 #include "ricochet/core/frame_tree.h"
+#include "ricochet/dynamics/driven_body.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
@@ -40,6 +41,8 @@ struct SimulationSetup {
     /// The frames that colliders stand in (ColliderDescription::frame); null where none does. Only the exact response
     /// follows colliders that move.
     std::shared_ptr<const FrameTree> frames = {};
+    /// What the driven frames are: bodies that impulses of particles move; one for each.
+    std::vector<BodyDescription> bodies = {};
     std::vector<EmitterDescription> emitters;
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
     std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
@@ -93,6 +96,27 @@ struct SimulationStatistics {
 struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
     std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
+};
+
+/// What particles have done to one collider that moves, or whose material does, since the start.
+struct ColliderTotals {
+    std::uint64_t hits = 0;  ///< impacts
+    Vec3 impulse;            ///< N s, given to it
+    Vec3 moment;             ///< N m s, given about the origin of its frame where that was, in world axes
+    double work = 0.0;       ///< J, done on it; below 0: it has driven them
+};
+
+/// How a body that impulses move stands and moves.
+struct BodyState {
+    std::string frame;            ///< its name
+    Vec3 center;                  ///< of mass, m
+    Vec3 velocity;                ///< of that, m/s
+    Vec3 angular_velocity;        ///< rad/s
+    Vec3 angular_momentum;        ///< about the centre of mass, kg m^2/s
+    double mass = 0.0;            ///< kg
+    double coordinate = 0.0;      ///< of a joint: rad or m from where it started
+    double rate = 0.0;            ///< of that, per s
+    double kinetic_energy = 0.0;  ///< J
 };
 
 class CollisionWorld;
@@ -182,6 +206,11 @@ public:
     [[nodiscard]] MovingPose collider_pose(std::size_t i, double time) const;
     /// Totals of collider i, one entry a triangle (one in all for a plane); empty without options.triangle_totals.
     [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
+    /// What particles have done to the colliders, in their order; all zero for those that do not move and whose
+    /// material does not either. Empty where there are no others.
+    [[nodiscard]] const std::vector<ColliderTotals>& collider_totals() const;
+    /// Of the setup, in its order.
+    [[nodiscard]] std::vector<BodyState> bodies() const;
     /// Triangles of all mesh colliders together, degenerate ones included.
     [[nodiscard]] std::size_t triangle_count() const;
     /// Triangles without area, which take no part in collisions.

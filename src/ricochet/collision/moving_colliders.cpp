@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
@@ -139,7 +140,6 @@ double MovingColliders::next_key(BodyId body, double time) const {
 }
 
 std::optional<double> MovingColliders::next_jump(BodyId body, double from, double until) const {
-    constexpr double kSameVelocity = 1e-12;
     const auto differs = [](const Vec3& a, const Vec3& b) {
         return length(a - b) > kSameVelocity * (length(a) + length(b));
     };

@@ -14,6 +14,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/frame_tree.h"
+#include "ricochet/core/mobility.h"
 
 namespace ricochet {
 
@@ -63,6 +64,22 @@ public:
     /// The first key after `from` and not after `until`, s, at which the body's velocity jumps.
     [[nodiscard]] std::optional<double> next_jump(BodyId body, double from, double until) const;
 
+    // Bodies that impulses move.
+
+    /// How a body of a driven frame yields, in the frame's coordinates.
+    void set_mobility(BodyId body, const Mobility& mobility) { bodies_[body].mobility = mobility; }
+    /// For what begins next: whether impulses have just changed its velocity.
+    void set_jumped(BodyId body, bool has_jumped) { bodies_[body].has_jumped = has_jumped; }
+    [[nodiscard]] bool yields(BodyId body) const { return body != kAtRest && bodies_[body].mobility.has_value(); }
+    /// How it yields at a time, s, in the world; only of one that does.
+    [[nodiscard]] Mobility mobility(BodyId body, double time) const {
+        return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);
+    }
+    /// True when impulses have changed its velocity where this step, or this part of it, begins.
+    [[nodiscard]] bool has_jumped(BodyId body) const { return body != kAtRest && bodies_[body].has_jumped; }
+    /// The frame of a body, by its number in frames().
+    [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
+
 private:
     struct Body {
         std::unique_ptr<CollisionWorld> world;
@@ -71,6 +88,8 @@ private:
         MotionBounds bounds;
         MovingPose at_begin;
         MovingPose at_end;
+        std::optional<Mobility> mobility{};
+        bool has_jumped = false;
     };
 
     void sweep(Body& body) const;

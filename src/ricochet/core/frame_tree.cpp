@@ -22,36 +22,6 @@ std::optional<std::size_t> place_of(std::span<const FrameDescription> frames, st
     return static_cast<std::size_t>(found - frames.begin());
 }
 
-// Moves the frame along its own axes, by an offset with its first and second derivative.
-void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate = {}, const Vec3& second = {}) {
-    AffineMap& map = pose.world_from_frame;
-    const Vec3 moved = map.direction(offset);
-    const Vec3 moving = map.direction(rate);
-    const Vec3 carried = cross(pose.angular_velocity, moved);
-    map.translation += moved;
-    pose.velocity += carried + moving;
-    pose.acceleration += cross(pose.angular_acceleration, moved) + cross(pose.angular_velocity, carried) +
-                         2.0 * cross(pose.angular_velocity, moving) + map.direction(second);
-}
-
-// Rodrigues' formula, applied to each row of the rotation: row' = row R(axis, angle), the turn about -axis of the row.
-Vec3 turned_row(const Vec3& row, const Vec3& axis, double sine, double cosine) {
-    return cosine * row - sine * cross(axis, row) + ((1.0 - cosine) * dot(axis, row)) * axis;
-}
-
-// Turns the frame about one of its own axes, of unit length, by an angle in degrees with its derivatives.
-void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate = 0.0, double second = 0.0) {
-    constexpr double kRadians = std::numbers::pi / 180.0;
-    AffineMap& map = pose.world_from_frame;
-    const Vec3 about = map.direction(axis);
-    pose.angular_acceleration += (second * kRadians) * about + (rate * kRadians) * cross(pose.angular_velocity, about);
-    pose.angular_velocity += (rate * kRadians) * about;
-    const double turns = degrees / 360.0;
-    const double sine = sine_of_turns(turns);
-    const double cosine = sine_of_turns(turns + 0.25);
-    for (Vec3* row : {&map.row_x, &map.row_y, &map.row_z}) *row = turned_row(*row, axis, sine, cosine);
-}
-
 /// A sine of amplitude 1, and its derivatives, 1/s and 1/s^2.
 struct Wave {
     Wave(double frequency, double phase, double time) {
@@ -86,14 +56,6 @@ void move(MovingPose& pose, const Oscillation& motion, double time) {
     shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
-void step_into(MovingPose& pose, const FrameDescription& frame, double time) {
-    shift(pose, frame.translation);
-    if (frame.rotation_degrees != 0.0) turn(pose, frame.rotation_axis, frame.rotation_degrees);
-    for (const FrameMotion& motion : frame.motions) {
-        std::visit([&](const auto& m) { move(pose, m, time); }, motion);
-    }
-}
-
 /// Those of a product of two functions, by Leibniz' rule.
 DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
     constexpr std::array<DerivativeBounds, 5> kBinomials{
@@ -103,13 +65,6 @@ DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
         for (std::size_t k = 0; k <= n; ++k) result[n] += kBinomials[n][k] * f[k] * g[n - k];
     }
     return result;
-}
-
-/// Those of the matrix of a turn by an angle, degrees, about a fixed axis: of exp(i angle), by Faa di Bruno's formula.
-DerivativeBounds turn_bounds(DerivativeBounds a) {
-    for (double& bound : a) bound *= std::numbers::pi / 180.0;
-    return {1.0, a[1], a[2] + a[1] * a[1], a[3] + 3.0 * a[1] * a[2] + a[1] * a[1] * a[1],
-            a[4] + 4.0 * a[1] * a[3] + 3.0 * a[2] * a[2] + 6.0 * a[1] * a[1] * a[2] + a[1] * a[1] * a[1] * a[1]};
 }
 
 DerivativeBounds wave_bounds(double amplitude, double frequency) {
@@ -172,6 +127,29 @@ void prepare(FrameDescription& frame) {
     }
 }
 
+/// The path that is valid at a time: where two meet, the later one.
+const BodyPath& path_at(const std::vector<BodyPath>& paths, double time) {
+    const auto later = std::upper_bound(paths.begin(), paths.end(), time,
+                                        [](double t, const BodyPath& path) { return t < path.begin; });
+    return later == paths.begin() ? paths.front() : *(later - 1);
+}
+
+/// Of all of them that are valid within [from, to].
+MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double to) {
+    MotionBounds all;
+    for (const BodyPath& path : paths) {
+        const bool is_first = &path == &paths.front();
+        const bool is_last = &path == &paths.back();
+        if ((path.end < from && !is_last) || (path.begin > to && !is_first)) continue;
+        const MotionBounds one = path.bounds(from, to);
+        for (std::size_t n = 1; n < all.origin.size(); ++n) {
+            all.origin[n] = std::max(all.origin[n], one.origin[n]);
+            all.rotation[n] = std::max(all.rotation[n], one.rotation[n]);
+        }
+    }
+    return all;
+}
+
 }  // namespace
 
 std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames) {
@@ -194,8 +172,12 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
         if (!frame.parent.empty() && !place_of(frames_, frame.parent)) {
             throw InputError(fmt::format("frame '{}': there is no parent '{}'", frame.name, frame.parent));
         }
+        if (frame.is_driven && (!frame.parent.empty() || !frame.motions.empty())) {
+            throw InputError(fmt::format("frame '{}': it is driven, expected no parent and no motions", frame.name));
+        }
         prepare(frame);
     }
+    paths_.resize(frames_.size());
     if (const auto circle = frame_in_circle(frames_)) {
         throw InputError(fmt::format("frame '{}': its parents lead back to it", frames_[*circle].name));
     }
@@ -204,6 +186,27 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
         for (std::optional<std::size_t> k = i; k; k = place_of(frames_, frames_[*k].parent)) chain.push_back(*k);
         std::reverse(chain.begin(), chain.end());
         chains_.push_back(std::move(chain));
+    }
+}
+
+void FrameTree::set_paths(std::size_t frame, std::vector<BodyPath> paths) {
+    require_index(frame, size(), "frame");
+    if (!frames_[frame].is_driven || paths.empty()) {
+        throw InputError(fmt::format("frame '{}': it is not driven, or there are no paths", frames_[frame].name));
+    }
+    paths_[frame] = std::move(paths);
+}
+
+void FrameTree::step_into(MovingPose& pose, std::size_t frame, double time) const {
+    if (!paths_[frame].empty()) {
+        pose = path_at(paths_[frame], time).at(time);
+        return;
+    }
+    const FrameDescription& description = frames_[frame];
+    shift(pose, description.translation);
+    if (description.rotation_degrees != 0.0) turn(pose, description.rotation_axis, description.rotation_degrees);
+    for (const FrameMotion& motion : description.motions) {
+        std::visit([&](const auto& m) { move(pose, m, time); }, motion);
     }
 }
 
@@ -217,7 +220,7 @@ const FrameDescription& FrameTree::description(std::size_t frame) const {
 MovingPose FrameTree::at(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
     MovingPose pose;
-    for (const std::size_t k : chains_[frame]) step_into(pose, frames_[k], time);
+    for (const std::size_t k : chains_[frame]) step_into(pose, k, time);
     return pose;
 }
 
@@ -226,6 +229,10 @@ MotionBounds FrameTree::bounds(std::size_t frame, double from, double to) const 
     MotionBounds bounds;
     const BoundsOf add{bounds, from, to};
     for (const std::size_t k : chains_[frame]) {
+        if (!paths_[k].empty()) {
+            bounds = bounds_of(paths_[k], from, to);
+            continue;
+        }
         add.shift({length(frames_[k].translation), 0.0, 0.0, 0.0, 0.0});
         for (const FrameMotion& motion : frames_[k].motions) std::visit(add, motion);
     }
@@ -236,6 +243,9 @@ double FrameTree::next_key(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
     double next = std::numeric_limits<double>::infinity();
     for (const std::size_t k : chains_[frame]) {
+        for (const BodyPath& path : paths_[k]) {
+            if (path.end > time) next = std::min(next, path.end);
+        }
         for (const FrameMotion& motion : frames_[k].motions) next = std::min(next, next_key_of(motion, time));
     }
     return next;

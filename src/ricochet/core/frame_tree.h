@@ -13,8 +13,9 @@
 #include <variant>
 #include <vector>
 
+#include "ricochet/core/body_path.h"
 #include "ricochet/core/keyed_curve.h"
-#include "ricochet/core/transform.h"
+#include "ricochet/core/moving_pose.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -57,6 +58,9 @@ struct FrameDescription {
     Vec3 rotation_axis{0, 0, 1};         ///< of any length but zero
     double rotation_degrees = 0.0;       ///< about rotation_axis, right-hand rule
     std::vector<FrameMotion> motions{};  ///< in order
+    /// It moves as set_paths() says from time to time, from where it stands at first: a body that is pushed. It stands
+    /// in the world and has no motions.
+    bool is_driven = false;
 };
 
 /// Where a frame is at a time: turned about an axis through its origin, which is at a position.
@@ -72,47 +76,15 @@ struct KeyPose {
 /// as KeyedCurve does. Source: K. Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 [[nodiscard]] std::vector<FrameMotion> motions_through(const std::vector<KeyPose>& poses);
 
-/// Where a frame is at one time, and how it moves.
-struct MovingPose {
-    AffineMap world_from_frame;  ///< a rotation and the origin's position, m
-    Vec3 velocity;               ///< of the origin, m/s
-    Vec3 angular_velocity;       ///< rad/s, in world axes
-    Vec3 acceleration;           ///< of the origin, m/s^2
-    Vec3 angular_acceleration;   ///< rad/s^2, in world axes
-
-    /// The point p of the frame, m, in the world: fl(R p + t), row by row as AffineMap::point() says it.
-    [[nodiscard]] Vec3 point(const Vec3& p) const { return world_from_frame.point(p); }
-    /// A point of the world, m, in the frame's coordinates: fl(R^T (x - t)), summed over the rows of R in their order.
-    /// Where a stored position is in a frame is what this says, bit by bit.
-    [[nodiscard]] Vec3 image(const Vec3& x) const { return direction_image(x - world_from_frame.translation); }
-    /// A direction of the world in the frame's axes, R^T d.
-    [[nodiscard]] Vec3 direction_image(const Vec3& d) const {
-        const AffineMap& m = world_from_frame;
-        return d.x * m.row_x + d.y * m.row_y + d.z * m.row_z;
-    }
-
-    /// Velocity, in world axes, of the frame's own point at p (frame coordinates): v + w x (R p), m/s.
-    [[nodiscard]] Vec3 velocity_of(const Vec3& p) const {
-        return velocity + cross(angular_velocity, world_from_frame.direction(p));
-    }
-};
-
-/// Upper bounds of how fast a frame moves over an interval of time: of the sizes of the first to fourth derivatives of
-/// its origin, m/s^n, and of its rotation matrix (operator norm), 1/s^n. Entry 0: 0 and 1.
-struct MotionBounds {
-    DerivativeBounds origin{};
-    DerivativeBounds rotation{1.0, 0.0, 0.0, 0.0, 0.0};
-};
-
 /// The first frame whose parents lead back to it; nothing when there is none. Unknown parents count as the world.
 [[nodiscard]] std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames);
 
-/// Frames by name. Immutable: safe from any number of threads; the same bits on every system.
+/// Frames by name. Safe from any number of threads, but not beside set_paths(); the same bits on every system.
 class FrameTree {
 public:
     FrameTree() = default;
     /// Throws InputError, naming the frame, for a name that is empty or taken, an unknown parent, parents that lead
-    /// back, an axis without length, or an offset that is not finite.
+    /// back, an axis without length, an offset that is not finite, or a driven frame that has a parent or motions.
     explicit FrameTree(std::vector<FrameDescription> frames);
 
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
@@ -128,8 +100,16 @@ public:
     /// may jump there; infinite when there is none.
     [[nodiscard]] double next_key(std::size_t frame, double time) const;
 
+    /// How a driven frame has moved, and will: paths that follow each other without a gap, at least one. What comes
+    /// before and after is as the first and the last of them say. Throws InputError for other frames.
+    void set_paths(std::size_t frame, std::vector<BodyPath> paths);
+    [[nodiscard]] const std::vector<BodyPath>& paths(std::size_t frame) const { return paths_[frame]; }
+
 private:
+    void step_into(MovingPose& pose, std::size_t frame, double time) const;
+
     std::vector<FrameDescription> frames_;
+    std::vector<std::vector<BodyPath>> paths_;      // one list a frame; empty but for driven ones that have been set
     std::vector<std::vector<std::size_t>> chains_;  // of each frame: from the one that stands in the world to itself
 };
 

@@ -270,6 +270,25 @@ inline constexpr double kTautRope = 1e-9;
 /// Smaller than some 1e-300: exponentials overflow. Larger: narrow catenaries lose their curvature.
 inline constexpr double kFoldedRope = 1e-9;
 
+/// Parts of an impact's change of a particle's velocity by which all impacts of a part of a step before it may change
+/// the velocity of the body that it hits, and of the energy that they take off by which their being answered at once may
+/// change it. Larger: light bodies are hit as if they had not been moved yet, from 1 on energy grows. Smaller: more parts
+/// of steps.
+inline constexpr double kMostBodyChange = 0.1;
+
+/// Parts of the time to the next impact, or to the step's end, after which a part of a step ends: bodies take impulses
+/// there. Larger: they go on longer as if nothing had hit them. Much smaller: an impact that is found again later by
+/// rounding falls into the next part, where it is as good.
+inline constexpr double kPartAfterImpact = 1e-3;
+
+/// Relative to the energies that are exchanged: more than the rounding of their sums. Smaller: parts of steps end at
+/// every impact. Larger: bodies gain energy.
+inline constexpr double kImpactEnergyRounding = 1e-14;
+
+/// Relative to their sizes: velocities of a body that differ by no more are the same. Smaller: what rides on a body is
+/// let go at every step by rounding. Larger: it is carried through a jump.
+inline constexpr double kSameVelocity = 1e-12;
+
 /// Unit of the per-triangle impulse totals, N s: 128-bit integers in this unit, so that sums do not depend on the
 /// order. The largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;

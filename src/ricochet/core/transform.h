@@ -23,9 +23,17 @@ struct AffineMap {
 
     [[nodiscard]] Vec3 point(const Vec3& p) const { return direction(p) + translation; }
     [[nodiscard]] Vec3 direction(const Vec3& d) const { return {dot(row_x, d), dot(row_y, d), dot(row_z, d)}; }
+    /// Of a rotation: the other way round, summed over the rows in their order.
+    [[nodiscard]] Vec3 direction_back(const Vec3& d) const { return d.x * row_x + d.y * row_y + d.z * row_z; }
     [[nodiscard]] double determinant() const { return dot(row_x, cross(row_y, row_z)); }
     /// True when the map turns a right hand into a left hand: triangle windings must be flipped.
     [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
+
+    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        a(row_x), a(row_y), a(row_z), a(translation);
+    }
 };
 
 /// The map of a placement. Throws InputError for numbers that are not finite and an axis without length. Multiples of

@@ -20,7 +20,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b35ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b36ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
 template <class Archive>
@@ -35,6 +35,9 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     archive_series(a, checkpoint.frames);
     archive_series(a, checkpoint.contacts);
     archive_series(a, checkpoint.moving);
+    LoadRows& loads = checkpoint.loads;
+    a(loads.colliders), a(loads.bodies), a(loads.since);
+    archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
 }
 
 struct Close {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "ricochet/io/load_tables.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/simulation.h"
 
@@ -19,6 +20,7 @@ struct Checkpoint {
     std::vector<PvdEntry> frames;    ///< written so far
     std::vector<PvdEntry> contacts;  ///< the same of the contact log
     std::vector<PvdEntry> moving;    ///< and of the colliders that move
+    LoadRows loads;                  ///< of the tables
 };
 
 /// Writes state and checkpoint; an older file stays until the new one is complete. Throws RunError when the disk does

@@ -23,6 +23,8 @@ inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";
 inline constexpr const char* kMovingSeriesFile = "moving.pvd";
+inline constexpr const char* kColliderTableFile = "colliders.csv";  ///< what was done to colliders that move
+inline constexpr const char* kBodyTableFile = "bodies.csv";         ///< how bodies have moved
 
 inline constexpr const char* kComparisonJsonFile = "compare.json";          ///< everything that a comparison found
 inline constexpr const char* kComparisonTableFile = "compare.csv";          ///< one line a response and time step

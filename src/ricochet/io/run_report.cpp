@@ -13,6 +13,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
+#include "ricochet/io/load_tables.h"
 
 namespace ricochet {
 
@@ -113,9 +114,24 @@ RunInfo read_run_info(const std::filesystem::path& path) {
 namespace {
 
 Json json_of(const ColliderSummary& collider) {
-    return {{"name", collider.name}, {"type", collider.type},
-            {"file", collider.file}, {"triangles", collider.triangles},
-            {"hits", collider.hits}, {"impulse", {collider.impulse.x, collider.impulse.y, collider.impulse.z}}};
+    Json json = {{"name", collider.name}, {"type", collider.type},
+                 {"file", collider.file}, {"triangles", collider.triangles},
+                 {"hits", collider.hits}, {"impulse", json_of(collider.impulse)}};
+    if (!collider.loads) return json;
+    json["angular_impulse"] = json_of(collider.loads->moment);
+    json["work"] = collider.loads->work;
+    return json;
+}
+
+Json json_of(const BodyState& body) {
+    return {{"name", body.frame},
+            {"mass", body.mass},
+            {"center", json_of(body.center)},
+            {"velocity", json_of(body.velocity)},
+            {"angular_velocity", json_of(body.angular_velocity)},
+            {"coordinate", body.coordinate},
+            {"rate", body.rate},
+            {"kinetic_energy", body.kinetic_energy}};
 }
 
 void add_statistics(Json& json, const SimulationStatistics& statistics) {
@@ -162,6 +178,9 @@ ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
         std::holds_alternative<MeshShape>(collider.shape) || std::holds_alternative<CuboidShape>(collider.shape);
     if (is_mesh) summary.triangles = simulation.collider_mesh(i)->triangles.size();
     summary.hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
+    if (!simulation.collider_totals().empty() && has_loads(simulation, i)) {
+        summary.loads = simulation.collider_totals()[i];
+    }
     summary.impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
     return summary;
 }
@@ -186,6 +205,7 @@ RunSummary summarize(const Simulation& simulation) {
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
         summary.colliders.push_back(collider_summary(simulation, i));
     }
+    summary.bodies = simulation.bodies();
     return summary;
 }
 
@@ -216,6 +236,7 @@ std::string summary_text(const RunSummary& summary) {
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["colliders"] = Json::array();
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
+    for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));
     // Names come from files and may hold bytes that are no UTF-8: they are replaced, never a reason to lose the run.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -56,6 +56,8 @@ struct ColliderSummary {
     std::uint64_t triangles = 0;
     std::uint64_t hits = 0;
     Vec3 impulse;  ///< N s
+    /// Of one that moves, or whose material does; nothing of others.
+    std::optional<ColliderTotals> loads;
 };
 
 /// Everything that summary.json says.
@@ -81,6 +83,7 @@ struct RunSummary {
     std::uint64_t state_hash = 0;
     std::uint64_t peak_memory_bytes = 0;
     std::vector<ColliderSummary> colliders;
+    std::vector<BodyState> bodies;  ///< that impulses move, at the end
 };
 
 /// What the simulation itself knows for its summary; the colliders' files are left empty.

@@ -73,7 +73,8 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
       has_spheres_(simulation.has_spheres()),
       output_seconds_(resumed ? resumed->output_seconds : 0.0),
       thread_(std::make_shared<WriterThread>(mode)),
-      frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}, thread_) {
+      frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}, thread_),
+      loads_(folder_, resumed ? resumed->loads : LoadRows{}) {
     const SecondsTo clock(output_seconds_);
     if (resumed) last_frame_ = simulation.step_index();
     if (simulation.options().record_contacts) {
@@ -112,14 +113,16 @@ void RunWriter::write_frame(const Simulation& simulation) {
     }
     frames_.submit(simulation.step_index(), std::move(frame));
     if (moving_) moving_->submit(simulation.step_index(), moving_collider_frame(simulation, region_));
+    loads_.add(simulation);
     last_frame_ = simulation.step_index();
 }
 
 void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds) {
     const SecondsTo clock(output_seconds_);
-    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}, {}};
+    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}, {}, loads_.rows()};
     if (contacts_) checkpoint.contacts = contacts_->drain();
     if (moving_) checkpoint.moving = moving_->drain();
+    loads_.write(simulation);
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
 
@@ -146,6 +149,7 @@ RunSummary RunWriter::close(const Simulation& simulation) {
         if (contacts_) contacts_->finish();
         if (moving_) moving_->finish();
         write_colliders(simulation);
+        loads_.write(simulation);
     }
     RunSummary summary = summarize(simulation);
     summary.frames = frames_.submitted();

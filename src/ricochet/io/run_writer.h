@@ -66,6 +66,7 @@ private:
     std::shared_ptr<WriterThread> thread_;
     FrameWriter frames_;
     std::optional<ContactLog> contacts_;
+    LoadTables loads_;
     std::optional<FrameWriter> moving_;  ///< of the colliders that move, where some do
 };
 

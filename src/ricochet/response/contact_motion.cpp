@@ -72,6 +72,10 @@ Vec3 slip_velocity(const Motion& motion, double radius, const Vec3& n) {
     return radius > 0.0 ? tangential - radius * cross(motion.spin, n) : tangential;
 }
 
+Vec3 spin_change_by(const Vec3& velocity_change, const Vec3& n, double radius) {
+    return radius > 0.0 ? (-kSphereSpinUp / radius) * cross(n, velocity_change) : Vec3{};
+}
+
 Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction) {
     const double approach = -dot(motion.velocity, n);
     if (!(approach > 0.0)) return motion;

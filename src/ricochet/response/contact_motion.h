@@ -28,6 +28,10 @@ struct Motion {
 /// Fluids 6, 1994.
 [[nodiscard]] Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitution, double friction);
 
+/// The change of a solid sphere's spin, rad/s, by a change of its velocity, m/s, that is made at the contact on a
+/// surface of unit normal n; none of a point's.
+[[nodiscard]] Vec3 spin_change_by(const Vec3& velocity_change, const Vec3& n, double radius);
+
 /// Unit direction of a diffuse reflection into the half space of n: the cosine law (Lambert, Knudsen).
 [[nodiscard]] Vec3 cosine_direction(const Vec3& n, RandomSequence& random);
 

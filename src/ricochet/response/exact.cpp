@@ -91,6 +91,7 @@ MoveOutcome ParticleMover::run() {
         }
     }
     if (rides_ != nullptr) step_.store_position();
+    step_.impact().close_book();
     step_.log().note_impact();
     return outcome;
 }
@@ -123,6 +124,15 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
     for (int turn = 0; turn < kMostTurns && particle_.contact.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
         const KeptContact& kept = particle_.contact;
         const BodyId body = rules_.bodies->body_of(kept.surfaces[0]);
+        const bool has_jumped =
+            std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
+                        [&](SurfaceId surface) { return rules_.bodies->has_jumped(rules_.bodies->body_of(surface)); });
+        if (has_jumped) {
+            // The body goes on with another velocity, and the particle with its own.
+            particle_.contact = {};
+            particle_.ridden.reset();
+            break;
+        }
         const bool is_shared = std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
                                            [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
         if (is_shared) {

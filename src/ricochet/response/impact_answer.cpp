@@ -7,6 +7,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/impact_problem.h"
+#include "ricochet/response/yielding_impact.h"
 
 namespace ricochet {
 namespace {
@@ -31,7 +32,9 @@ bool can_be_followed(const Path& path) {
 
 void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) {
     const Vec3 before = particle_.state.velocity;
+    book_.begin_impact();
     answer(surfaces, Rebound::by_material);
+    book_.end_impact();
     shatter_by(particle_.state.velocity - before);
 }
 
@@ -46,10 +49,12 @@ void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
     outcome_.end = MoveEnd::shattered;
 }
 
-void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact) {
+void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact,
+                        const std::optional<Vec3>& spin_change) {
     const Vec3 change = home_.direction_in_world(velocity_change, particle_.state.time);
     scratch_.hits.push_back({surface, -particle_.state.mass * change, impact});
     scratch_.driven = scratch_.driven || material_of(surface).drives() || home_.is_moving() || is_carried(surface);
+    if (scratch_.record_loads) book_.add(scratch_.hits.back(), spin_change);
 }
 
 /// Of the point of a body that is touched, and of its material there.
@@ -95,10 +100,11 @@ void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebo
         record(surfaces.front(), particle_.state.velocity);
         return;
     }
-    const bool is_random = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
-        return material_of(surface.surface).is_random();
+    // What chance decides, and what yields, is answered one after the other.
+    const bool takes_turns = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+        return material_of(surface.surface).is_random() || yields(surface.surface);
     });
-    if (is_random) {
+    if (takes_turns) {
         answer_in_turn(surfaces, rebound);
     } else if (std::count_if(surfaces.begin(), surfaces.end(), is_approached) > 1 ||
                !answer_alone(surfaces, *first, rebound)) {
@@ -143,7 +149,8 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
             if (result.push[k] == Vec3{}) continue;
             const Vec3 before = particle_.state.velocity;
             particle_.state.velocity += result.push[k];
-            push(met[k].surface, result.push[k], pass == 0);
+            push(met[k].surface, result.push[k], pass == 0,
+                 spin_change_by(result.push[k], met[k].normal, particle_.state.radius));
             record(met[k], before);
         }
         particle_.state.velocity = result.after.velocity;
@@ -205,6 +212,10 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
 void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound) {
     const double approach = -departure_from(surface);
     const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
+    if (yields(surface.surface)) {
+        bounce_off_body(surface, material, restitution);
+        return;
+    }
     // As it is seen from the surface's own material.
     const Vec3 carried = velocity_of(surface);
     const bool is_driven = carried != Vec3{};
@@ -216,6 +227,15 @@ void ImpactAnswer::reflect_off(const ContactSurface& surface, const Material& ma
     if (is_driven && !outcome_.is_absorbed()) motion.velocity += carried;
     particle_.state.velocity = motion.velocity;
     particle_.spin = motion.spin;
+}
+
+void ImpactAnswer::bounce_off_body(const ContactSurface& surface, const Material& material, double restitution) {
+    const ForceInput& state = particle_.state;
+    const Mobility body = home_.bodies().mobility(home_.bodies().body_of(surface.surface), state.time);
+    const YieldingSurface yielding{surface.normal, restitution, material.friction, velocity_of(surface), body};
+    const Motion after = ricochet::bounce({state.velocity, particle_.spin}, state, yielding);
+    particle_.state.velocity = after.velocity;
+    particle_.spin = after.spin;
 }
 
 /// Absorbs, or reflects by the cosine law or as a mirror, as this particle's own random numbers say (Maxwell's model:

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_problem.h"
+#include "ricochet/response/load_book.h"
 #include "ricochet/response/response.h"
 #include "ricochet/response/riding.h"
 
@@ -21,15 +23,24 @@ class ImpactAnswer {
 public:
     ImpactAnswer(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch, MoveOutcome& outcome,
                  const HomeFrame& home = HomeFrame::world())
-        : rules_(rules), particle_(particle), scratch_(scratch), outcome_(outcome), home_(home) {}
+        : rules_(rules),
+          particle_(particle),
+          scratch_(scratch),
+          outcome_(outcome),
+          home_(home),
+          book_(rules, particle, scratch, home) {}
 
     /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
     void reflect(std::span<const ContactSurface> surfaces);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
 
-    /// Records an impulse, as the change of velocity that it made.
-    void push(SurfaceId surface, const Vec3& velocity_change, bool impact);
+    /// Records an impulse, as the change of velocity that it made, and that of the spin; without it all that has
+    /// changed since the last one.
+    void push(SurfaceId surface, const Vec3& velocity_change, bool impact,
+              const std::optional<Vec3>& spin_change = std::nullopt);
+    /// At the end of the move.
+    void close_book() { book_.close(); }
     /// What is recorded next has surfaces that move in it.
     void note_driven() { scratch_.driven = true; }
     /// Removes the particle when an impact that changes its momentum by mass times this velocity shatters it.
@@ -87,6 +98,10 @@ private:
     [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
     void stop_approach(std::span<const ContactSurface> surfaces);
     void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
+    void bounce_off_body(const ContactSurface& surface, const Material& material, double restitution);
+    [[nodiscard]] bool yields(SurfaceId surface) const {
+        return rules_.bodies != nullptr && rules_.bodies->yields(rules_.bodies->body_of(surface));
+    }
     [[nodiscard]] Motion random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
                                            double restitution);
     void push_out_of_corner(std::span<const ContactSurface> surfaces);
@@ -96,6 +111,7 @@ private:
     MoveScratch& scratch_;
     MoveOutcome& outcome_;
     const HomeFrame& home_;
+    LoadBook book_;
 };
 
 }  // namespace ricochet

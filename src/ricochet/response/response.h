@@ -30,6 +30,21 @@ struct SurfaceHit {
     bool impact = true;  ///< false: the push of a contact interval
 };
 
+/// What a particle does to a collider that moves, or whose material does, at one time or in one interval.
+struct ColliderLoad {
+    std::uint64_t particle = 0;  ///< id
+    double time = 0.0;           ///< s; of an interval, its end
+    SurfaceId surface = 0;
+    double mass = 0.0;         ///< kg, of the particle
+    Vec3 impulse;              ///< N s, given to the surface
+    Vec3 moment;               ///< N m s, given about the origin of the collider's frame, in world axes
+    Vec3 place;                ///< m, of the particle's centre in the world
+    Vec3 couple;               ///< N m s, given besides the moment that the impulse has at `place`
+    double work = 0.0;         ///< J, given
+    double lost_energy = 0.0;  ///< J, kinetic, that the particle has lost by the impact; with the impact's last load
+    bool impact = true;        ///< false: of a contact that lasts
+};
+
 /// Scratch memory of one thread. The lists are appended to in the order of events and cleared by the caller.
 struct MoveScratch {
     ContactScratch contacts;
@@ -38,10 +53,12 @@ struct MoveScratch {
     std::vector<Segment> segments;       ///< filled when record_segments
     std::vector<FlownPiece> flown;       ///< filled when record_flown, by the exact response
     std::vector<MotionPart> motions;     ///< filled when record_motions, by the exact response
+    std::vector<ColliderLoad> loads;     ///< filled when record_loads
     bool record_contacts = false;
     bool record_segments = false;
     bool record_flown = false;
     bool record_motions = false;
+    bool record_loads = false;
     bool driven = false;  ///< a surface that moves or has a temperature has pushed since the last MotionPart
 };
 

@@ -150,6 +150,40 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }
 
+std::vector<ColliderLoad> ActiveMover::preview(const ParticleRange& range, const TimeSpan& step) {
+    std::vector<std::vector<ColliderLoad>> blocks(blocks_of(range.size()));
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        MoveScratch scratch;
+        scratch.record_loads = true;
+        for (std::size_t i = range.begin + begin; i < range.begin + end; ++i) {
+            const TimeSpan life = life_in(i, step);
+            if (parts_.store.is_fixed(i) || life.end <= life.begin) continue;
+            if (!is_near_yielding(parts_.store.force_input(i, life.begin), life.end - life.begin)) continue;
+            MovingParticle particle = load(i, life.begin);
+            particle.step_end = life.end;
+            static_cast<void>(parts_.response.move(particle, life.end - life.begin, scratch));
+            scratch.hits.clear();
+        }
+        blocks[block] = std::move(scratch.loads);
+    });
+    std::vector<ColliderLoad> all;
+    for (const auto& loads : blocks) all.insert(all.end(), loads.begin(), loads.end());
+    return all;
+}
+
+/// False where it cannot come to a body that yields, unless something else throws it there.
+bool ActiveMover::is_near_yielding(const ForceInput& state, double duration) const {
+    const ResponseRules& rules = parts_.response.rules();
+    const double speed = length(state.velocity) + duration * length(rules.forces.acceleration(state));
+    const double reach = state.radius + 2.0 * duration * speed;
+    const Vec3 by{reach, reach, reach};
+    const Box3 box{state.position - by, state.position + by};
+    for (BodyId body = 0; body < rules.bodies->size(); ++body) {
+        if (rules.bodies->yields(body) && !rules.bodies->stays_out(body, box)) return true;
+    }
+    return false;
+}
+
 // The part of the step in which it lives.
 TimeSpan ActiveMover::life_in(std::size_t i, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
@@ -214,12 +248,15 @@ std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) 
 void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.hits.clear();
     scratch.records.clear();
+    scratch.loads.clear();
+    scratch.record_loads = parts_.recorder.collects_loads();
     scratch.record_contacts = parts_.recorder.collects_contacts();
     scratch.record_segments = scratch.record_motions = parts_.check != nullptr;
 }
 
 void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) {
     record.lost_impulses += parts_.recorder.totals().add(scratch.hits);
+    record.loads.insert(record.loads.end(), scratch.loads.begin(), scratch.loads.end());
     record.contact_records.insert(record.contact_records.end(), scratch.records.begin(), scratch.records.end());
 }
 

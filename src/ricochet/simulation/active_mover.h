@@ -93,6 +93,10 @@ public:
     /// Moves the particles of the range as one system that goes back together: see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
+    /// What the particles of the range would do to bodies that impulses move, if the step were made: nothing is
+    /// changed.
+    [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
+
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight since it was last moved, until a
     /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
@@ -100,6 +104,7 @@ public:
 private:
     void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record);
+    [[nodiscard]] bool is_near_yielding(const ForceInput& state, double duration) const;
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);

@@ -19,7 +19,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f53540005ULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f53540006ULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -100,7 +100,10 @@ void Simulation::Impl::archive(Archive& a) {
     archive_statistics(a, recorder.statistics());
     store.archive(a);
     recorder.totals().archive(a);
+    for (ColliderTotals& load : recorder.loads()) a(load.hits), a(load.impulse), a(load.moment), a(load.work);
     coupled.archive(a);
+    expect(a, static_cast<std::uint64_t>(driven.bodies().size()), "the state belongs to other bodies");
+    driven.archive(a);
 }
 
 /// What the lists cannot say of themselves: numbers that lead nowhere would be followed.
@@ -193,6 +196,7 @@ void Simulation::restore(const ByteSource& source) {
     for (const double radius : impl().particles().radius) impl().prepare_radius(radius);
     impl().replay_emitters();
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
+    impl().driven.show();
     if (impl().check) impl().check->restart(impl().store, time());
     impl().inside_step = false;
 }

@@ -14,6 +14,7 @@
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/coupled_motion.h"
+#include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
 #include "ricochet/simulation/offspring.h"
 #include "ricochet/simulation/particle_store.h"
@@ -32,7 +33,11 @@ struct Simulation::Impl {
     [[nodiscard]] TimeSpan begin_step();
     void emit_particles(const TimeSpan& step);
     void move_batch(const ParticleRange& batch, const TimeSpan& step);
+    [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
     [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest);
+    [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
+    void record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks);
+    [[nodiscard]] double oldest_position() const;
     void move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks);
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
@@ -89,7 +94,9 @@ struct Simulation::Impl {
     std::shared_ptr<ColliderList> colliders;
     std::shared_ptr<CollisionWorld> shared_world;  ///< of the colliders at rest
     CollisionWorld& world;
+    std::shared_ptr<FrameTree> frames;        ///< the setup's; null without any
     std::unique_ptr<MovingColliders> bodies;  ///< null where no collider moves
+    DrivenMotion driven;
     CollisionQueries queries;
     CoupledMotion coupled;
     std::vector<Emitter> emitters;

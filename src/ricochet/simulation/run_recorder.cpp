@@ -91,6 +91,16 @@ void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
     record_violations(blocks);
 }
 
+void RunRecorder::add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders) {
+    for (const ColliderLoad& load : loads) {
+        ColliderTotals& totals = loads_[colliders.collider_of(load.surface)];
+        totals.hits += load.impact ? 1 : 0;
+        totals.impulse += load.impulse;
+        totals.moment += load.moment;
+        totals.work += load.work;
+    }
+}
+
 void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
     const std::vector<CutOff> all = in_order_of_particles(blocks, &BlockRecord::cut_off);
     for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;

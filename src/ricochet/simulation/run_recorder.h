@@ -89,6 +89,7 @@ struct BlockRecord {
     double penetration_deepest = 0.0;
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> contact_records;
+    std::vector<ColliderLoad> loads;
     std::vector<Violation> violations;
     std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kMaxSpeed
 
@@ -118,8 +119,12 @@ class RunRecorder {
 public:
     /// surfaces: how many have totals. With `shows_contacts` the contact records of a step are kept for its end; with
     /// `collects_contacts` at least those of a batch of particles, for their children.
-    RunRecorder(std::size_t surfaces, bool shows_contacts, bool collects_contacts)
-        : totals_(surfaces), shows_contacts_(shows_contacts), collects_contacts_(collects_contacts) {}
+    /// colliders: how many have loads; 0 where none moves, nor the material of any.
+    RunRecorder(std::size_t surfaces, std::size_t colliders, bool shows_contacts, bool collects_contacts)
+        : totals_(surfaces),
+          loads_(colliders),
+          shows_contacts_(shows_contacts),
+          collects_contacts_(collects_contacts) {}
 
     /// From the next step on.
     void show_contacts(bool shows) { shows_contacts_ = shows; }
@@ -142,6 +147,11 @@ public:
     [[nodiscard]] SimulationStatistics& statistics() { return statistics_; }
     [[nodiscard]] const SurfaceTotals& totals() const { return totals_; }
     [[nodiscard]] SurfaceTotals& totals() { return totals_; }
+    [[nodiscard]] bool collects_loads() const { return !loads_.empty(); }
+    /// Of all colliders, since the start.
+    [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }
+    [[nodiscard]] std::vector<ColliderTotals>& loads() { return loads_; }
+    void add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders);
 
 private:
     void record_cut_off(const std::vector<BlockRecord>& blocks);
@@ -149,6 +159,7 @@ private:
 
     SimulationStatistics statistics_;
     SurfaceTotals totals_;
+    std::vector<ColliderTotals> loads_;
     std::vector<ContactRecord> contacts_;        // of the step
     std::vector<ContactRecord> batch_contacts_;  // of the particles that were moved last
     std::vector<Violation> violations_;

@@ -100,6 +100,18 @@ std::vector<Emitter> make_emitters(SimulationSetup& setup) {
     return emitters;
 }
 
+/// Paths of bodies are this simulation's own.
+std::shared_ptr<FrameTree> own_frames(const SimulationSetup& setup) {
+    return setup.frames ? std::make_shared<FrameTree>(*setup.frames) : nullptr;
+}
+
+/// How many colliders have loads that are recorded: all or none.
+std::size_t count_with_loads(const MovingColliders* bodies, const std::vector<Material>& materials,
+                             const ColliderList& colliders) {
+    const bool drives = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); });
+    return bodies != nullptr || drives ? colliders.all().size() : 0;
+}
+
 /// Null where no collider moves.
 std::unique_ptr<MovingColliders> make_bodies(const CollisionWorld& world,
                                              const std::shared_ptr<ColliderList>& colliders,
@@ -171,7 +183,9 @@ Simulation::Impl::Impl(SimulationSetup setup)
       colliders(std::make_shared<ColliderList>(std::move(setup.colliders))),
       shared_world(std::make_shared<CollisionWorld>(colliders, std::string_view(), chord_margin(acceleration, forces))),
       world(*shared_world),
-      bodies(make_bodies(world, colliders, setup.frames)),
+      frames(own_frames(setup)),
+      bodies(make_bodies(world, colliders, frames)),
+      driven(std::move(setup.bodies), frames.get(), bodies.get(), forces),
       queries(Simulation::queries_of(shared_world)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       emitters(make_emitters(setup)),
@@ -184,13 +198,15 @@ Simulation::Impl::Impl(SimulationSetup setup)
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),
       check(options.verify ? std::make_unique<RunCheck>(world, bodies.get()) : nullptr),
-      recorder(options.triangle_totals ? world.surface_count() : 0, options.record_contacts, offspring != nullptr),
+      recorder(options.triangle_totals ? world.surface_count() : 0,
+               count_with_loads(bodies.get(), materials, *colliders), options.record_contacts, offspring != nullptr),
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
     if (bodies) {
         bodies->set_culling(acceleration.culling);
+        if (driven.is_active()) driven.plan(0.0, options.time_step, 0.0);
         bodies->begin_step(0.0, options.time_step);
     }
     reserve(setup.particles.size());

@@ -1,6 +1,8 @@
 // One step of the simulation, stage by stage.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impl.h"
@@ -57,6 +59,7 @@ TimeSpan Simulation::Impl::begin_step() {
     recorder.begin_step();
     schedule.begin_step(recorder.statistics().steps);
     const TimeSpan step = clock.span_of(recorder.statistics().steps);
+    if (driven.is_active()) driven.plan(step.begin, step.end, oldest_position());
     if (bodies) bodies->begin_step(step.begin, step.end);
     return step;
 }
@@ -67,16 +70,59 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
     recorder.begin_batch();
     if (offspring) offspring->before_move(particles(), batch.begin);
     for (double now = step.begin; now < step.end;) {
-        const TimeSpan part = plan_coupled_motion(batch, {now, step.end});
+        const TimeSpan part = plan_part(batch, {now, step.end});
         std::vector<BlockRecord> blocks;
         move_part(batch, part, blocks);
         stop_runaways(blocks, step.end);
-        recorder.record(blocks);
+        record_part(batch, blocks);
         if (coupled.is_active() && batch.begin == 0) coupled.correct_velocities(store.particles());
         now = part.end;
     }
     if (coupled.is_active() && batch.begin == 0) coupled.settle(particles());
     recorder.end_batch(batch.size());
+}
+
+TimeSpan Simulation::Impl::plan_part(const ParticleRange& batch, const TimeSpan& rest) {
+    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(batch, rest);
+}
+
+// Children are moved through the parts of the step that have been, with the bodies where they were.
+TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest) {
+    TimeSpan part = rest;
+    if (batch.begin == 0) {
+        driven.plan(part.begin, part.end, oldest_position());
+        if (bodies) {
+            bodies->begin_step(part.begin, part.end);
+            part.end = driven.cut_by(mover.preview(batch, part));
+            driven.end_at(part.end);
+        }
+    } else {
+        part.end = driven.begin_part_again(part.begin);
+    }
+    if (bodies) bodies->begin_step(part.begin, part.end);
+    return part;
+}
+
+// s, the earliest time at which a stored position is that of a particle; not after the step's begin, at which children
+// set out once more.
+double Simulation::Impl::oldest_position() const {
+    const double now = clock.time_at(recorder.statistics().steps);
+    double oldest = now;
+    for (std::size_t i = 0; i < store.size(); ++i) oldest = std::min(oldest, store.stored_time(i, now));
+    return oldest;
+}
+
+void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks) {
+    recorder.record(blocks);
+    std::vector<ColliderLoad> loads;
+    for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
+    recorder.add_loads(loads, *colliders);
+    if (!driven.is_active()) return;
+    if (batch.begin == 0) {
+        driven.follow(loads);
+    } else {
+        driven.take(loads);
+    }
 }
 
 // Children join the coupled motion with the next step.

@@ -310,6 +310,44 @@ void validate_moving_colliders(const SimulationSetup& setup) {
     }
 }
 
+/// Bodies that impulses move, and what cannot be together with them.
+void validate_bodies(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.bodies.size(); ++k) {
+        const std::string& name = setup.bodies[k].frame;
+        const Subject subject("body", k, name);
+        const auto frame = setup.frames ? setup.frames->find(name) : std::nullopt;
+        if (!frame || !setup.frames->description(*frame).is_driven) {
+            subject.refuse("frame", name, "the name of a driven frame of the setup");
+        }
+        for (const ColliderDescription& collider : setup.colliders) {
+            if (collider.frame != name || !setup.materials[collider.material].is_random()) continue;
+            subject.refuse("material", setup.materials[collider.material].name,
+                           "one that neither absorbs nor reflects diffusely");
+        }
+        const auto is_on_it = [&](const EmitterDescription& emitter) {
+            return emitter.frames &&
+                   setup.frames->description(*frame).name == emitter.frames->description(emitter.frame).name;
+        };
+        if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_on_it)) {
+            subject.refuse("emitter", "one in its frame", "none: where it will be within a step is not known");
+        }
+        if (!setup.springs.empty() || setup.solver) {
+            subject.refuse("springs", "particles that act on each other", "none beside bodies that impulses move");
+        }
+    }
+    for (std::size_t k = 0; setup.frames && k < setup.frames->size(); ++k) {
+        const FrameDescription& frame = setup.frames->description(k);
+        const auto count = std::count_if(setup.bodies.begin(), setup.bodies.end(),
+                                         [&](const BodyDescription& body) { return body.frame == frame.name; });
+        const Subject subject("frame", k, frame.name);
+        if (count != (frame.is_driven ? 1 : 0)) subject.refuse("bodies", count, frame.is_driven ? "one" : "none");
+        const auto parent = setup.frames->find(frame.parent);
+        if (parent && setup.frames->description(*parent).is_driven) {
+            subject.refuse("parent", frame.parent, "a frame that is not driven");
+        }
+    }
+}
+
 }  // namespace
 
 const SimulationSetup& validated(const SimulationSetup& setup) {
@@ -322,6 +360,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
                                   fmt::format("at least the {} particles that are there", setup.particles.size()));
     }
     validate_moving_colliders(setup);
+    validate_bodies(setup);
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
     validate_emitters(setup);

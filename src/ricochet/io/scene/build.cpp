@@ -324,6 +324,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_bounds(context, scene.setup);
     std::vector<FrameDescription> frames = frames_of(context);
     build_colliders(context, scene.setup, frames);
+    build_bodies(context, scene.setup, frames);
     scene.setup.frames = std::make_shared<const FrameTree>(std::move(frames));
     build_attributes(context, scene.setup);
     build_reference_camera(context, scene.setup);

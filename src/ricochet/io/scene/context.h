@@ -88,6 +88,7 @@ private:
 [[nodiscard]] const ObjectSpec& material_spec();
 [[nodiscard]] const ObjectSpec& collider_spec();
 [[nodiscard]] const ObjectSpec& frame_spec();
+[[nodiscard]] const ObjectSpec& body_spec();
 [[nodiscard]] const ObjectSpec& emitter_spec();
 [[nodiscard]] const ObjectSpec& particle_spec();
 /// {"file": ...} instead of a particle list.
@@ -161,6 +162,8 @@ private:
 
 /// frames: those of the scene; the ones that colliders move in by their own keys are added.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
+/// The bodies among the frames, with the mass of the colliders that stand in them.
+void build_bodies(const SceneContext& context, SimulationSetup& setup, const std::vector<FrameDescription>& frames);
 /// The declared attributes, and those of appearance that emitters and explicit particles use. Reports names and
 /// defaults that cannot be.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);

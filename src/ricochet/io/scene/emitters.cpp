@@ -205,6 +205,10 @@ bool is_measurable(const EmitterShape& shape) {
     return (surface == nullptr || surface->mesh) && (volume == nullptr || volume->mesh);
 }
 
+constexpr const char* kNoEmitterOnBody =
+    "impulses of particles move this body, and where it will be within a step is not known at the births; expected an "
+    "emitter in the world or in a frame that moves by itself";
+
 // Puts the emitter into the frame that its key "frame" names, or into that of the collider that it is on.
 void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
@@ -214,6 +218,10 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
                                            [&](const auto& other) { return other.name == view.text("collider"); });
         const auto frame = collider == setup.colliders.end() ? std::nullopt : setup.frames->find(collider->frame);
         if (!frame) return;
+        if (setup.frames->description(*frame).is_driven) {
+            context.error(view, "collider", kNoEmitterOnBody);
+            return;
+        }
         emitter.frames = setup.frames;
         emitter.frame = *frame;
         return;
@@ -229,6 +237,10 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
         return;
     }
     if (!is_frame_named(context, view, *setup.frames)) return;
+    if (setup.frames->description(*setup.frames->find(view.text("frame"))).is_driven) {
+        context.error(view, "frame", kNoEmitterOnBody);
+        return;
+    }
     emitter.frames = setup.frames;
     emitter.frame = *setup.frames->find(view.text("frame"));
 }

@@ -113,6 +113,7 @@ const ObjectSpec& motion_spec() {
 FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
     auto frame = named.view.read<FrameDescription>();
     frame.name = named.name;
+    frame.is_driven = named.view.has("body");
     for (const ObjectView& motion : named.view.objects("motions")) {
         if (motion.type() == "rotation") {
             auto rotation = motion.read<KeyedRotation>();
@@ -188,7 +189,9 @@ const ObjectSpec& frame_spec() {
               return RotationTarget{f.rotation_axis, f.rotation_degrees};
           },
           "Turns it.", Without{"not turned"}, &rotation_spec()},
-         {"motions", ValueType::list, "How it moves.", &motion_spec()}});
+         {"motions", ValueType::list, "How it moves.", &motion_spec()},
+         {"body", ValueType::object, "Makes it a rigid body that particles and forces move.",
+          Without{"it moves as its motions say"}, &body_spec()}});
     return spec;
 }
 
@@ -201,6 +204,11 @@ std::vector<FrameDescription> frames_of(const SceneContext& context) {
     }
     if (!are_good_parents(context, frames, views) || context.failed()) {
         for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still good
+    }
+    for (FrameDescription& frame : frames) {
+        if (!frame.is_driven) continue;  // build_bodies() refuses what a body has too much
+        frame.parent.clear();
+        frame.motions.clear();
     }
     if (context.failed()) std::erase_if(frames, [](const auto& frame) { return frame.name.empty(); });
     return frames;

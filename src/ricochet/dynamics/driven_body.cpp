@@ -1,0 +1,251 @@
+#include "ricochet/dynamics/driven_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "ricochet/core/checks.h"
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// All of its leading minors are above 0 (Sylvester), and no moment is above the sum of the others.
+bool is_inertia(const SymmetricMatrix& a) {
+    const bool is_positive = a.xx > 0.0 && a.xx * a.yy - a.xy * a.xy > 0.0 && a.determinant() > 0.0;
+    return is_positive && std::isfinite(a.trace()) && std::isfinite(a.determinant());
+}
+
+void check(const BodyDescription& body) {
+    const auto of_body = [&](const char* what) { return fmt::format("body '{}': {}", body.frame, what); };
+    detail::require_positive(body.mass, of_body("the mass"), "kg");
+    detail::require_finite(body.center, of_body("the centre of mass"), "m");
+    detail::require_finite(body.velocity, of_body("the velocity"), "m/s");
+    detail::require_finite(body.angular_velocity, of_body("the angular velocity"), "rad/s");
+    detail::require_finite(body.rate, of_body("the rate"), "1/s");
+    const JointSettings& joint = body.settings;
+    for (const auto& [value, what] : {std::pair{joint.spring, "the spring"},
+                                      {joint.damping, "the damping"},
+                                      {joint.friction, "the friction"},
+                                      {joint.motor_most, "the motor"}}) {
+        detail::require_not_negative(value, of_body(what), "");
+    }
+    for (const auto& [value, what] : {std::pair{joint.spring_rest, "the spring's rest"},
+                                      {joint.drive, "the drive"},
+                                      {joint.motor_rate, "the motor's rate"}}) {
+        detail::require_finite(value, of_body(what), "");
+    }
+    if (!is_inertia(body.inertia)) {
+        throw InputError(of_body("the inertia is not positive definite, expected that of a body with a volume"));
+    }
+}
+
+}  // namespace
+
+DrivenBody::DrivenBody(BodyDescription description, const AffineMap& world_from_frame)
+    : description_(std::move(description)), start_(world_from_frame), map_(world_from_frame) {
+    check(description_);
+    const BodyDescription& body = description_;
+    inverse_inertia_ = body.inertia.inverse();
+    center_ = map_.point(body.center);
+    pivot_ = map_.translation;
+    if (body.joint == JointKind::free) {
+        velocity_ = body.velocity;
+        angular_momentum_ = congruent(map_, body.inertia) * body.angular_velocity;
+        return;
+    }
+    description_.axis = detail::unit_direction(body.axis, fmt::format("body '{}': the axis", body.frame));
+    axis_ = map_.direction(description_.axis);
+    rate_ = body.rate;
+    inertia_ = body.mass;
+    if (body.joint == JointKind::hinge) {
+        const Vec3 arm = cross(axis_, center_ - pivot_);
+        inertia_ = dot(description_.axis, body.inertia * description_.axis) + body.mass * dot(arm, arm);
+    }
+}
+
+BodyPath DrivenBody::plan(const ForceField& forces, double begin, double end) const {
+    return description_.joint == JointKind::free ? plan_free(forces, begin, end) : plan_joint(forces, begin, end);
+}
+
+BodyPath DrivenBody::plan_free(const ForceField& forces, double begin, double end) const {
+    const double h = end - begin;
+    const Vec3 first = acceleration_at(forces, center_, velocity_, begin);
+    const Vec3 reached = center_ + h * (velocity_ + (0.5 * h) * first);
+    const Vec3 last = acceleration_at(forces, reached, velocity_ + h * first, end);
+    BodyPath path{begin, end, map_, description_.center};
+    path.way = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
+    const Vec3 now = inverse_inertia(map_) * angular_momentum_;
+    if (now == Vec3{}) return path;
+    // The middle's angular velocity, by half a turn with that of the start.
+    const auto turned = [&](const Vec3& spin, double duration) {
+        BodyPath turning{0.0, duration, map_, {}};
+        turning.axis = map_.direction_back(spin / length(spin));
+        turning.turns[0] = length(spin) * kDegrees;
+        return turning;
+    };
+    const AffineMap middle = turned(now, 0.5 * h).at(0.5 * h).world_from_frame;
+    const Vec3 spin = inverse_inertia(middle) * angular_momentum_;
+    const BodyPath turning = turned(spin, h);
+    path.axis = turning.axis;
+    path.turns = turning.turns;
+    return path;
+}
+
+BodyPath DrivenBody::plan_joint(const ForceField& forces, double begin, double end) const {
+    const double h = end - begin;
+    const double first = joint_acceleration(forces, coordinate_, rate_, begin);
+    const double reached = coordinate_ + h * (rate_ + 0.5 * h * first);
+    const double last = joint_acceleration(forces, reached, rate_ + h * first, end);
+    const double held = h > 0.0 ? held_change(rate_ + 0.5 * h * (first + last), h) / h : 0.0;
+    const std::array<double, 3> way{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
+    BodyPath path{begin, end, map_, {}};
+    path.axis = description_.axis;
+    if (description_.joint == JointKind::slider) {
+        for (std::size_t k = 0; k < way.size(); ++k) path.way[k] = way[k] * axis_;
+        return path;
+    }
+    path.at_begin = start_;
+    path.degrees = degrees_;
+    for (std::size_t k = 0; k < way.size(); ++k) path.turns[k] = kDegrees * way[k];
+    return path;
+}
+
+/// rad/s^2 or m/s^2, by all that is no friction and no motor.
+double DrivenBody::joint_acceleration(const ForceField& forces, double coordinate, double rate, double time) const {
+    const JointSettings& joint = description_.settings;
+    const bool turns = description_.joint == JointKind::hinge;
+    const Vec3 center = center_at(coordinate);
+    const Vec3 velocity = turns ? rate * cross(axis_, center - pivot_) : rate * axis_;
+    const Vec3 force = description_.mass * acceleration_at(forces, center, velocity, time);
+    const double of_forces = turns ? dot(axis_, cross(center - pivot_, force)) : dot(axis_, force);
+    const double of_joint = joint.drive - joint.spring * (coordinate - joint.spring_rest) - joint.damping * rate;
+    return (of_forces + of_joint) / inertia_;
+}
+
+/// By how much motor and dry friction change the rate that there would be without them.
+double DrivenBody::held_change(double rate, double duration) const {
+    const JointSettings& joint = description_.settings;
+    const double motor = joint.motor_most * duration / inertia_;
+    const double driven = rate + std::clamp(joint.motor_rate - rate, -motor, motor);
+    const double friction = joint.friction * duration / inertia_;
+    return driven - std::clamp(driven, -friction, friction) - rate;
+}
+
+Vec3 DrivenBody::acceleration_at(const ForceField& forces, const Vec3& center, const Vec3& velocity,
+                                 double time) const {
+    if (!description_.feels_forces) return {};
+    const Vec3 a = forces.acceleration({center, velocity, description_.mass, 0.0, time});
+    if (!is_finite(a)) {
+        throw DivergedError(
+            fmt::format("at t = {:.6g} s the forces on the body '{}' are not finite", time, description_.frame));
+    }
+    return a;
+}
+
+Vec3 DrivenBody::center_at(double coordinate) const {
+    if (coordinate == coordinate_) return center_;
+    if (description_.joint == JointKind::slider) return center_ + (coordinate - coordinate_) * axis_;
+    BodyPath turned{0.0, 0.0, start_, {}};
+    turned.axis = description_.axis;
+    turned.degrees = kDegrees * coordinate;
+    return turned.at(0.0).point(description_.center);
+}
+
+SymmetricMatrix DrivenBody::inverse_inertia(const AffineMap& map) const { return congruent(map, inverse_inertia_); }
+
+void DrivenBody::follow(const BodyPath& path, const Wrench& wrench) {
+    const double h = path.end - path.begin;
+    const auto moved = [h](const auto& c) { return h * (c[0] + h * (c[1] + h * c[2])); };
+    const auto rate = [h](const auto& c) { return c[0] + h * (2.0 * c[1] + (3.0 * h) * c[2]); };
+    const Vec3 before = center_;
+    map_ = path.at(path.end).world_from_frame;
+    center_ = map_.point(description_.center);
+    if (description_.joint == JointKind::free) {
+        velocity_ = rate(path.way);
+        // Moments were taken about where the centre was.
+        take({wrench.impulse, wrench.moment - cross(center_ - before, wrench.impulse)});
+        return;
+    }
+    if (description_.joint == JointKind::slider) {
+        coordinate_ += dot(axis_, moved(path.way));
+        rate_ = dot(axis_, rate(path.way));
+    } else {
+        degrees_ = path.degrees + moved(path.turns);
+        coordinate_ = degrees_ / kDegrees;
+        rate_ = rate(path.turns) / kDegrees;
+    }
+    take(wrench);
+}
+
+void DrivenBody::take(const Wrench& wrench) {
+    switch (description_.joint) {
+        case JointKind::free:
+            velocity_ += wrench.impulse / description_.mass;
+            angular_momentum_ += wrench.moment;
+            break;
+        case JointKind::slider:
+            rate_ += dot(axis_, wrench.impulse) / inertia_;
+            break;
+        case JointKind::hinge:
+            rate_ += dot(axis_, wrench.moment) / inertia_;
+            break;
+    }
+}
+
+Mobility DrivenBody::mobility() const {
+    const Vec3& axis = description_.axis;
+    switch (description_.joint) {
+        case JointKind::hinge:
+            return {{}, (1.0 / inertia_) * outer_product(axis), {}};
+        case JointKind::slider:
+            return {(1.0 / inertia_) * outer_product(axis), {}, {}};
+        case JointKind::free:
+            break;
+    }
+    return {diagonal_matrix(1.0 / description_.mass), inverse_inertia_, description_.center};
+}
+
+double DrivenBody::quadratic_energy(const Wrench& wrench) const {
+    const Mobility by = mobility().seen_by(map_);
+    return 0.5 * (dot(wrench.impulse, by.of_mass * wrench.impulse) + dot(wrench.moment, by.of_inertia * wrench.moment));
+}
+
+Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {
+    const Mobility by = mobility().seen_by(map_);
+    return by.of_mass * wrench.impulse + cross(by.of_inertia * wrench.moment, where - moment_center());
+}
+
+Vec3 DrivenBody::velocity() const {
+    switch (description_.joint) {
+        case JointKind::free:
+            return velocity_;
+        case JointKind::slider:
+            return rate_ * axis_;
+        case JointKind::hinge:
+            break;
+    }
+    return rate_ * cross(axis_, center_ - pivot_);
+}
+
+Vec3 DrivenBody::angular_velocity() const {
+    if (description_.joint == JointKind::slider) return {};
+    return description_.joint == JointKind::hinge ? rate_ * axis_ : inverse_inertia(map_) * angular_momentum_;
+}
+
+Vec3 DrivenBody::angular_momentum() const {
+    if (description_.joint == JointKind::free) return angular_momentum_;
+    return congruent(map_, description_.inertia) * angular_velocity();
+}
+
+double DrivenBody::kinetic_energy() const {
+    if (description_.joint != JointKind::free) return 0.5 * inertia_ * rate_ * rate_;
+    return 0.5 * (description_.mass * dot(velocity_, velocity_) + dot(angular_momentum_, angular_velocity()));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,231 @@
+// Bodies that impulses move: the key "body" of a frame.
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mass_moments.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+/// What the keys say that a description does not hold as it is.
+struct BodyKeys {
+    BodyDescription body;
+    std::optional<double> mass;
+    std::optional<double> density;
+    std::optional<Vec3> center;
+    std::optional<Vec3> inertia;
+    Vec3 inertia_products;
+};
+
+template <class Member>
+auto of_body(Member BodyDescription::*member) {
+    return [member](BodyKeys& k) -> Member& { return k.body.*member; };
+}
+auto of_joint(double JointSettings::*member) {
+    return [member](BodyKeys& k) -> double& { return k.body.settings.*member; };
+}
+
+Fields<BodyKeys> mass_fields() {
+    using B = BodyKeys;
+    return {{"mass", &B::mass, kPositive, "kg", "Its mass. Either this or `density`.", Without{"made from `density`"}},
+            {"density", &B::density, kPositive, "kg/m^3",
+             "Its mass over its volume: that of the closed colliders that stand in the frame, which must not overlap.",
+             Without{"made from `mass`"}},
+            {"center", &B::center, kCoordinate, "m", "Its centre of mass, in the frame's coordinates.",
+             Without{"that of its closed colliders, as of one density"}},
+            {"inertia", &B::inertia, kPositive, "kg m^2",
+             "Its moments of inertia about the axes of the frame through its centre of mass: [xx, yy, zz].",
+             Without{"that of its closed colliders, as of one density"}},
+            {"inertia_products", &B::inertia_products, kAnyNumber, "kg m^2",
+             "The elements xy, xz and yz of its inertia: minus the sums of mass times x y, x z and y z.",
+             Needs{"inertia"}}};
+}
+
+Fields<BodyKeys> joint_fields() {
+    using B = BodyDescription;
+    using J = JointSettings;
+    return {{"joint", of_body(&B::joint), "What holds it.",
+             Choices{choice(JointKind::free, "free", "nothing"),
+                     choice(JointKind::hinge, "hinge", "it turns about an axis through the frame's origin"),
+                     choice(JointKind::slider, "slider", "it moves along an axis, without turning")}},
+            {"axis", of_body(&B::axis), kCoordinate, "",
+             "Direction of a hinge's or slider's axis, of any length, in the frame's axes at 0 s.", kNotZero},
+            {"velocity", of_body(&B::velocity), between(-kMaxSpeed, kMaxSpeed), "m/s",
+             "Of the centre of mass of a free body at 0 s."},
+            {"angular_velocity", of_body(&B::angular_velocity), between(-kMaxSpeed, kMaxSpeed), "rad/s",
+             "Of a free body at 0 s."},
+            {"rate", of_body(&B::rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
+             "At 0 s: how fast a body turns on its hinge, by the right-hand rule, or moves along its slider."},
+            {"spring", of_joint(&J::spring), kNotNegative, "N m/rad or N/m",
+             "Of a hinge or slider: the moment or force towards `spring_rest` over the angle or the way from there."},
+            {"spring_rest", of_joint(&J::spring_rest), kAnyNumber, "rad or m",
+             "Where the spring does not pull; 0 is where the body is at 0 s."},
+            {"damping", of_joint(&J::damping), kNotNegative, "N m s/rad or N s/m",
+             "Of a hinge or slider: the moment or force against the motion over its speed."},
+            {"drive", of_joint(&J::drive), kAnyNumber, "N m or N",
+             "A constant moment about a hinge's axis, or force along a slider's."},
+            {"friction", of_joint(&J::friction), kNotNegative, "N m or N",
+             "Dry friction of a hinge or slider: at most this moment or force, against the motion."},
+            {"motor_rate", of_joint(&J::motor_rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
+             "What a motor on the hinge or slider aims at.", Needs{"motor_most"}},
+            {"motor_most", of_joint(&J::motor_most), kNotNegative, "N m or N",
+             "The largest moment or force of the motor; 0: there is none."}};
+}
+
+Fields<BodyKeys> force_fields() {
+    return {{"feels_forces", of_body(&BodyDescription::feels_forces),
+             "The scene's forces act on it, as on a particle of its mass and without a radius at its centre of mass."}};
+}
+
+/// Of all colliders that stand in a frame; nothing after reporting why there are none.
+class FrameMoments {
+public:
+    FrameMoments(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view)
+        : context_(context), setup_(setup), view_(view) {}
+
+    [[nodiscard]] std::optional<MassMoments> of(const std::string& frame) const {
+        MassMoments all;
+        for (const ColliderDescription& collider : setup_.colliders) {
+            if (collider.frame != frame) continue;
+            const auto one = std::visit([&](const auto& shape) { return moments(shape); }, collider.shape);
+            if (!one) return refuse(fmt::format("the collider \"{}\" has no volume", collider.name));
+            all = all + *one;
+        }
+        if (!(all.volume > 0.0)) return refuse("no closed collider stands in the frame");
+        return all;
+    }
+
+private:
+    [[nodiscard]] std::optional<MassMoments> refuse(const std::string& why) const {
+        context_.error(view_, why + ", expected closed colliders, or \"mass\", \"center\" and \"inertia\"");
+        return std::nullopt;
+    }
+    [[nodiscard]] static std::optional<MassMoments> moments(const PlaneShape& /*plane*/) { return std::nullopt; }
+    [[nodiscard]] static std::optional<MassMoments> moments(const MeshShape& shape) {
+        if (!shape.mesh || shape.mesh->triangles.empty()) return std::nullopt;
+        const TopologyReport report = MeshTopology(*shape.mesh).report();
+        if (!report.closed || !report.consistently_oriented) return std::nullopt;
+        const MassMoments found = moments_of(transformed(*shape.mesh, shape.placement));
+        return found.volume < 0.0 ? negative(found) : found;  // wound inward
+    }
+    [[nodiscard]] static std::optional<MassMoments> moments(const BallShape& shape) {
+        return moments_of_ball(world_from_unit(shape));
+    }
+    [[nodiscard]] static std::optional<MassMoments> moments(const CylinderShape& shape) {
+        return moments_of_cylinder(world_from_unit(shape));
+    }
+    [[nodiscard]] static std::optional<MassMoments> moments(const CuboidShape& shape) {
+        return moments_of(transformed(cuboid_mesh(shape.size), shape.placement));
+    }
+    [[nodiscard]] static MassMoments negative(const MassMoments& m) { return {-m.volume, -m.first, (-1.0) * m.second}; }
+
+    const SceneContext& context_;
+    const SimulationSetup& setup_;
+    const ObjectView& view_;
+};
+
+/// What only free bodies, or only those on a joint, have.
+void refuse_other_joints_keys(const SceneContext& context, const ObjectView& view, JointKind joint) {
+    const std::vector<std::string_view> keys =
+        joint == JointKind::free
+            ? std::vector<std::string_view>{"axis",  "rate",     "spring",     "spring_rest", "damping",
+                                            "drive", "friction", "motor_rate", "motor_most"}
+            : std::vector<std::string_view>{"velocity", "angular_velocity"};
+    for (const std::string_view key : keys) {
+        if (!view.has(std::string(key))) continue;
+        context.error(view, key,
+                      joint == JointKind::free ? "a free body has no joint, expected a \"joint\" hinge or slider"
+                                               : "a body on a joint starts with its \"rate\"");
+    }
+}
+
+/// Sets mass, centre and inertia; false after reporting.
+bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& keys) {
+    BodyDescription& body = keys.body;
+    const bool is_given = keys.mass && keys.center && keys.inertia;
+    const std::optional<MassMoments> shape = is_given ? std::nullopt : moments.of(frame);
+    if (!is_given && !shape) return false;
+    body.mass = keys.mass ? *keys.mass : *keys.density * shape->volume;
+    body.center = keys.center ? *keys.center : shape->center();
+    if (keys.inertia) {
+        const Vec3& d = *keys.inertia;
+        const Vec3& p = keys.inertia_products;
+        body.inertia = {d.x, d.y, d.z, p.x, p.y, p.z};
+    } else {
+        body.inertia = (body.mass / shape->volume) * shape->inertia();
+    }
+    return true;
+}
+
+/// What could not be followed.
+void refuse_company(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
+                    const std::vector<FrameDescription>& frames, const std::string& frame) {
+    for (const FrameDescription& other : frames) {
+        if (other.parent != frame) continue;
+        context.error(view, fmt::format("the frame \"{}\" stands on this body, expected none: what belongs to a body "
+                                        "stands in its own frame",
+                                        other.name));
+    }
+    for (const ColliderDescription& collider : setup.colliders) {
+        if (collider.frame != frame) continue;
+        const Material& material = setup.materials[collider.material];
+        if (!material.is_random()) continue;
+        context.error(view, fmt::format("the material \"{}\" of the collider \"{}\" absorbs or reflects diffusely, "
+                                        "expected none that does on a body that impulses move",
+                                        material.name, collider.name));
+    }
+}
+
+}  // namespace
+
+const ObjectSpec& body_spec() {
+    static const ObjectSpec spec = object<BodyKeys>(
+        "body",
+        "What makes a frame a rigid body that the impulses of particles move, and the scene's forces. The frame stands "
+        "in the world and has no motions; its translation and rotation say where it starts. Bodies meet neither each "
+        "other nor colliders at rest.",
+        joined<BodyKeys>({mass_fields(), joint_fields(), force_fields()}));
+    return spec;
+}
+
+void build_bodies(const SceneContext& context, SimulationSetup& setup, const std::vector<FrameDescription>& frames) {
+    for (const NamedObject& named : context.root().named_objects("frames")) {
+        if (!named.view.has("body")) continue;
+        const ObjectView view = named.view.object("body");
+        for (const std::string_view key : {"parent", "motions"}) {
+            if (!named.view.has(std::string(key))) continue;
+            context.error(named.view, key, "a body moves by what acts on it, in the world; expected no such key");
+        }
+        auto keys = view.read<BodyKeys>();
+        if (context.root().has("springs")) {
+            context.error(named.view, "body",
+                          "bodies that impulses move and springs do not go together yet, expected "
+                          "a scene without the one or the other");
+        }
+        if (keys.mass.has_value() == keys.density.has_value()) {
+            context.error(view, keys.mass ? "found both \"mass\" and \"density\", expected one of them"
+                                          : "found neither \"mass\" nor \"density\", expected one of them");
+        }
+        refuse_other_joints_keys(context, view, keys.body.joint);
+        refuse_company(context, setup, view, frames, named.name);
+        if (context.failed()) continue;
+        keys.body.frame = named.name;
+        if (!set_mass(FrameMoments(context, setup, view), named.name, keys)) continue;
+        try {
+            static_cast<void>(DrivenBody(keys.body, AffineMap{}));
+            setup.bodies.push_back(std::move(keys.body));
+        } catch (const InputError& problem) {
+            context.error(view, problem.what());
+        }
+    }
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,96 @@
+#include "ricochet/response/load_book.h"
+
+#include <utility>
+
+namespace ricochet {
+
+void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change) {
+    const Vec3 spin = spin_change ? spin_ + *spin_change : motion_in_world().spin;
+    const Vec3 couple = couple_of(spin - spin_);
+    spin_ = spin;
+    if (is_entered(hit.surface)) enter(hit, couple);
+}
+
+void LoadBook::begin_impact() {
+    if (!scratch_.record_loads) return;
+    first_of_impact_ = scratch_.loads.size();
+    energy_before_ = kinetic_energy();
+}
+
+void LoadBook::end_impact() {
+    if (!scratch_.record_loads || scratch_.loads.size() == first_of_impact_) return;
+    close();
+    scratch_.loads.back().lost_energy = energy_before_ - kinetic_energy();
+}
+
+void LoadBook::close() {
+    if (!scratch_.record_loads) return;
+    const Vec3 spin = motion_in_world().spin;
+    const Vec3 couple = couple_of(spin - std::exchange(spin_, spin));
+    if (couple == Vec3{} || scratch_.loads.size() == first_) return;
+    ColliderLoad& last = scratch_.loads.back();
+    last.couple += couple;
+    last.moment += couple;
+    const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(last.surface);
+    if (body != kAtRest) last.work += dot(couple, rules_.bodies->pose(body, last.time).angular_velocity);
+}
+
+bool LoadBook::is_entered(SurfaceId surface) const {
+    if (rules_.bodies != nullptr && rules_.bodies->body_of(surface) != kAtRest) return true;
+    return rules_.materials[rules_.world.material_of(surface)].drives();
+}
+
+RecordedMotion LoadBook::motion_in_world() const {
+    const RecordedMotion seen{particle_.state.position, particle_.state.velocity, particle_.spin};
+    return home_.is_moving() ? home_.in_world(seen, particle_.state.time) : seen;
+}
+
+double LoadBook::kinetic_energy() const {
+    const RecordedMotion motion = motion_in_world();
+    const double radius = particle_.state.radius;
+    return 0.5 * particle_.state.mass *
+           (dot(motion.velocity, motion.velocity) + 0.4 * radius * radius * dot(motion.spin, motion.spin));
+}
+
+/// N m s, that the surface is given where the spin of the particle, a solid sphere, changes.
+Vec3 LoadBook::couple_of(const Vec3& spin_change) const {
+    const double radius = particle_.state.radius;
+    return (-0.4 * particle_.state.mass * radius * radius) * spin_change;
+}
+
+/// m/s, in the world, of what is no motion of the body: a belt's.
+Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Vec3& center) const {
+    const Material& material = rules_.materials[rules_.world.material_of(surface)];
+    if (!material.drives()) return {};
+    if (rules_.bodies == nullptr) {
+        const Vec3 normal = rules_.world.nearest(surface, center).normal;
+        return material.motion.at(center - particle_.state.radius * normal, normal);
+    }
+    const double time = particle_.state.time;
+    const MovingPose pose = rules_.bodies->pose(body, time);
+    const Vec3 seen = body == kAtRest ? center : pose.image(center);
+    const Vec3 normal = rules_.bodies->world(body).nearest(surface, seen).normal;
+    const Vec3 along = material.motion.at(seen - particle_.state.radius * normal, normal);
+    return pose.world_from_frame.direction(along);
+}
+
+void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
+    const double time = particle_.state.time;
+    const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(hit.surface);
+    const MovingPose pose = body == kAtRest ? MovingPose{} : rules_.bodies->pose(body, time);
+    ColliderLoad load;
+    load.particle = particle_.id;
+    load.time = time;
+    load.surface = hit.surface;
+    load.mass = particle_.state.mass;
+    load.impulse = hit.impulse;
+    load.place = motion_in_world().position;
+    load.couple = couple;
+    load.moment = cross(load.place - pose.world_from_frame.translation, hit.impulse) + couple;
+    load.work = dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, load.place)) +
+                dot(load.moment, pose.angular_velocity);
+    load.impact = hit.impact;
+    scratch_.loads.push_back(load);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,53 @@
+/// \file
+/// Private to the responses: what one particle does in one move to colliders that move, or whose material does.
+///
+/// The moment about any point is what the particle's own angular momentum, with that of its spin, loses: so the sums
+/// close, whatever the law of an impact. What changes the spin is booked with the impulse that comes next to it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "ricochet/response/response.h"
+#include "ricochet/response/riding.h"
+
+namespace ricochet {
+
+class LoadBook {
+public:
+    LoadBook(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch, const HomeFrame& home)
+        : rules_(rules),
+          particle_(particle),
+          scratch_(scratch),
+          home_(home),
+          spin_(particle.spin),
+          first_(scratch.loads.size()) {}
+
+    /// Enters an impulse on a surface, and the change of the spin that is made with it, rad/s; without it all that has
+    /// changed since the last entry.
+    void add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change);
+    /// The entries between these two belong to one impact.
+    void begin_impact();
+    void end_impact();
+    /// Enters what has changed the spin since, with the last surface.
+    void close();
+
+private:
+    [[nodiscard]] bool is_entered(SurfaceId surface) const;
+    [[nodiscard]] RecordedMotion motion_in_world() const;
+    [[nodiscard]] double kinetic_energy() const;
+    [[nodiscard]] Vec3 couple_of(const Vec3& spin_change) const;
+    [[nodiscard]] Vec3 material_velocity(SurfaceId surface, BodyId body, const Vec3& center) const;
+    void enter(const SurfaceHit& hit, const Vec3& couple);
+
+    const ResponseRules& rules_;
+    const MovingParticle& particle_;
+    MoveScratch& scratch_;
+    const HomeFrame& home_;
+    Vec3 spin_;          // rad/s, in the world, as the entries leave it
+    std::size_t first_;  // entry of this move
+    std::size_t first_of_impact_ = 0;
+    double energy_before_ = 0.0;  // J, the impact
+};
+
+}  // namespace ricochet

@@ -1,0 +1,70 @@
+/// \file
+/// Private to the simulation: the bodies that impulses of particles move.
+///
+/// In a part of a step the bodies move as planned at its begin, as if nothing hit them; each impact is answered with
+/// what its body yields. At the part's end a body takes all impulses of it, in the order of particles. So that many of
+/// them together put no energy in, the part is cut before the first impact that would: a preview says when that is.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ricochet/collision/moving_colliders.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/dynamics/driven_body.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+class DrivenMotion {
+public:
+    /// frames and colliders: in which the bodies move; null where there are none. All must outlive it. Throws
+    /// InputError for descriptions that cannot be.
+    DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
+                 const ForceField& forces);
+
+    [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
+    [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
+
+    /// Plans the bodies' paths over [begin, end], s, instead of what was planned last and not followed. Nothing asks
+    /// for where they were before `oldest`, s, any more.
+    void plan(double begin, double end, double oldest);
+    /// When the planned part has to end, s, where these are the loads on the bodies in it.
+    [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
+    /// What is planned ends at an earlier time, s.
+    void end_at(double time);
+    /// The bodies go along their paths, and take the loads of that time.
+    void follow(std::span<const ColliderLoad> loads);
+    /// They take loads of an earlier part of the step.
+    void take(std::span<const ColliderLoad> loads);
+    /// For what is moved through this step once more: the part that begins at a time. Returns when it ends, s.
+    double begin_part_again(double time);
+
+    /// Saves or restores how they move; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        for (DrivenBody& body : bodies_) body.archive(a);
+        for (auto& paths : paths_) {
+            archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
+        }
+    }
+    /// After it was restored.
+    void show();
+
+private:
+    void tell_of_jump(std::size_t body, std::size_t path) const;
+    [[nodiscard]] std::optional<std::size_t> body_of(const ColliderLoad& load) const;
+    [[nodiscard]] std::vector<Wrench> wrenches_of(std::span<const ColliderLoad> loads) const;
+
+    std::vector<DrivenBody> bodies_;
+    std::vector<std::size_t> frame_of_;  // of each body
+    std::vector<BodyId> collider_of_;    // of each body: its colliders
+    FrameTree* frames_;
+    MovingColliders* colliders_;
+    const ForceField& forces_;
+    std::vector<std::vector<BodyPath>> paths_;  // of each body, as far back as may be asked for; the last is planned
+    bool is_planned_ = false;                   // the last of them has not been followed
+};
+
+}  // namespace ricochet

@@ -1,0 +1,110 @@
+// Scenes whose frames are bodies that particles push.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ricochet/io/scene.h"
+
+namespace ricochet {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string scene_of(const std::string& body, const std::string& collider = "", const std::string& frame = "",
+                     const std::string& more = "") {
+    const std::string box = R"({"name": "blade", "type": "box", "size": [1, 2, 0.5], "position": [0.5, 0, 0], )"
+                            R"("frame": "wheel"})";
+    return R"({"ricochet": 1, "particles": [{"position": [0, 0, 9]}], "colliders": [)" +
+           (collider.empty() ? box : collider) + R"(], "frames": {"wheel": {"translation": [1, 0, 0], )" + frame +
+           R"("body": {)" + body + "}}}" + more + "}";
+}
+
+Lines errors_of(const std::string& scene) {
+    try {
+        (void)parse_scene(scene, "s.json");
+    } catch (const SceneError& error) {
+        Lines lines = error.messages();
+        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
+        return lines;
+    }
+    return {};
+}
+
+TEST(BodyScene, MassCentreAndInertiaAreThoseOfTheColliders) {
+    for (const char* mass : {R"("density": 3)", R"("mass": 3)"}) {
+        const SceneDescription scene = parse_scene(scene_of(mass), "s.json");
+        ASSERT_EQ(scene.setup.bodies.size(), 1U);
+        const BodyDescription& body = scene.setup.bodies[0];
+        EXPECT_EQ(body.frame, "wheel");
+        EXPECT_NEAR(body.mass, 3.0, 1e-14);
+        EXPECT_LT(length(body.center - Vec3{0.5, 0, 0}), 1e-15);
+        EXPECT_NEAR(body.inertia.zz, 3.0 * 5.0 / 12.0, 1e-14);
+        EXPECT_EQ(body.joint, JointKind::free);
+        EXPECT_NO_THROW(Simulation(parse_scene(scene_of(mass), "s.json").setup));
+    }
+}
+
+TEST(BodyScene, GivenNumbersComeFirst) {
+    const SceneDescription scene = parse_scene(
+        scene_of(R"("mass": 2, "center": [0, 0, 1], "inertia": [3, 4, 5], "inertia_products": [0.1, 0.2, 0.3],
+                    "joint": "hinge", "axis": [0, 2, 0], "rate": 1.5, "spring": 7, "spring_rest": 0.5, "damping": 0.2,
+                    "drive": -1, "friction": 0.3, "motor_rate": 4, "motor_most": 9, "feels_forces": false)",
+                 R"({"type": "plane", "normal": [0, 0, 1], "frame": "wheel"})"),
+        "s.json");
+    const BodyDescription& body = scene.setup.bodies[0];
+    EXPECT_EQ(body.inertia, (SymmetricMatrix{3, 4, 5, 0.1, 0.2, 0.3}));
+    EXPECT_EQ(body.center, Vec3(0, 0, 1));
+    EXPECT_EQ(body.joint, JointKind::hinge);
+    EXPECT_EQ(body.rate, 1.5);
+    EXPECT_EQ(body.settings.spring, 7.0);
+    EXPECT_EQ(body.settings.spring_rest, 0.5);
+    EXPECT_EQ(body.settings.damping, 0.2);
+    EXPECT_EQ(body.settings.drive, -1.0);
+    EXPECT_EQ(body.settings.friction, 0.3);
+    EXPECT_EQ(body.settings.motor_rate, 4.0);
+    EXPECT_EQ(body.settings.motor_most, 9.0);
+    EXPECT_FALSE(body.feels_forces);
+}
+
+TEST(BodyScene, SaysWhatCannotBeABody) {
+    EXPECT_EQ(errors_of(scene_of(R"("joint": "free")")),
+              (Lines{"frames.wheel.body: found neither \"mass\" nor \"density\", expected one of them"}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "density": 1)")),
+              (Lines{"frames.wheel.body: found both \"mass\" and \"density\", expected one of them"}));
+    EXPECT_EQ(
+        errors_of(scene_of(R"("mass": 1)", R"({"name": "p", "type": "plane", "normal": [0, 0, 1], "frame": "wheel"})")),
+        (Lines{"frames.wheel.body: the collider \"p\" has no volume, expected closed colliders, or \"mass\", "
+               "\"center\" and \"inertia\""}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "rate": 2)")),
+              (Lines{"frames.wheel.body.rate: a free body has no joint, expected a \"joint\" hinge or slider"}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "joint": "hinge", "velocity": [1, 0, 0])")),
+              (Lines{"frames.wheel.body.velocity: a body on a joint starts with its \"rate\""}));
+    EXPECT_EQ(
+        errors_of(scene_of(R"("mass": 1)", "", R"("motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 1}], )")),
+        (Lines{"frames.wheel.motions: a body moves by what acts on it, in the world; expected no such key"}));
+    EXPECT_EQ(
+        errors_of(scene_of(R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1], "inertia_products": [2, 0, 0])")),
+        (Lines{"frames.wheel.body: body 'wheel': the inertia is not positive definite, expected that of a body "
+               "with a volume"}));
+}
+
+TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
+    EXPECT_EQ(
+        errors_of(
+            scene_of(R"("mass": 1)", "", "", R"(, "emitters": [{"type": "mesh", "collider": "blade", "rate": 5}])")),
+        (Lines{"emitters[0].collider: impulses of particles move this body, and where it will be within a step is "
+               "not known at the births; expected an emitter in the world or in a frame that moves by itself"}));
+    EXPECT_EQ(
+        errors_of(scene_of(R"("mass": 1)",
+                           R"({"name": "b", "type": "box", "size": [1, 1, 1], "frame": "wheel", "material": "felt"})",
+                           "", R"(, "materials": {"felt": {"absorption": 0.5}})")),
+        (Lines{"frames.wheel.body: the material \"felt\" of the collider \"b\" absorbs or reflects diffusely, "
+               "expected none that does on a body that impulses move"}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "", R"(, "simulation": {"response": "penalty"})")),
+              (Lines{"colliders[0].frame: the response \"penalty\" knows no colliders that move, expected none, or "
+                     "\"exact\""}));
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -12,10 +12,6 @@ namespace ricochet {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Keys of a body that are looked at one by one in a step.
-constexpr int kMostKeys = 256;
-/// Relative to the coordinates: more than the rounding of poses and sums.
-constexpr double kBoxRounding = 0x1p-40;
 
 bool meet(const Box3& a, const Box3& b) {
     return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
@@ -36,7 +32,7 @@ Box3 placed(const MovingPose& pose, const Box3& box) {
 }
 
 void grow(Box3& box, double by) {
-    const double rounding = kBoxRounding * std::max(max_abs(box.lower), max_abs(box.upper));
+    const double rounding = kSweptBoxRounding * std::max(max_abs(box.lower), max_abs(box.upper));
     const double all = by + rounding;
     box.lower -= Vec3{all, all, all};
     box.upper += Vec3{all, all, all};
@@ -50,7 +46,7 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
     int count = 0;
     for (double from = begin; from < end || from == begin; ++count) {
         // Over many keys at once the bounds hold as well.
-        const double to = count < kMostKeys ? std::min(end, frames.next_key(frame, from)) : end;
+        const double to = count < kMostKeysInStep ? std::min(end, frames.next_key(frame, from)) : end;
         const MotionBounds bounds = frames.bounds(frame, from, to);
         Box3 part = placed(frames.at(frame, from), box);
         part.include(placed(frames.at(frame, to), box));
@@ -144,7 +140,7 @@ std::optional<double> MovingColliders::next_jump(BodyId body, double from, doubl
         return length(a - b) > kSameVelocity * (length(a) + length(b));
     };
     double key = next_key(body, from);
-    for (int count = 0; count < kMostKeys && key <= until; ++count, key = next_key(body, key)) {
+    for (int count = 0; count < kMostKeysInStep && key <= until; ++count, key = next_key(body, key)) {
         const MovingPose before = pose(body, std::nextafter(key, from));
         const MovingPose after = pose(body, key);
         if (differs(before.velocity, after.velocity) || differs(before.angular_velocity, after.angular_velocity)) {

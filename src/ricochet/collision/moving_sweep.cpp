@@ -10,13 +10,6 @@
 namespace ricochet {
 namespace {
 
-/// Pieces of one path between two keys; beyond that they are as long as this many leave them.
-constexpr double kMostPieces = 4096.0;
-
-/// Keys of a body at which one path is cut; of more, as in a curve that repeats much faster than a step, the pieces
-/// take what is between.
-constexpr int kMostKeys = 256;
-
 /// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
 constexpr int kNewtonSteps = 4;
 
@@ -37,12 +30,6 @@ Box3 box_of(const Path& path, double margin) {
     box.include(path.end);
     const Vec3 by{margin, margin, margin};
     return {box.lower - by, box.upper + by};
-}
-
-double binomial(int n, int k) {
-    constexpr std::array<std::array<double, 5>, 5> kTable{
-        {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}}};
-    return kTable[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
 }
 
 /// Bounds of the derivatives of a path.
@@ -74,7 +61,6 @@ void MovingSweep::find_near() {
     Box3 box = box_of(query_.path, query_.radius + kCandidateSlack * (largest + query_.radius));
     if (view_.home() != kAtRest) {
         const double from_origin = largest + query_.radius;
-        const Vec3 reach{from_origin, from_origin, from_origin};
         box = {};
         // Between the ends the frame moves by no more than its speed allows.
         const MotionBounds& bounds = bodies.bounds(view_.home());
@@ -89,16 +75,9 @@ void MovingSweep::find_near() {
 }
 
 DerivativeBounds MovingSweep::world_bounds() const {
-    const DerivativeBounds own = bounds_of(query_.path);
     const MotionBounds& frame = view_.bodies().bounds(view_.home());
-    DerivativeBounds bounds{};
-    for (int n = 0; n < 5; ++n) {
-        for (int k = 0; k <= n; ++k) {
-            bounds[static_cast<std::size_t>(n)] +=
-                binomial(n, k) * frame.rotation[static_cast<std::size_t>(k)] * own[static_cast<std::size_t>(n - k)];
-        }
-        bounds[static_cast<std::size_t>(n)] += frame.origin[static_cast<std::size_t>(n)];
-    }
+    DerivativeBounds bounds = product(frame.rotation, bounds_of(query_.path));
+    for (std::size_t n = 0; n < bounds.size(); ++n) bounds[n] += frame.origin[n];
     return bounds;
 }
 
@@ -109,12 +88,7 @@ double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world
     for (std::size_t n = 1; n < relative.size(); ++n) relative[n] += frame.origin[n];
     const Vec3 origin = view_.bodies().pose(body, view_.clock().begin).world_from_frame.translation;
     relative[0] = length(start_.world - origin) + relative[1] * query_.path.duration;
-    double bound = 0.0;
-    for (int k = 0; k < 5; ++k) {
-        bound +=
-            binomial(4, k) * frame.rotation[static_cast<std::size_t>(k)] * relative[static_cast<std::size_t>(4 - k)];
-    }
-    return bound;
+    return product(frame.rotation, relative)[4];
 }
 
 /// m, by which a body may see a piece of the path beside where it is.
@@ -153,7 +127,8 @@ void MovingSweep::cut() {
     std::vector<double> keys{0.0};
     const auto add_keys = [&](BodyId body) {
         double key = view_.bodies().next_key(body, clock.begin);
-        for (int count = 0; count < kMostKeys && key < clock.end; ++count, key = view_.bodies().next_key(body, key)) {
+        for (int count = 0; count < kMostKeysInStep && key < clock.end;
+             ++count, key = view_.bodies().next_key(body, key)) {
             const double at = key - clock.base - clock.offset;
             if (at > 0.0 && at < duration) keys.push_back(at);
         }
@@ -171,7 +146,7 @@ void MovingSweep::cut() {
     for (std::size_t k = 1; k < keys.size(); ++k) {
         const double span = keys[k] - keys[k - 1];
         if (!(span > 0.0)) continue;
-        const double count = std::clamp(std::ceil(span * rate), 1.0, kMostPieces);
+        const double count = std::clamp(std::ceil(span * rate), 1.0, kMostMovingPieces);
         for (double i = 1.0; i < count; ++i) cuts_.push_back(keys[k - 1] + span * (i / count));
         cuts_.push_back(keys[k]);
     }

@@ -56,17 +56,6 @@ void move(MovingPose& pose, const Oscillation& motion, double time) {
     shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
-/// Those of a product of two functions, by Leibniz' rule.
-DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
-    constexpr std::array<DerivativeBounds, 5> kBinomials{
-        {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}}};
-    DerivativeBounds result{};
-    for (std::size_t n = 0; n < result.size(); ++n) {
-        for (std::size_t k = 0; k <= n; ++k) result[n] += kBinomials[n][k] * f[k] * g[n - k];
-    }
-    return result;
-}
-
 DerivativeBounds wave_bounds(double amplitude, double frequency) {
     const double pulsation = 2.0 * std::numbers::pi * std::fabs(frequency);
     DerivativeBounds bounds{amplitude};

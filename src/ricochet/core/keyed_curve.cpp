@@ -113,6 +113,16 @@ std::vector<Value> smooth_slopes(const std::vector<CurveKey<Value>>& keys, bool 
 
 }  // namespace
 
+DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g) {
+    constexpr std::array<DerivativeBounds, 5> kBinomials{
+        {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}}};
+    DerivativeBounds result{};
+    for (std::size_t n = 0; n < result.size(); ++n) {
+        for (std::size_t k = 0; k <= n; ++k) result[n] += kBinomials[n][k] * f[k] * g[n - k];
+    }
+    return result;
+}
+
 std::string_view name_of(Interpolation interpolation) {
     switch (interpolation) {
         case Interpolation::linear:

@@ -42,6 +42,9 @@ struct CurveKey {
 /// Upper bounds of the sizes of a function of time and of its first to fourth derivative; in the user's unit, per s^n.
 using DerivativeBounds = std::array<double, 5>;
 
+/// Those of a product of two functions, by Leibniz' rule.
+[[nodiscard]] DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g);
+
 /// A curve through keys, for Value = double and Value = Vec3. Immutable: safe from any number of threads. Time is in s,
 /// values are in the user's unit.
 template <class Value>

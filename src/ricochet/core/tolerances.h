@@ -197,6 +197,27 @@ inline constexpr double kBoxSlack = 0x1p-20;
 /// off.
 inline constexpr double kMovingPathTolerance = 1e-9;
 
+/// Most such cubics for one path between two keys. Reason: kMovingPathTolerance asks for some 250 a turn; more than 16
+/// turns in a step are no motion that a step can follow. Smaller: fast bodies see paths less closely than that
+/// tolerance says. Larger: a step beside a body that turns still faster takes longer.
+inline constexpr double kMostMovingPieces = 4096.0;
+
+/// Most keys of a body's curves that are looked at one by one in a step: paths are cut there, boxes of the motion
+/// joined. What follows them, as in a curve that repeats much faster than the step, is one stretch. Smaller: an impact
+/// beside a later key is found where a cubic across the jump says, and boxes are wider. Larger: steps of such bodies
+/// take longer.
+inline constexpr int kMostKeysInStep = 256;
+
+/// By how much a body's box grows over a step for the rounding of poses and sums, as a part of its largest coordinate.
+/// Reason: some thousand roundings of 2^-53. Smaller than some 2^-49: a body may come out of its box, and through
+/// particles that it should have met. Larger: particles nearby look at the body for nothing.
+inline constexpr double kSweptBoxRounding = 0x1p-40;
+
+/// Difference of a body's velocities on both sides of a key, as a part of both, above which they jump there. Reason:
+/// the rounding of derivatives of curves. Smaller: what rides is let go, and lands again, at keys where nothing jumps.
+/// Larger: what rides is carried through jumps of that size.
+inline constexpr double kSameVelocity = 1e-12;
+
 // Narrow phase
 
 /// Times closer than this many ulp count as simultaneous: all surfaces hit then answer together (corners).
@@ -285,10 +306,6 @@ inline constexpr double kPartAfterImpact = 1e-3;
 /// every impact. Larger: bodies gain energy.
 inline constexpr double kImpactEnergyRounding = 1e-14;
 
-/// Relative to their sizes: velocities of a body that differ by no more are the same. Smaller: what rides on a body is
-/// let go at every step by rounding. Larger: it is carried through a jump.
-inline constexpr double kSameVelocity = 1e-12;
-
 /// Unit of the per-triangle impulse totals, N s: 128-bit integers in this unit, so that sums do not depend on the
 /// order. The largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;
@@ -345,6 +362,20 @@ inline constexpr double kStiffCompliance = 1e-10;
 /// often. Larger: longer ways.
 inline constexpr double kStiffening = 1e-2;
 inline constexpr double kShortestStiffening = 0.9;
+
+/// Turn, rad, of surfaces of different frames, or of what bends under a particle that they hold together, in one
+/// interval of contact. Reason: within an interval they count as the planes that they are at its start, and its square
+/// is the error. Smaller: more intervals (each costs a query), and a step's limit of them is reached sooner. Larger:
+/// contact with several frames at once is less exact.
+inline constexpr double kMostSharedTurn = 0.02;
+
+/// Bounces among colliders that move after which a particle's progress is looked at, and the part of the step that has
+/// to have passed by then; otherwise surfaces close on it, and it stays for this step. Reason: between walls that close
+/// each bounce takes a part of the time that is left, and more of them would not help. Fewer bounces, or a larger part:
+/// particles in corners are left behind that would come out. More, or smaller: particles that are being squeezed cost
+/// more bounces.
+inline constexpr std::uint32_t kBouncesToClose = 16;
+inline constexpr double kLeastWayOut = 1e-3;
 
 /// Length of the difference of unit normals up to which surfaces count as one in an impact or a contact. Reason: what
 /// two such surfaces do apart differs by as much, far below what a path's parabolas are exact to; the facets of a flat

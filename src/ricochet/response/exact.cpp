@@ -18,11 +18,6 @@ namespace {
 /// to 9 % (docs/decisions/2026-11-23-what-pays.md).
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
 
-/// Bounces among colliders that move after which a particle's progress is looked at, and what of a step at least has to
-/// have passed by then.
-constexpr std::uint32_t kBouncesToClose = 16;
-constexpr double kLeastProgress = 1e-3;
-
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
@@ -108,7 +103,7 @@ bool ParticleMover::has_room() {
     if (rides_ == nullptr || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
     bounces_at_look_ = step_.outcome().bounces;
     const double before = std::exchange(remaining_at_look_, step_.remaining());
-    return before - step_.remaining() > kLeastProgress * step_.duration();
+    return before - step_.remaining() > kLeastWayOut * step_.duration();
 }
 
 /// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several until those of

@@ -13,9 +13,6 @@ namespace {
 /// Intervals of a step before the particle is set free again.
 constexpr int kMostIntervals = 64;
 
-/// rad, by which surfaces turn, or bend under the particle, in one interval.
-constexpr double kMostSharedTurn = 0.02;
-
 /// Corrections of an interval's end; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 

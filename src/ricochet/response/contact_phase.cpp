@@ -104,17 +104,7 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
 void ContactPhase::land(const Motion& arriving) {
     const Vec3 before = state_.velocity;  // with the rebound, whose impulse is recorded already
     std::array<ImpactSurface, kMostHolding> surfaces;
-    for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        const ContactSurface surface = manifold_[k];
-        const Material& material = impact_.material_of(surface.surface);
-        surfaces[k] = {surface.normal,
-                       0.0,
-                       material.friction,
-                       material.rolling_friction,
-                       material.spinning_friction,
-                       impact_.velocity_of(surface),
-                       impact_.angular_velocity_of(surface.surface)};
-    }
+    for (std::size_t k = 0; k < manifold_.size(); ++k) surfaces[k] = impact_.landing_on(manifold_[k]);
     Motion after = solve_impact(arriving, state_.radius, std::span(surfaces).first(manifold_.size())).after;
     const auto speed = [&](const Motion& motion) {
         return length(motion.velocity) + state_.radius * length(motion.spin);

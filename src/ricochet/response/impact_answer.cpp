@@ -84,6 +84,18 @@ Vec3 ImpactAnswer::carried_angular_velocity_of(SurfaceId surface) const {
     return turning + home_.direction_in_frame(of_body, time);
 }
 
+ImpactSurface ImpactAnswer::landing_on(const ContactSurface& surface) const {
+    const Material& material = material_of(surface.surface);
+    return {surface.normal,
+            0.0,
+            material.friction,
+            material.rolling_friction,
+            material.spinning_friction,
+            velocity_of(surface),
+            angular_velocity_of(surface.surface),
+            advance_of(surface)};
+}
+
 void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {
     if (!scratch_.record_contacts) return;
     scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position,

@@ -77,6 +77,9 @@ public:
         return dot(particle_.state.velocity, surface.normal) - advance_of(surface);
     }
 
+    /// The surface as one on which the particle lands without a rebound.
+    [[nodiscard]] ImpactSurface landing_on(const ContactSurface& surface) const;
+
 private:
     enum class Rebound { by_material, none };
 

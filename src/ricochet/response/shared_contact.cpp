@@ -77,18 +77,7 @@ bool SharedContact::land() {
     });
     if (is_along) return true;
     std::array<ImpactSurface, kMostHolding> surfaces;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const ContactSurface& surface = touched_[k].surface;
-        const Material& material = impact.material_of(surface.surface);
-        surfaces[k] = {surface.normal,
-                       0.0,
-                       material.friction,
-                       material.rolling_friction,
-                       material.spinning_friction,
-                       touched_[k].velocity,
-                       impact.angular_velocity_of(surface.surface),
-                       impact.advance_of(surface)};
-    }
+    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = impact.landing_on(touched_[k].surface);
     const ImpactResult result =
         solve_impact({state_.velocity, particle_.spin}, state_.radius, std::span(surfaces).first(count_));
     state_.velocity = result.after.velocity;

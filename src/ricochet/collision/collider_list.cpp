@@ -1,8 +1,10 @@
+#include "ricochet/collision/collider_list.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>
+#include <variant>
 
-#include "ricochet/collision/collision_world.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/collision/overlap.h"

@@ -170,6 +170,81 @@ TEST(SavedSimulation, IsRefusedByOtherOptionsMaterialsAndBounds) {
     }
 }
 
+/// A floor that stands in the last of two frames, and a wall in the first.
+SimulationSetup moving_setup(const std::vector<FrameDescription>& frames) {
+    SimulationSetup setup = busy_setup();
+    setup.frames = std::make_shared<const FrameTree>(frames);
+    setup.colliders[0].frame = frames.back().name;
+    setup.colliders.push_back({"wall", PlaneShape{{-3, 0, 0}, {1, 0, 0}}, 0, frames.front().name});
+    return setup;
+}
+
+TEST(SavedSimulation, IsRefusedWhereCollidersMoveOtherwise) {
+    const CurveKey<Vec3> begin{0.0, {}};
+    const std::vector<FrameDescription> frames{
+        {"base", "", {}, {0, 0, 1}, 0.0, {Spin{{0, 0, 1}, 10.0}, Oscillation{{0.1, 0, 0}, 1.0, 0.0}}},
+        {"table",
+         "base",
+         {},
+         {0, 0, 1},
+         0.0,
+         {KeyedTranslation{KeyedCurve<Vec3>({begin, {1.0, {0, 0, 0.1}}})}, Swing{{1, 0, 0}, 2.0, 1.0, 0.0},
+          KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {2.0, 30.0}})}}}};
+    Simulation whole(moving_setup(frames));
+    run_to(whole, 20);
+    const std::vector<std::byte> bytes = saved(whole);
+    using Frames = std::vector<FrameDescription>;
+    const std::vector<std::function<void(Frames&)>> changes{
+        [](Frames& f) {
+            f[0].motions[0] = Spin{{0, 0, 1}, 11.0};
+        },
+        [](Frames& f) {
+            f[0].motions[0] = Spin{{0, 0, -1}, 10.0};
+        },
+        [](Frames& f) {
+            f[0].motions[1] = Oscillation{{0.1, 0, 0}, 1.0, 1.0};
+        },
+        [](Frames& f) {
+            f[0].motions[1] = Oscillation{{0.2, 0, 0}, 1.0, 0.0};
+        },
+        [](Frames& f) { std::swap(f[0].motions[0], f[0].motions[1]); },
+        [&](Frames& f) {
+            f[1].motions[0] = KeyedTranslation{KeyedCurve<Vec3>({begin, {1.0, {0, 0, 0.2}}})};
+        },
+        [&](Frames& f) {
+            f[1].motions[0] = KeyedTranslation{
+                KeyedCurve<Vec3>({begin, {1.0, {0, 0, 0.1}}}, Interpolation::linear, CurveEnds::repeat)};
+        },
+        [](Frames& f) {
+            f[1].motions[1] = Swing{{1, 0, 0}, 2.0, 1.5, 0.0};
+        },
+        [](Frames& f) {
+            f[1].motions[2] = KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {3.0, 30.0}})};
+        },
+        [](Frames& f) { f[1].motions.pop_back(); },
+        [](Frames& f) { f[1].translation.z = -0.5; },
+        [](Frames& f) { f[1].rotation_degrees = 1.0; },
+        [](Frames& f) { f[1].parent.clear(); }};
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+        Frames other = frames;
+        changes[k](other);
+        Simulation simulation(moving_setup(other));
+        EXPECT_THROW(restore(simulation, bytes), InputError) << "change " << k;
+    }
+    SimulationSetup exchanged = moving_setup(frames);
+    std::swap(exchanged.colliders[0].frame, exchanged.colliders[1].frame);
+    Simulation with_others(std::move(exchanged));
+    EXPECT_THROW(restore(with_others, bytes), InputError);
+    // Names say nothing about motion.
+    Frames renamed = frames;
+    renamed[0].name = renamed[1].parent = "ground";
+    Simulation same(moving_setup(renamed));
+    restore(same, bytes);
+    run_to(whole, 40);
+    run_to(same, 40);
+    EXPECT_EQ(same.state_hash(), whole.state_hash());
+}
+
 TEST(SavedSimulation, IsRefusedWhereAnyByteIsDamaged) {
     Simulation whole(busy_setup());
     run_to(whole, 3);

@@ -45,6 +45,8 @@ public:
         return body_of_collider_[colliders_->collider_of(surface)];
     }
     [[nodiscard]] BodyId body_of_collider(std::size_t collider) const { return body_of_collider_[collider]; }
+    /// The frame that a body stands in.
+    [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
     /// Where a body is at a time, s, and how it moves.
     [[nodiscard]] MovingPose pose(BodyId body, double time) const;
     /// As CollisionWorld::prepare_radius().

@@ -10,6 +10,7 @@
 
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
 #include "ricochet/core/portable_math.h"
 
 namespace ricochet {
@@ -87,6 +88,39 @@ double next_key_of(const FrameMotion& motion, double time) {
     if (const auto* moving = std::get_if<KeyedTranslation>(&motion)) return moving->path.next_key(time);
     return std::numeric_limits<double>::infinity();
 }
+
+/// Adds what a motion is made of to a hash.
+struct HashOf {
+    StateHash& hash;
+
+    template <class Value>
+    void add(const KeyedCurve<Value>& curve) const {
+        hash.add(static_cast<std::uint64_t>(curve.interpolation()));
+        hash.add(static_cast<std::uint64_t>(curve.ends()));
+        hash.add(static_cast<std::uint64_t>(curve.keys().size()));
+        for (const CurveKey<Value>& key : curve.keys()) {
+            hash.add(key.time);
+            hash.add(key.value);
+        }
+    }
+    void operator()(const KeyedRotation& motion) const {
+        hash.add(motion.axis);
+        add(motion.degrees);
+    }
+    void operator()(const KeyedTranslation& motion) const { add(motion.path); }
+    void operator()(const Spin& motion) const {
+        hash.add(motion.axis);
+        hash.add(motion.rate);
+    }
+    void operator()(const Swing& motion) const {
+        hash.add(motion.axis);
+        for (const double number : {motion.amplitude, motion.frequency, motion.phase}) hash.add(number);
+    }
+    void operator()(const Oscillation& motion) const {
+        hash.add(motion.amplitude);
+        for (const double number : {motion.frequency, motion.phase}) hash.add(number);
+    }
+};
 
 // Checks a frame by itself; axes become unit vectors.
 void prepare(FrameDescription& frame) {
@@ -238,6 +272,23 @@ double FrameTree::next_key(std::size_t frame, double time) const {
         for (const FrameMotion& motion : frames_[k].motions) next = std::min(next, next_key_of(motion, time));
     }
     return next;
+}
+
+std::uint64_t FrameTree::hash(std::size_t frame) const {
+    require_index(frame, size(), "frame");
+    StateHash hash;
+    for (const std::size_t k : chains_[frame]) {
+        const FrameDescription& link = frames_[k];
+        hash.add(link.translation);
+        hash.add(link.rotation_axis);
+        hash.add(link.rotation_degrees);
+        hash.add(static_cast<std::uint64_t>(link.motions.size()));
+        for (const FrameMotion& motion : link.motions) {
+            hash.add(static_cast<std::uint64_t>(motion.index()));
+            std::visit(HashOf{hash}, motion);
+        }
+    }
+    return hash.value();
 }
 
 }  // namespace ricochet

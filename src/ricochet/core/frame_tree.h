@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,6 +100,8 @@ public:
     /// The first time after `time`, s, at which a curve of it or of the frames that it stands on has a key: derivatives
     /// may jump there; infinite when there is none.
     [[nodiscard]] double next_key(std::size_t frame, double time) const;
+    /// Of all that says how it moves: its own description and those of the frames that it stands on, without names.
+    [[nodiscard]] std::uint64_t hash(std::size_t frame) const;
 
     /// How a driven frame has moved, and will: paths that follow each other without a gap, at least one. What comes
     /// before and after is as the first and the last of them say. Throws InputError for other frames.

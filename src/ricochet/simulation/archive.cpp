@@ -48,7 +48,7 @@ void expect(Archive& a, const T& expected, const char* complaint) {
 
 }  // namespace
 
-// Colliders in world coordinates; a changed mesh file is a changed setup.
+// Colliders in the coordinates of their frames, and how those move; a changed mesh file is a changed setup.
 std::uint64_t Simulation::Impl::collider_hash() const {
     StateHash hash;
     const auto add = [&](const CollisionWorld& of) {
@@ -58,7 +58,13 @@ std::uint64_t Simulation::Impl::collider_hash() const {
         }
     };
     add(world);
-    for (BodyId body = 0; bodies && body < bodies->size(); ++body) add(bodies->world(body));
+    for (BodyId body = 0; bodies && body < bodies->size(); ++body) {
+        add(bodies->world(body));
+        hash.add(bodies->frames()->hash(bodies->frame_of(body)));
+    }
+    for (std::size_t k = 0; bodies && k < colliders->all().size(); ++k) {
+        hash.add(static_cast<std::uint64_t>(bodies->body_of_collider(k)));
+    }
     hash.add(static_cast<std::uint64_t>(world.surface_count()));
     return hash.value();
 }

@@ -112,6 +112,33 @@ TEST_F(CheckWarnings, TellsOfStartsOnBothSidesOfAClosedCollider) {
     EXPECT_EQ(warnings(mesh("hull.obj") + R"(, "particles": [{"position": [0, 0, 3]}])"), "");
 }
 
+// Where it is when particles are born: 3 m off the origin at first.
+TEST_F(CheckWarnings, SeesCollidersThatMoveWhereTheyAreWhenParticlesBegin) {
+    const std::string away = R"(, "motion": [{"time": 0, "position": [3, 0, 0], "rotation": {"axis": [0, 1, 0],
+        "degrees": 180}}, {"time": 0.05, "position": [0, 0, 0]}])";
+    const std::string both = R"(, "particles": [{"position": [0, 0, 0]}, {"position": [3, 0, 0]}])";
+    const std::string inside = R"(, "particles": [{"position": [3, 0, 0]}])";
+    for (const std::string solid : {R"("type": "mesh", "file": "hull.obj")", R"("type": "sphere", "radius": 1)"}) {
+        const std::string text = warnings(collider(solid + away) + both);
+        EXPECT_EQ(text.rfind("particles: 1 of 2 begin inside colliders[0] 'c', which is closed", 0), 0U) << text;
+        EXPECT_EQ(warnings(collider(solid + away) + inside), "");
+    }
+    const std::string leaky = collider(R"("type": "mesh", "file": "leaky.obj")" + away);
+    EXPECT_EQ(warnings(leaky + inside).rfind("particles: 1 of 1 begin inside colliders[0] 'c', which is open", 0), 0U);
+    EXPECT_EQ(warnings(leaky + R"(, "particles": [{"position": [0, 0, 0]}])"), "");
+    // Born when it is there.
+    const std::string late = emitter(R"("type": "point", "center": [0, 0, 0], "start": 0.05)");
+    EXPECT_EQ(warnings(leaky + late).rfind("emitters[0] 'e': 64 of 64 begin inside", 0), 0U);
+    // A funnel that stands on its head above what rises from below is entered as one that stands upright.
+    const std::string wide = R"(, "particles": [{"position": [3, 0, 4], "radius": 0.2}])";
+    const std::string funnel = collider(R"("type": "mesh", "file": "funnel.obj")" + away);
+    EXPECT_NE(warnings(funnel + gravity() + wide).find("do not fit through the narrowest opening"), std::string::npos);
+    // Nothing finds room between two bodies.
+    const std::string large = emitter(R"("type": "point", "center": [3, 0, 0.5], "particle_radius": 0.7)");
+    EXPECT_NE(warnings(collider(R"("type": "sphere", "radius": 1)" + away) + large).find("256 of 256 positions"),
+              std::string::npos);
+}
+
 TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
     const auto particles = [](double z) {
         return R"(, "particles": [{"position": [0, 0, 5], "radius": 0.5}, {"position": [3, 0, )" + std::to_string(z) +

@@ -62,16 +62,55 @@ Starts explicit_starts(const Simulation& simulation) {
     return starts;
 }
 
-bool overlaps(const Simulation& simulation, const Particle& p) {
+/// A collider by itself, in the coordinates of the frame that it stands in.
+struct Solid {
+    Solid(const Simulation& simulation, std::size_t i) : number(i), queries({in_its_frame(simulation, i)}) {}
+
+    /// With the mesh that the simulation has taken over.
+    static ColliderDescription in_its_frame(const Simulation& simulation, std::size_t i) {
+        ColliderDescription collider = simulation.colliders()[i];
+        collider.frame.clear();
+        if (!std::holds_alternative<MeshShape>(collider.shape)) return collider;
+        auto mesh = std::make_shared<const TriangleMesh>(*simulation.collider_mesh(i));
+        collider.shape = MeshShape{std::move(mesh), {}, ""};
+        return collider;
+    }
+
+    std::size_t number;
+    CollisionQueries queries;
+};
+
+/// Those that move: the simulation's own queries know only what is at rest.
+std::vector<Solid> moving_solids(const Simulation& simulation) {
+    std::vector<Solid> solids;
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        if (!simulation.colliders()[i].frame.empty()) solids.emplace_back(simulation, i);
+    }
+    return solids;
+}
+
+/// Where a particle begins in the frame of a collider.
+Vec3 start_in(const Simulation& simulation, std::size_t collider, const Particle& particle) {
+    return simulation.collider_pose(collider, particle.birth_time).image(particle.position);
+}
+
+bool overlaps(const Simulation& simulation, std::span<const Solid> moving, const Particle& p) {
     if (!is_finite(p.position) || max_abs(p.position) > kLargestCoordinate) return false;
     const double least = p.radius - sphere_tolerance(p.radius, max_abs(p.position));
     if (!(least > 0.0) || simulation.colliders().empty()) return false;
-    const auto closest = simulation.collisions().closest_point(p.position, p.radius);
-    return closest && closest->distance < least;
+    const auto is_within = [&](const CollisionQueries& queries, const Vec3& position) {
+        const auto closest = queries.closest_point(position, p.radius);
+        return closest && closest->distance < least;
+    };
+    return is_within(simulation.collisions(), p.position) ||
+           std::any_of(moving.begin(), moving.end(), [&](const Solid& solid) {
+               return is_within(solid.queries, start_in(simulation, solid.number, p));
+           });
 }
 
 /// Drawn for themselves, not as those of the run.
-Starts starts_of(const Simulation& simulation, const EmitterDescription& emitter, std::size_t index) {
+Starts starts_of(const Simulation& simulation, std::span<const Solid> moving, const EmitterDescription& emitter,
+                 std::size_t index) {
     Starts starts{named("emitters", index, emitter.name), {}, emitter.radius.mean + emitter.radius.spread, 0};
     const ShapeSampler sampler(emitter.shape);
     RandomSequence random(0, 0, index);
@@ -81,7 +120,7 @@ Starts starts_of(const Simulation& simulation, const EmitterDescription& emitter
         particle.position = sampler.draw(particle.radius, random).position;
         particle.birth_time = emitter.start;
         if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
-        if (overlaps(simulation, particle)) {
+        if (overlaps(simulation, moving, particle)) {
             ++starts.overlapping;
         } else {
             starts.particles.push_back(particle);
@@ -92,6 +131,7 @@ Starts starts_of(const Simulation& simulation, const EmitterDescription& emitter
 
 /// A mesh collider with boundary loops.
 struct OpenMesh {
+    std::size_t number;
     std::string where;
     TriangleMesh mesh;
     Box3 box;
@@ -102,9 +142,10 @@ class SceneReview {
 public:
     SceneReview(const Simulation& simulation, std::span<const EmitterDescription> emitters, const Vec3& fall)
         : simulation_(simulation), emitters_(emitters), fall_(fall) {
+        const std::vector<Solid> moving = moving_solids(simulation);
         if (!simulation.particles().empty()) starts_.push_back(explicit_starts(simulation));
         for (std::size_t k = 0; k < emitters.size(); ++k) {
-            if (!emitters[k].parent) starts_.push_back(starts_of(simulation, emitters[k], k));
+            if (!emitters[k].parent) starts_.push_back(starts_of(simulation, moving, emitters[k], k));
         }
     }
 
@@ -122,12 +163,12 @@ private:
     void review_surfaces();
     void review_collider(std::size_t i);
     void review_precision(const TriangleMesh& mesh, const std::string& where);
-    void review_sides(const Starts& starts, const CollisionQueries& solid, const std::string& where);
+    void review_sides(const Starts& starts, const Solid& solid, const std::string& where);
     void review_leaks(const Starts& starts, const OpenMesh& open);
     void review_fit(const Starts& starts, const OpenMesh& open);
     void review_positions(const Starts& starts);
     void review_radius(const Starts& starts);
-    [[nodiscard]] bool falls_to(const Particle& particle, const Box3& box) const;
+    [[nodiscard]] bool falls_to(const Particle& particle, const OpenMesh& open) const;
 
     const Simulation& simulation_;
     std::span<const EmitterDescription> emitters_;
@@ -157,22 +198,13 @@ void SceneReview::review_surfaces() {
 
 std::optional<OpenMesh> open_mesh(const Simulation& simulation, std::size_t i, std::string where) {
     if (!std::holds_alternative<MeshShape>(simulation.colliders()[i].shape)) return std::nullopt;
-    OpenMesh open{std::move(where), *simulation.collider_mesh(i), {}, {}};
+    OpenMesh open{i, std::move(where), *simulation.collider_mesh(i), {}, {}};
     open.openings = openings_of(open.mesh);
     if (open.openings.empty()) return std::nullopt;
     std::sort(open.openings.begin(), open.openings.end(),
               [](const MeshOpening& a, const MeshOpening& b) { return a.diameter > b.diameter; });
     for (const Vec3& vertex : open.mesh.vertices) open.box.include(vertex);
     return open;
-}
-
-/// A collider with the mesh that the simulation has taken over.
-ColliderDescription in_world(const Simulation& simulation, std::size_t i) {
-    ColliderDescription collider = simulation.colliders()[i];
-    if (!std::holds_alternative<MeshShape>(collider.shape)) return collider;
-    auto mesh = std::make_shared<const TriangleMesh>(*simulation.collider_mesh(i));
-    collider.shape = MeshShape{std::move(mesh), {}, ""};
-    return collider;
 }
 
 void SceneReview::review_collider(std::size_t i) {
@@ -187,7 +219,7 @@ void SceneReview::review_collider(std::size_t i) {
         }
         return;
     }
-    const CollisionQueries solid({in_world(simulation_, i)});
+    const Solid solid(simulation_, i);
     for (const Starts& starts : starts_) review_sides(starts, solid, where);
 }
 
@@ -209,8 +241,11 @@ void SceneReview::review_precision(const TriangleMesh& mesh, const std::string& 
         where, mean, largest, ulp(largest), contact_offset({largest, 0.0, 0.0})));
 }
 
-void SceneReview::review_sides(const Starts& starts, const CollisionQueries& solid, const std::string& where) {
-    const auto is_inside = [&](const Particle& p) { return is_finite(p.position) && solid.is_inside(p.position); };
+void SceneReview::review_sides(const Starts& starts, const Solid& solid, const std::string& where) {
+    const auto is_inside = [&](const Particle& p) {
+        const Vec3 position = start_in(simulation_, solid.number, p);
+        return is_finite(position) && solid.queries.is_inside(position);
+    };
     const auto inside = std::count_if(starts.particles.begin(), starts.particles.end(), is_inside);
     if (inside == 0 || inside == std::ssize(starts.particles)) return;
     lines_.push_back(
@@ -227,7 +262,8 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
         std::clamp(affordable, 1.0, static_cast<double>(std::min<std::size_t>(starts.particles.size(), 64))));
     std::size_t inside = 0;
     for (std::size_t k = 0; k < looked_at; ++k) {
-        const Vec3& position = starts.particles[k * starts.particles.size() / looked_at].position;
+        const Particle& particle = starts.particles[k * starts.particles.size() / looked_at];
+        const Vec3 position = start_in(simulation_, open.number, particle);
         if (!open.box.contains(position)) continue;
         inside += std::fabs(winding_number(open.mesh, position)) > 0.5 ? 1 : 0;
     }
@@ -248,7 +284,7 @@ void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
     }
     if (starts.particles.empty() || !(2.0 * starts.largest_radius > narrowest)) return;
     const auto falls = std::count_if(starts.particles.begin(), starts.particles.end(),
-                                     [&](const Particle& particle) { return falls_to(particle, open.box); });
+                                     [&](const Particle& particle) { return falls_to(particle, open); });
     if (2 * falls < std::ssize(starts.particles)) return;
     lines_.push_back(
         fmt::format("{}: spheres of up to {:.3g} m across do not fit through the narrowest opening of {}, {:.3g} m "
@@ -257,22 +293,26 @@ void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
 }
 
 /// True when it begins in the box, or above it as things fall.
-bool SceneReview::falls_to(const Particle& particle, const Box3& box) const {
-    if (box.contains(particle.position)) return true;
+bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const {
+    const Box3& box = open.box;
+    const MovingPose pose = simulation_.collider_pose(open.number, particle.birth_time);
+    const Vec3 from = pose.image(particle.position);
+    const Vec3 fall = pose.direction_image(fall_);
+    if (box.contains(from)) return true;
     double begin = 0.0;
     double end = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-        const double low = (box.lower[axis] - particle.position[axis]) / fall_[axis];
-        const double high = (box.upper[axis] - particle.position[axis]) / fall_[axis];
-        if (fall_[axis] == 0.0) {
-            const double x = particle.position[axis];
+        const double low = (box.lower[axis] - from[axis]) / fall[axis];
+        const double high = (box.upper[axis] - from[axis]) / fall[axis];
+        if (fall[axis] == 0.0) {
+            const double x = from[axis];
             if (x < box.lower[axis] || x > box.upper[axis]) return false;
             continue;
         }
         begin = std::max(begin, std::min(low, high));
         end = std::min(end, std::max(low, high));
     }
-    return begin <= end && fall_ != Vec3{};
+    return begin <= end && fall != Vec3{};
 }
 
 /// Explicit particles in overlap are told by the simulation itself.

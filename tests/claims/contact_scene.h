@@ -12,6 +12,7 @@
 
 #include "collision/worlds.h"
 #include "ricochet/simulation.h"
+#include "support/simulations.h"
 
 namespace ricochet::testing {
 
@@ -31,25 +32,11 @@ struct ContactScene {
     Integrator integrator = IntegratorKind::ballistic;
 };
 
-/// A particle at a place, with a velocity, a radius and a spin.
-[[nodiscard]] inline Particle particle_of(const Vec3& position, const Vec3& velocity = {}, double radius = 0.0,
-                                          const Vec3& spin = {}) {
-    Particle particle;
-    particle.position = position;
-    particle.velocity = velocity;
-    particle.radius = radius;
-    particle.spin = spin;
-    return particle;
-}
-
 [[nodiscard]] inline Simulation simulation_of(const ContactScene& scene) {
-    SimulationSetup setup;
-    setup.options.time_step = scene.time_step;
-    setup.options.duration = scene.duration;
+    SimulationSetup setup = setup_of(scene.time_step, scene.duration, {}, scene.gravity);
     setup.options.integrator = scene.integrator;
     setup.options.triangle_totals = false;
     setup.options.record_contacts = true;
-    if (scene.gravity != Vec3{}) setup.forces.push_back(make_gravity(scene.gravity));
     setup.materials = scene.materials;
     setup.colliders = scene.colliders;
     for (std::size_t k = 0; k < setup.colliders.size() && scene.materials.size() > 1; ++k) {

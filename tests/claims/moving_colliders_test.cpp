@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "claims/moving_scene.h"
 #include "collision/worlds.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/parallel.h"
@@ -22,52 +23,6 @@ constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
 
-FrameDescription frame_of(const std::string& name, std::vector<FrameMotion> motions, const Vec3& at = {}) {
-    FrameDescription frame;
-    frame.name = name;
-    frame.translation = at;
-    frame.motions = std::move(motions);
-    return frame;
-}
-
-KeyedTranslation steady(const Vec3& velocity, double until = 1000.0) {
-    return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
-}
-
-SimulationSetup setup_of(std::vector<FrameDescription> frames, std::vector<ColliderDescription> colliders,
-                         double time_step, double duration) {
-    SimulationSetup setup;
-    setup.options.time_step = time_step;
-    setup.options.duration = duration;
-    setup.options.record_contacts = true;
-    setup.options.verify = true;
-    setup.materials = {{"", 1.0, 0.0}};
-    setup.frames = std::make_shared<const FrameTree>(std::move(frames));
-    setup.colliders = std::move(colliders);
-    return setup;
-}
-
-Particle particle_at(const Vec3& position, const Vec3& velocity, double radius = 0.0, const Vec3& spin = {}) {
-    Particle particle;
-    particle.position = position;
-    particle.velocity = velocity;
-    particle.radius = radius;
-    particle.spin = spin;
-    return particle;
-}
-
-std::vector<ContactRecord> all_contacts(Simulation& simulation) {
-    std::vector<ContactRecord> all;
-    while (!simulation.finished()) {
-        simulation.step();
-        const auto& records = simulation.contact_records();
-        all.insert(all.end(), records.begin(), records.end());
-    }
-    EXPECT_EQ(simulation.statistics().violations, 0U);
-    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
-    return all;
-}
-
 // Between a wall at rest at 0 and one that comes from 1 m at 0.1 m/s: t of each impact from the one before.
 TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
     for (const double radius : {0.0, 0.01}) {
@@ -75,7 +30,7 @@ TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
             {frame_of("piston", {steady({-0.1, 0, 0})}, {1, 0, 0})},
             {{"wall", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0}, {"piston", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0, "piston"}},
             0.07, 5.0);
-        setup.particles = {particle_at({0.5, 0.1, 0.2}, {1.0, 0.3, 0}, radius)};
+        setup.particles = {particle_of({0.5, 0.1, 0.2}, {1.0, 0.3, 0}, radius)};
         Simulation simulation(std::move(setup));
         double speed = 1.0;
         double x = 0.5;
@@ -106,7 +61,7 @@ TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
         for (int k = 0; k < 200; ++k) {
             const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
             const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
-            setup.particles.push_back(particle_at(0.7 * p, 4.0 * v, radius));
+            setup.particles.push_back(particle_of(0.7 * p, 4.0 * v, radius));
         }
         Simulation simulation(std::move(setup));
         const auto contacts = all_contacts(simulation);
@@ -136,7 +91,7 @@ TEST(Impacts, AreTheSameSeenFromAFrameThatMovesSteadily) {
                 const Vec3 p{random.uniform(), random.uniform(), random.uniform()};
                 const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
                 const Vec3 from = Vec3{0.7, 0.6, 0.55} + 0.6 * p;
-                setup.particles.push_back(particle_at(from, 2.0 * v + (moves ? drift : Vec3{}), radius));
+                setup.particles.push_back(particle_of(from, 2.0 * v + (moves ? drift : Vec3{}), radius));
             }
             Simulation simulation(std::move(setup));
             contacts.push_back(all_contacts(simulation));
@@ -171,7 +126,7 @@ TEST(ABallAndACylinder, ThatTurnAboutTheirOwnAxisAreNoOthersThanAtRest) {
             RandomSequence random(3, 1, 0);
             for (int k = 0; k < 40; ++k) {
                 const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
-                setup.particles.push_back(particle_at({0, 0.5 + random.uniform(), random.uniform()}, 3.0 * v, radius));
+                setup.particles.push_back(particle_of({0, 0.5 + random.uniform(), random.uniform()}, 3.0 * v, radius));
             }
             Simulation simulation(std::move(setup));
             contacts.push_back(all_contacts(simulation));
@@ -216,7 +171,7 @@ TEST(Walls, ThatTurnAreWallsAtRestWithTheForcesOfTheirFrame) {
                 const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
                 // At 0 s both frames are the same.
                 setup.particles.push_back(
-                    particle_at(0.6 * p, 3.0 * v - (turns ? Vec3{} : cross(turning, 0.6 * p)), radius));
+                    particle_of(0.6 * p, 3.0 * v - (turns ? Vec3{} : cross(turning, 0.6 * p)), radius));
             }
             Simulation simulation(std::move(setup));
             contacts.push_back(all_contacts(simulation));
@@ -273,7 +228,7 @@ TEST(APoint, HitsATurningCubeWhenItTrulyComesToIt) {
     for (int k = 0; k < 300; ++k) {
         const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
         const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
-        setup.particles.push_back(particle_at(0.8 * p, 6.0 * v));
+        setup.particles.push_back(particle_of(0.8 * p, 6.0 * v));
     }
     const std::vector<Particle> start = setup.particles;
     Simulation simulation(std::move(setup));
@@ -302,7 +257,7 @@ TEST(ASphereOnATurntable, GoesRoundAtTwoSeventhsOfItsRate) {
         setup.materials = {{"", 0.0, 0.8}};
         setup.forces.push_back(make_gravity({0, 0, -9.81}));
         const Vec3 slip = cross(Vec3{0, 0, w}, at) - v;
-        setup.particles = {particle_at(at, v, radius, -1.0 / radius * cross(Vec3{0, 0, 1}, slip))};
+        setup.particles = {particle_of(at, v, radius, -1.0 / radius * cross(Vec3{0, 0, 1}, slip))};
         Simulation simulation(std::move(setup));
         EXPECT_LE(all_contacts(simulation).size(), 1U);
         const double angle = 2.0 / 7.0 * w * 5.0;
@@ -323,7 +278,7 @@ TEST(ASphere, RestsOnABodyThatMovesUniformlyAndStaysWhereItIsOnItToTheLastBit) {
                               {{"floor", CuboidShape{{3, 3, 0.2}, {{0, 0, -0.1}}}, 0, "truck"}}, 0.01, 4.0);
         setup.materials = {{"", 0.2, 0.6, 0.0, 0.1}};
         setup.forces.push_back(make_gravity({0, 0, -9.81}));
-        setup.particles = {particle_at({0.3, 0.2, 0.05}, {2, 0.5, 0}, 0.05), particle_at({0.1, 0.4, 0.1}, {2, 0.5, 0})};
+        setup.particles = {particle_of({0.3, 0.2, 0.05}, {2, 0.5, 0}, 0.05), particle_of({0.1, 0.4, 0.1}, {2, 0.5, 0})};
         Simulation simulation(std::move(setup));
         std::vector<Vec3> images(2);
         int still = 0;
@@ -373,7 +328,7 @@ TEST(ABallOnAnOscillatingTable, LandsWhenItTrulyComesToItEachTime) {
         setup.materials = {{"", 0.5, 0.0}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         setup.options.resting_speed = 1e-3;
-        setup.particles = {particle_at({0, 0, 0.02 + radius}, {}, radius)};
+        setup.particles = {particle_of({0, 0, 0.02 + radius}, {}, radius)};
         Simulation simulation(std::move(setup));
         const std::vector<ContactRecord> contacts = all_contacts(simulation);
         EXPECT_GT(contacts.size(), 40U);
@@ -409,7 +364,7 @@ TEST(APointOnATable, TakesOffWhereTheTableFallsAwayWithG) {
                               {{"table", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "shaker"}}, step, 0.06);
         setup.materials = {{"", 0.0, 0.5}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.particles = {particle_at({0, 0, 1e-15}, {0, 0, amplitude * omega})};
+        setup.particles = {particle_of({0, 0, 1e-15}, {0, 0, amplitude * omega})};
         Simulation simulation(std::move(setup));
         while (simulation.time() < take_off) simulation.step();
         const double s = simulation.time() - take_off;
@@ -429,7 +384,7 @@ TEST(APointOnATurningRamp, SlipsWhereTheSlopeExceedsTheAngleOfFriction) {
     setup.options.verify = false;
     setup.materials = {{"", 0.0, friction}};
     setup.forces.push_back(make_gravity({0, 0, -kG}));
-    setup.particles = {particle_at({0.001, 0, 1e-15}, {})};
+    setup.particles = {particle_of({0.001, 0, 1e-15}, {})};
     Simulation simulation(std::move(setup));
     Vec3 last;
     while (!simulation.finished()) {
@@ -454,7 +409,7 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
             0.01, 3.0);
         setup.materials = {{"floor", 0.0, friction}, {"blade", 0.3, 0.0}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.particles = {particle_at({radius + 0.1, 0, radius + 1e-15}, {}, radius)};
+        setup.particles = {particle_of({radius + 0.1, 0, radius + 1e-15}, {}, radius)};
         Simulation simulation(std::move(setup));
         while (simulation.time() < 1.5) simulation.step();
         const double before = simulation.triangle_totals(1).impulse[0].x;
@@ -486,7 +441,7 @@ TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
             setup.materials = {{"", 0.0, 0.0}};
             setup.options.integrator = IntegratorKind::rk4;
             setup.forces.push_back(make_gravity({0, kG, 0}));
-            setup.particles = {particle_at({0.03, 0.97, 0}, {})};
+            setup.particles = {particle_of({0.03, 0.97, 0}, {})};
             Simulation simulation(std::move(setup));
             static_cast<void>(all_contacts(simulation));
             EXPECT_NEAR(simulation.particles().position[0].x, std::tan(0.8), 1e-12) << step << " " << rate;
@@ -505,7 +460,7 @@ TEST(APointBeforeATurningBlade, IsSweptThroughABowl) {
                               step, 1.0);
         setup.materials = {{"", 0.0, 0.3}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.particles = {particle_at({0.3, 0.3, 0.016018797}, {})};
+        setup.particles = {particle_of({0.3, 0.3, 0.016018797}, {})};
         Simulation simulation(std::move(setup));
         static_cast<void>(all_contacts(simulation));
         EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
@@ -534,7 +489,7 @@ TEST(ACup, LosesNothingThroughItsWalls) {
         RandomSequence random(2, 1, 0);
         for (int k = 0; k < 60; ++k) {
             const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
-            setup.particles.push_back(particle_at(0.5 * p, {}, k % 2 == 0 ? 0.0 : 0.03));
+            setup.particles.push_back(particle_of(0.5 * p, {}, k % 2 == 0 ? 0.0 : 0.03));
         }
         Simulation simulation(std::move(setup));
         static_cast<void>(all_contacts(simulation));
@@ -554,7 +509,7 @@ TEST(APointOnATable, IsThrownOffOrSlidesOnWhereTheTableStopsAtOnce) {
                 setup_of({stopping(velocity)}, {{"table", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "table"}}, step, 0.57);
             setup.materials = {{"", 0.0, 0.2}};
             setup.forces.push_back(make_gravity({0, 0, -kG}));
-            setup.particles = {particle_at({0, 0, 1e-9}, velocity)};
+            setup.particles = {particle_of({0, 0, 1e-9}, velocity)};
             Simulation simulation(std::move(setup));
             static_cast<void>(all_contacts(simulation));
             const Vec3 way = simulation.particles().position[0] - 0.47 * velocity;
@@ -577,7 +532,7 @@ TEST(APointAtTheOriginOfItsFrame, IsCarriedAndNotLostByRounding) {
                 setup_of({frame_of("lift", {steady({0, 0, direction})})}, {{"table", shape, 0, "lift"}}, 0.01, 2.0);
             setup.materials = {{"", 0.0, 0.5}};
             setup.forces.push_back(make_gravity({0, 0, -kG}));
-            setup.particles = {particle_at({0, 0, 1e-9}, {0, 0, direction})};
+            setup.particles = {particle_of({0, 0, 1e-9}, {0, 0, direction})};
             Simulation simulation(std::move(setup));
             static_cast<void>(all_contacts(simulation));
             EXPECT_NEAR(simulation.particles().position[0].z, 2.0 * direction, 1e-12);
@@ -591,7 +546,7 @@ TEST(AParticleThatIsBornOnAMovingSurface, LeavesIt) {
         auto setup = setup_of({frame_of("floor", {steady({0.5, 0, 0.1})})},
                               {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "floor"}}, 0.01, 0.3);
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.particles = {particle_at({0.1, 0.2, 0}, {0, 0, 3}, radius)};
+        setup.particles = {particle_of({0.1, 0.2, 0}, {0, 0, 3}, radius)};
         Simulation simulation(std::move(setup));
         EXPECT_EQ(simulation.statistics().started_inside, 1U);
         static_cast<void>(all_contacts(simulation));
@@ -611,7 +566,7 @@ TEST(LastingContact, InAFrameThatStandsStillIsThatOfTheWorldByEveryIntegrator) {
             setup.materials = {{"", 0.5, 0.0}};
             setup.options.integrator = kind;
             setup.forces.push_back(make_gravity({0, 0, -kG}));
-            setup.particles = {particle_at({0.3, 0, 0.05 + radius}, {1, 0, 0}, radius)};
+            setup.particles = {particle_of({0.3, 0, 0.05 + radius}, {1, 0, 0}, radius)};
             Simulation simulation(std::move(setup));
             static_cast<void>(all_contacts(simulation));
             const auto what = static_cast<int>(kind);
@@ -633,7 +588,7 @@ TEST(ASpring, LandsOnAPlaneThatMovesAlongItselfAsOnOneAtRest) {
         setup.materials = {{"", 0.1, 0.0}};
         setup.options.integrator = IntegratorKind::velocity_verlet;
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.particles = {particle_at({0, 0, 0.1}, {}, 0.02), particle_at({0, 0, 0.22}, {}, 0.02)};
+        setup.particles = {particle_of({0, 0, 0.1}, {}, 0.02), particle_of({0, 0, 0.22}, {}, 0.02)};
         for (Particle& particle : setup.particles) particle.mass = 0.01;
         setup.springs.push_back({0, 1, 20.0, 0.02, 0.12});
         Simulation simulation(std::move(setup));
@@ -659,7 +614,7 @@ TEST(AScene, WithMovingCollidersHasTheSameBitsHoweverItIsRun) {
         RandomSequence random(2, 1, 0);
         for (int k = 0; k < 100; ++k) {
             const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform()};
-            setup.particles.push_back(particle_at(p + Vec3{0, 0, 0.6}, {}, k % 2 == 0 ? 0.0 : 0.03));
+            setup.particles.push_back(particle_of(p + Vec3{0, 0, 0.6}, {}, k % 2 == 0 ? 0.0 : 0.03));
         }
         return setup;
     };

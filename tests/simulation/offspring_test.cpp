@@ -15,6 +15,7 @@
 #include "ricochet/simulation.h"
 #include "ricochet/verify/parity.h"
 #include "support/simple_meshes.h"
+#include "support/simulations.h"
 
 namespace ricochet {
 namespace {
@@ -46,11 +47,8 @@ EmitterDescription children(BirthEvent on, bool share, const MeanSpread& count) 
 }
 
 SimulationSetup setup_of(double time_step, double duration) {
-    SimulationSetup setup;
-    setup.options.time_step = time_step;
-    setup.options.duration = duration;
+    SimulationSetup setup = testing::setup_of(time_step, duration);
     setup.options.seed = 3;
-    setup.materials = {{"elastic", 1.0, 0.0}};
     return setup;
 }
 

@@ -19,6 +19,7 @@
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
+#include "support/simulations.h"
 
 namespace ricochet {
 namespace {
@@ -27,18 +28,6 @@ constexpr double kG = 9.81;
 
 ColliderDescription mesh_collider(TriangleMesh mesh, const std::string& name = "mesh") {
     return {name, MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, ""}, 0};
-}
-
-SimulationSetup setup_of(double time_step, double duration, const Vec3& gravity, double restitution, double friction) {
-    SimulationSetup setup;
-    setup.options.time_step = time_step;
-    setup.options.duration = duration;
-    setup.forces.push_back(make_gravity(gravity));
-    Material material;
-    material.restitution = restitution;
-    material.friction = friction;
-    setup.materials = {material};
-    return setup;
 }
 
 EmitterDescription spheres_from(EmitterShape shape, std::uint64_t burst, double radius) {
@@ -57,12 +46,7 @@ std::vector<EmitterDescription> named(std::vector<EmitterDescription> emitters) 
 }
 
 Particle sphere(const Vec3& position, double radius, const Vec3& velocity = {}, const Vec3& spin = {}) {
-    Particle p;
-    p.position = position;
-    p.velocity = velocity;
-    p.radius = radius;
-    p.spin = spin;
-    return p;
+    return testing::particle_of(position, velocity, radius, spin);
 }
 
 double clearance(const Simulation& simulation, std::size_t i) {
@@ -73,7 +57,7 @@ double energy(const Simulation& simulation) { return simulation.kinetic_energy()
 
 /// Two plates, closed boxes of their own, with a gap between z = -half and z = half.
 SimulationSetup slot(double half) {
-    SimulationSetup setup = setup_of(0.01, 0.1, {}, 0.5, 0.3);
+    SimulationSetup setup = testing::setup_of(0.01, 0.1, {"", 0.5, 0.3});
     setup.colliders = {mesh_collider(testing::box_mesh({-2, -2, half}, {2, 2, half + 1})),
                        mesh_collider(testing::box_mesh({-2, -2, -half - 1}, {2, 2, -half}), "lower")};
     return setup;
@@ -131,7 +115,7 @@ TEST(BirthsOfSpheres, RefusedByOverlapAndByThePopulationAddUp) {
 }
 
 TEST(BirthsOfSpheres, MayBeWhollyInsideASolidAndMayTouch) {
-    SimulationSetup setup = setup_of(0.01, 0.01, {}, 0.5, 0.0);
+    SimulationSetup setup = testing::setup_of(0.01, 0.01, {"", 0.5, 0.0});
     setup.colliders = {mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1}))};
     setup.emitters = named({spheres_from(PointShape{}, 3, 0.5), spheres_from(PointShape{{0.75, 0, 0}}, 4, 0.25)});
     Simulation simulation(std::move(setup));
@@ -144,7 +128,7 @@ TEST(BirthsOfSpheres, OnAMeshOverlapNeitherTheirTriangleNorItsNeighbours) {
     // From the inside of a box, beside whose edges a sphere above one face overlaps the next.
     const auto box = std::make_shared<const TriangleMesh>(testing::flipped(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     for (const bool volume : {false, true}) {
-        SimulationSetup setup = setup_of(0.01, 0.01, {}, 0.5, 0.0);
+        SimulationSetup setup = testing::setup_of(0.01, 0.01, {"", 0.5, 0.0});
         setup.options.verify = true;
         setup.colliders = {mesh_collider(*box)};
         setup.emitters = {volume ? spheres_from(MeshVolumeShape{box}, 500, 0.3)
@@ -167,7 +151,7 @@ TEST(SphereInOverlap, NeverGainsEnergyNorDeepensAndCostsAFewContacts) {
     constexpr std::uint64_t kSeed = 5;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     for (const double friction : {0.0, 0.4}) {
-        SimulationSetup setup = setup_of(0.01, 1.0, {0, 0, -kG}, 0.5, friction);
+        SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.5, friction}, {0, 0, -kG});
         setup.options.verify = true;
         setup.colliders = {mesh_collider(testing::sphere_mesh({}, 1.0, 2)), {"floor", PlaneShape{{0, 0, -1.2}}, 0}};
         RandomSequence random(kSeed, 1, 0);
@@ -197,7 +181,7 @@ TEST(SphereInOverlap, NeverGainsEnergyNorDeepensAndCostsAFewContacts) {
 }
 
 TEST(SphereInOverlap, LeavesAsIfTheSurfaceWereNotThere) {
-    SimulationSetup setup = setup_of(0.01, 1.0, {0, 0, kG}, 0.5, 0.3);
+    SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.5, 0.3}, {0, 0, kG});
     setup.colliders = {mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 0}))};
     setup.particles = {sphere({0.1, 0.2, 0.03}, 0.1, {0.3, 0, 0}, {1, 2, 3})};
     Simulation simulation(std::move(setup));
@@ -211,7 +195,8 @@ TEST(SphereInOverlap, LeavesAsIfTheSurfaceWereNotThere) {
 TEST(SphereInOverlap, SlidesAndRollsLikeOneThatTouches) {
     for (const double friction : {0.0, 1.0}) {
         const double angle = 0.3;
-        SimulationSetup setup = setup_of(0.01, 1.0, {kG * std::sin(angle), 0, -kG * std::cos(angle)}, 0.0, friction);
+        SimulationSetup setup =
+            testing::setup_of(0.01, 1.0, {"", 0.0, friction}, {kG * std::sin(angle), 0, -kG * std::cos(angle)});
         TriangleMesh floor = testing::box_mesh({-1, -3, -1}, {20, 3, 0});
         setup.colliders = {mesh_collider(std::move(floor))};
         setup.particles = {sphere({0, 0.1, 0.05}, 0.1)};
@@ -227,7 +212,7 @@ TEST(SphereInOverlap, SlidesAndRollsLikeOneThatTouches) {
 }
 
 TEST(SphereInOverlap, RestsAndSleepsWhereItIs) {
-    SimulationSetup setup = setup_of(0.01, 0.5, {0, 0, -kG}, 0.5, 0.3);
+    SimulationSetup setup = testing::setup_of(0.01, 0.5, {"", 0.5, 0.3}, {0, 0, -kG});
     setup.colliders = {{"floor", PlaneShape{}, 0}};
     setup.particles = {sphere({0.5, 0, 0.04}, 0.1), sphere({1.5, 0, 0}, 0.1), sphere({2.5, 0, -0.04}, 0.1, {0, 0, 3})};
     Simulation simulation(std::move(setup));
@@ -240,7 +225,7 @@ TEST(SphereInOverlap, RestsAndSleepsWhereItIs) {
 }
 
 TEST(SphereInOverlap, IsItselfAgainOnceItHasBeenFree) {
-    SimulationSetup setup = setup_of(0.01, 2.0, {0, 0, -kG}, 0.0, 0.3);
+    SimulationSetup setup = testing::setup_of(0.01, 2.0, {"", 0.0, 0.3}, {0, 0, -kG});
     setup.options.verify = true;
     setup.colliders = {{"floor", PlaneShape{}, 0}};
     setup.particles = {sphere({0.5, 0, 0.02}, 0.1, {0, 0, 4})};
@@ -253,7 +238,7 @@ TEST(SphereInOverlap, IsItselfAgainOnceItHasBeenFree) {
 
 TEST(SphereInOverlap, ShowsForcesItsWholeRadius) {
     std::atomic<int> others{0};
-    SimulationSetup setup = setup_of(0.01, 0.3, {}, 0.5, 0.3);
+    SimulationSetup setup = testing::setup_of(0.01, 0.3, {"", 0.5, 0.3});
     setup.forces.push_back(make_acceleration([&](const ForceInput& input) {
         others += input.radius == 0.1 && input.whole_radius == 0.0 ? 0 : 1;
         return Vec3{0, 0, -kG};
@@ -267,7 +252,7 @@ TEST(SphereInOverlap, ShowsForcesItsWholeRadius) {
 
 TEST(SphereInOverlap, IsKeptInASavedState) {
     const auto make = [] {
-        SimulationSetup setup = setup_of(0.01, 1.0, {0.5, 0, -kG}, 0.8, 0.2);
+        SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.8, 0.2}, {0.5, 0, -kG});
         setup.colliders = {{"floor", PlaneShape{}, 0}};
         setup.particles = {sphere({0.5, 0, 0.04}, 0.1, {1, 0, 1}), sphere({0.5, 1, 3}, 0.1)};
         return setup;
@@ -290,7 +275,7 @@ TEST(SphereInOverlap, IsKeptInASavedState) {
 }
 
 TEST(SphereInOverlap, IsNamedInALine) {
-    SimulationSetup setup = setup_of(0.01, 1.0, {0, 0, -kG}, 0.8, 0.2);
+    SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.8, 0.2}, {0, 0, -kG});
     setup.colliders = {{"floor", PlaneShape{}, 0}};
     setup.particles = {sphere({0, 0, 5}, 0.5), sphere({0, 0, 0.25}, 0.5), sphere({3, 0, 0.125}, 0.5)};
     const Simulation simulation(std::move(setup));

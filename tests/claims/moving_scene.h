@@ -1,0 +1,56 @@
+/// \file
+/// Scenes with colliders that move, run through the library's interface: what their tests share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet::testing {
+
+[[nodiscard]] inline FrameDescription frame_of(const std::string& name, std::vector<FrameMotion> motions,
+                                               const Vec3& at = {}) {
+    FrameDescription frame;
+    frame.name = name;
+    frame.translation = at;
+    frame.motions = std::move(motions);
+    return frame;
+}
+
+[[nodiscard]] inline KeyedTranslation steady(const Vec3& velocity, double until = 1000.0) {
+    return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
+}
+
+/// A verified run that records its contacts.
+[[nodiscard]] inline SimulationSetup setup_of(std::vector<FrameDescription> frames,
+                                              std::vector<ColliderDescription> colliders, double time_step,
+                                              double duration) {
+    SimulationSetup setup = setup_of(time_step, duration);
+    setup.options.record_contacts = true;
+    setup.options.verify = true;
+    setup.frames = std::make_shared<const FrameTree>(std::move(frames));
+    setup.colliders = std::move(colliders);
+    return setup;
+}
+
+/// Runs to the end; nothing is violated.
+[[nodiscard]] inline std::vector<ContactRecord> all_contacts(Simulation& simulation) {
+    std::vector<ContactRecord> all;
+    while (!simulation.finished()) {
+        simulation.step();
+        const auto& records = simulation.contact_records();
+        all.insert(all.end(), records.begin(), records.end());
+    }
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    return all;
+}
+
+}  // namespace ricochet::testing

@@ -1,0 +1,34 @@
+/// \file
+/// What tests of whole simulations begin with, in a line each.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "ricochet/simulation.h"
+
+namespace ricochet::testing {
+
+/// Nothing yet in it but a material, elastic and smooth unless told, and gravity where there is any.
+[[nodiscard]] inline SimulationSetup setup_of(double time_step, double duration, Material material = {},
+                                              const Vec3& gravity = {}) {
+    SimulationSetup setup;
+    setup.options.time_step = time_step;
+    setup.options.duration = duration;
+    setup.materials = {std::move(material)};
+    if (gravity != Vec3{}) setup.forces.push_back(make_gravity(gravity));
+    return setup;
+}
+
+/// A particle at a place, with a velocity, a radius and a spin.
+[[nodiscard]] inline Particle particle_of(const Vec3& position, const Vec3& velocity = {}, double radius = 0.0,
+                                          const Vec3& spin = {}) {
+    Particle particle;
+    particle.position = position;
+    particle.velocity = velocity;
+    particle.radius = radius;
+    particle.spin = spin;
+    return particle;
+}
+
+}  // namespace ricochet::testing

@@ -225,6 +225,106 @@ TEST(FrameTree, TheAngularVelocityTurnsTheAxesAsTheyTurn) {
     }
 }
 
+// What turns steadily is bounded by what it does: a rotation's n-th derivative is w^n, a circle's w^n r.
+TEST(FrameTree, BoundsOfSteadyTurnsAndOscillationsAreTheirOwn) {
+    constexpr double kDegrees = 3.14159265358979323846 / 180.0;
+    const FrameTree tree({{"hub", "", {9, 9, 9}, {0, 0, 1}, 45.0, {Spin{{1, 2, 2}, -200.0}}},
+                          {"rim", "hub", {0, 3, 4}, {0, 0, 1}, 0.0, {}},
+                          {"shaker", "", {}, {0, 0, 1}, 0.0, {Oscillation{{0.3, 0, 0.4}, -2.0, 10.0}}}});
+    double w = 1.0;
+    double shake = 0.5;
+    for (std::size_t n = 1; n < 5; ++n) {
+        w *= 200.0 * kDegrees;
+        shake *= 4.0 * 180.0 * kDegrees;
+        EXPECT_NEAR(tree.bounds(0, 1.0, 2.0).rotation[n], w, 1e-14 * w);
+        EXPECT_EQ(tree.bounds(0, 1.0, 2.0).origin[n], 0.0);
+        EXPECT_NEAR(tree.bounds(1, 1.0, 2.0).origin[n], 5.0 * w, 1e-13 * w);
+        EXPECT_NEAR(tree.bounds(1, 1.0, 2.0).rotation[n], w, 1e-14 * w);
+        EXPECT_NEAR(tree.bounds(2, 1.0, 2.0).origin[n], shake, 1e-14 * shake);
+        EXPECT_EQ(tree.bounds(2, 1.0, 2.0).rotation[n], 0.0);
+    }
+    EXPECT_EQ(tree.bounds(1, 1.0, 2.0).rotation[0], 1.0);
+}
+
+/// n! times the n-th divided difference at times h apart: along its own direction it is the n-th derivative somewhere
+/// between (the mean value theorem), so no bound of that is smaller.
+Vec3 difference_quotient(const std::array<Vec3, 5>& values, std::size_t n, double h) {
+    std::array<Vec3, 5> d = values;
+    for (std::size_t k = 1; k <= n; ++k) {
+        for (std::size_t i = 0; i + k <= n; ++i) d[i] = (d[i + 1] - d[i]) / h;
+    }
+    return d[0];
+}
+
+TEST(FrameTree, BoundsHoldBetweenKeys) {
+    const double h = 0.01;
+    std::array<double, 5> largest{};  // of what is found, as a part of its bound
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        for (const Interpolation interpolation : {Interpolation::linear, Interpolation::slow_in_slow_out,
+                                                  Interpolation::spline, Interpolation::cubic_spline}) {
+            RandomSequence random(seed, 0, 0);
+            const FrameTree tree(random_arm(random, interpolation));
+            const Vec3 point = random.unit_vector();
+            for (std::size_t frame = 0; frame < 3; ++frame) {
+                const double from = 5.0 * random.uniform();
+                if (tree.next_key(frame, from) <= from + 4.0 * h) continue;
+                const MotionBounds bounds = tree.bounds(frame, from, from + 4.0 * h);
+                std::array<Vec3, 5> origins;
+                std::array<Vec3, 5> directions;
+                for (std::size_t k = 0; k < 5; ++k) {
+                    const AffineMap map = tree.at(frame, from + static_cast<double>(k) * h).world_from_frame;
+                    origins[k] = map.translation;
+                    directions[k] = map.direction(point);
+                }
+                for (std::size_t n = 1; n < 5; ++n) {
+                    const double rounding = 1e-13 / std::pow(h, static_cast<double>(n));
+                    const double way = length(difference_quotient(origins, n, h));
+                    EXPECT_LE(way, bounds.origin[n] + rounding) << "seed " << seed << ", order " << n;
+                    const double turn = length(difference_quotient(directions, n, h));
+                    EXPECT_LE(turn, bounds.rotation[n] + rounding) << "seed " << seed << ", order " << n;
+                    if (bounds.rotation[n] > 0.0) largest[n] = std::max(largest[n], turn / bounds.rotation[n]);
+                }
+                const MovingPose pose = tree.at(frame, from);
+                EXPECT_LE(length(pose.velocity), bounds.origin[1] * (1.0 + 1e-12));
+                EXPECT_LE(length(pose.acceleration), bounds.origin[2] * (1.0 + 1e-12));
+                EXPECT_LE(length(pose.angular_velocity), bounds.rotation[1] * (1.0 + 1e-12));
+            }
+        }
+    }
+    // They are bounds of what happens, not of anything.
+    for (std::size_t n = 1; n < 5; ++n) EXPECT_GT(largest[n], 0.3) << n;
+}
+
+// Of it and of all that it stands on.
+TEST(FrameTree, TheNextKeyIsTheFirstOfItsChain) {
+    const KeyedCurve<double> turns({{0.5, 0.0}, {2.0, 90.0}});
+    const KeyedCurve<Vec3> way({{0.0, {}}, {1.5, {1, 0, 0}}, {3.0, {1, 1, 0}}}, Interpolation::spline);
+    const FrameTree tree({{"base", "", {}, {0, 0, 1}, 0.0, {Spin{}, KeyedRotation{{0, 0, 1}, turns}}},
+                          {"arm", "base", {}, {0, 0, 1}, 0.0, {Swing{}, KeyedTranslation{way}}},
+                          {"other", "", {}, {0, 0, 1}, 0.0, {Oscillation{{1, 0, 0}, 1.0, 0.0}}}});
+    std::vector<double> times;
+    for (double time = -1.0; std::isfinite(time); time = tree.next_key(1, time)) times.push_back(time);
+    EXPECT_EQ(times, (std::vector<double>{-1.0, 0.0, 0.5, 1.5, 2.0, 3.0}));
+    EXPECT_EQ(tree.next_key(0, 0.0), 0.5);
+    EXPECT_EQ(tree.next_key(0, 2.0), HUGE_VAL);
+    EXPECT_EQ(tree.next_key(2, -1.0), HUGE_VAL);
+}
+
+TEST(FrameTree, TheHashIsOfTheMotionAndNotOfNames) {
+    RandomSequence random(4, 0, 0);
+    std::vector<FrameDescription> arm = random_arm(random, Interpolation::linear);
+    const FrameTree tree(arm);
+    EXPECT_NE(tree.hash(0), tree.hash(1));
+    arm[0].name = arm[1].parent = "ground";
+    std::swap(arm[0], arm[2]);
+    const FrameTree renamed(arm);
+    EXPECT_EQ(renamed.hash(0), tree.hash(2));
+    EXPECT_EQ(renamed.hash(1), tree.hash(1));
+    std::get<Spin>(arm[0].motions[2]).rate += 1e-9;
+    EXPECT_NE(FrameTree(arm).hash(0), tree.hash(2));
+    EXPECT_EQ(FrameTree(arm).hash(1), tree.hash(1));
+}
+
 TEST(FrameTree, AWheelsRimMovesByItsOwnTurningAndWithTheCart) {
     const KeyedCurve<Vec3> road({{0.0, {0, 0, 0}}, {10.0, {20, 0, 0}}});
     const KeyedCurve<double> turns({{0.0, 0.0}, {10.0, 3600.0}});

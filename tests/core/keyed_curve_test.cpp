@@ -117,6 +117,98 @@ TEST(KeyedCurve, TheDerivativeIsTheOneOfTheValueInsideEverySegment) {
     }
 }
 
+TEST(KeyedCurve, TheSecondDerivativeIsTheOneOfTheDerivativeInsideEverySegment) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        RandomSequence random(seed, 1, 0);
+        const Keys keys = random_keys(random);
+        for (const Interpolation interpolation : kInterpolations) {
+            for (const CurveEnds ends : {CurveEnds::hold, CurveEnds::repeat}) {
+                const KeyedCurve<double> curve(keys, interpolation, ends);
+                const auto k = static_cast<std::size_t>(random.uniform() * static_cast<double>(keys.size() - 1));
+                const double h = (keys[k + 1].time - keys[k].time) / 4.0;
+                const double time = keys[k].time + h * (1.0 + 2.0 * random.uniform());
+                // The central difference of a parabola is exact.
+                const double difference = (curve.derivative(time + h) - curve.derivative(time - h)) / (2.0 * h);
+                EXPECT_NEAR(curve.second_derivative(time), difference, 1e-11 * (1.0 + 1.0 / (h * h)))
+                    << "seed " << seed;
+            }
+        }
+    }
+    const KeyedCurve<double> ease(Keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}}, Interpolation::slow_in_slow_out);
+    EXPECT_EQ(ease.second_derivative(1.0), 6.0 * 10.0 / 4.0);
+    EXPECT_EQ(ease.second_derivative(2.0), 0.0);
+    EXPECT_EQ(ease.second_derivative(3.0), -6.0 * 20.0);  // of what follows
+    for (const double time : {0.0, 4.0, 9.0}) EXPECT_EQ(ease.second_derivative(time), 0.0);
+}
+
+// No derivative at any time within an interval is larger, and none is much smaller everywhere.
+TEST(KeyedCurve, BoundsHoldWithinTheirInterval) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        SCOPED_TRACE(seed);
+        RandomSequence random(seed, 2, 0);
+        const Keys keys = random_keys(random);
+        for (const Interpolation interpolation : kInterpolations) {
+            for (const CurveEnds ends : {CurveEnds::hold, CurveEnds::repeat}) {
+                const KeyedCurve<double> curve(keys, interpolation, ends);
+                const double from = keys.front().time - 1.0 + 4.0 * random.uniform();
+                const double to = from + 0.01 + 4.0 * random.uniform();
+                const DerivativeBounds bounds = curve.bounds(from, to);
+                for (int k = 0; k <= 400; ++k) {
+                    const double time = k == 400 ? to : from + (to - from) * (k / 400.0);
+                    ASSERT_LE(std::fabs(curve.value(time)), bounds[0] * (1.0 + 1e-12));
+                    ASSERT_LE(std::fabs(curve.derivative(time)), bounds[1] * (1.0 + 1e-12));
+                    ASSERT_LE(std::fabs(curve.second_derivative(time)), bounds[2] * (1.0 + 1e-12) + 1e-12);
+                    const double h = 1e-3 * (to - from);
+                    if (time + h > to || curve.next_key(time) <= time + h) continue;
+                    const double third = (curve.second_derivative(time + h) - curve.second_derivative(time)) / h;
+                    ASSERT_LE(std::fabs(third), bounds[3] * (1.0 + 1e-9) + 1e-9 / h);
+                }
+                EXPECT_EQ(bounds[4], 0.0);
+            }
+        }
+    }
+}
+
+TEST(KeyedCurve, BoundsOfOneSegmentAreItsOwn) {
+    const Keys keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}};
+    const KeyedCurve<double> line(keys);
+    EXPECT_EQ(line.bounds(1.2, 2.0), (DerivativeBounds{11.0 + 5.0 * 0.8, 5.0, 0, 0, 0}));
+    EXPECT_EQ(line.bounds(2.0, 3.5)[1], 20.0);
+    EXPECT_EQ(line.bounds(5.0, 6.0), (DerivativeBounds{0, 0, 0, 0, 0}));
+    EXPECT_EQ(line.bounds(0.0, 1.0), (DerivativeBounds{10, 0, 0, 0, 0}));
+    const KeyedCurve<double> ease(keys, Interpolation::slow_in_slow_out);
+    const DerivativeBounds bounds = ease.bounds(1.0, 3.0);
+    EXPECT_EQ(bounds[1], 1.5 * 5.0);
+    EXPECT_EQ(bounds[2], 6.0 * 5.0 / 2.0);
+    EXPECT_EQ(bounds[3], 12.0 * 5.0 / 4.0);
+}
+
+// exp(a t) times exp(b t) is exp((a + b) t): its derivatives are the powers of a + b, by the binomial theorem.
+TEST(DerivativeBounds, OfAProductAreLeibnizs) {
+    const auto powers = [](double a) { return DerivativeBounds{1.0, a, a * a, a * a * a, a * a * a * a}; };
+    EXPECT_EQ(product(powers(2.0), powers(3.0)), powers(5.0));
+    EXPECT_EQ(product(powers(0.5), powers(0.25)), powers(0.75));
+    EXPECT_EQ(product({7, 1, 2, 3, 4}, {1, 0, 0, 0, 0}), (DerivativeBounds{7, 1, 2, 3, 4}));
+}
+
+TEST(KeyedCurve, TheNextKeyIsEachInItsTurn) {
+    const Keys keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}};
+    const KeyedCurve<double> held(keys);
+    EXPECT_EQ(held.next_key(-5.0), 1.0);
+    EXPECT_EQ(held.next_key(1.0), 3.0);
+    EXPECT_EQ(held.next_key(2.9), 3.0);
+    EXPECT_EQ(held.next_key(3.0), 4.0);
+    EXPECT_EQ(held.next_key(4.0), kInfinity);
+    EXPECT_EQ(KeyedCurve<double>(2.0).next_key(-1.0), 0.0);  // one key, at 0 s
+    const KeyedCurve<double> repeated(keys, Interpolation::spline, CurveEnds::repeat);
+    std::vector<double> times;
+    for (double time = 1.0; times.size() < 7; time = times.back()) times.push_back(repeated.next_key(time));
+    EXPECT_EQ(times, (std::vector<double>{3, 4, 6, 7, 9, 10, 12}));
+    EXPECT_EQ(repeated.next_key(-0.5), 0.0);
+    EXPECT_EQ(repeated.next_key(-2.0), 0.0);
+    EXPECT_EQ(repeated.next_key(-2.5), -2.0);
+}
+
 TEST(KeyedCurve, PassesThroughEveryKeyAndIsContinuousWithItsDerivativeWhereItIsSmooth) {
     constexpr double kEpsilon = 1e-9;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {

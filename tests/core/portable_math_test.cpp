@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "ricochet/core/random.h"
 #include "support/counts.h"
@@ -45,6 +46,26 @@ TEST(PortableMath, IsExactWhereExactValuesExist) {
     EXPECT_EQ(sine_of_turns(0x1p40 + 0.25), sine_of_turns(0.25));
     EXPECT_NEAR(sine_of_turns(0.25), 1.0, 1e-15);
     EXPECT_NEAR(sine_of_turns(-0.25), -1.0, 1e-15);
+}
+
+TEST(PortableMath, TheAngleOfASineAndCosineIsTheArcTangent) {
+    RandomSequence random(12, 0, 0);
+    const long double whole = 2.0L * std::acos(-1.0L);
+    for (int i = 0; i < scaled(20000); ++i) {
+        // Any size, and all angles: those next to the axes too.
+        const double size = std::exp(random.uniform_around(0, 20));
+        const double small = std::exp(-40.0 * random.uniform());
+        const double sine = i % 2 == 0 ? size * random.uniform() : size * small;
+        const double cosine = i % 3 == 0 ? size * random.uniform() : size;
+        for (const auto& [s, c] : {std::pair{sine, cosine}, std::pair{cosine, sine}}) {
+            if (s == 0.0 && c == 0.0) continue;
+            const auto expected = static_cast<double>(std::atan2(static_cast<long double>(s), c) / whole);
+            EXPECT_NEAR(turns_of(s, c), expected, kFewUlps * expected) << s << ' ' << c;
+        }
+    }
+    EXPECT_EQ(turns_of(0.0, 3.0), 0.0);
+    EXPECT_EQ(turns_of(3.0, 0.0), 0.25);
+    EXPECT_NEAR(turns_of(3.0, 3.0), 0.125, 1e-16);
 }
 
 TEST(PortableMath, EndsWhereDoublesEnd) {

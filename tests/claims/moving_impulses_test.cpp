@@ -1,0 +1,204 @@
+// What colliders that move give to particles, as it is recorded: each impulse, and the sums of momentum, angular
+// momentum and energy over all particles, step by step.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "claims/moving_scene.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A paddle that spins and is shaken, and a ball that swings about a pole beside it, in a room at rest.
+SimulationSetup stirred_room(Material material, double radius, int particles, std::uint64_t seed) {
+    auto setup = setup_of({frame_of("paddle", {Oscillation{{0.1, 0.2, 0.05}, 1.3, 40.0}, Spin{{1, 2, 3}, 300.0}}),
+                           frame_of("pole", {Swing{{0, 0, 1}, 80.0, 0.9, 0.0}}, {0, 0, 1.2})},
+                          {{"room", CuboidShape{{6, 6, 6}, {}}, 0},
+                           {"paddle", CuboidShape{{1.5, 0.2, 1.0}, {}}, 0, "paddle"},
+                           {"ball", BallShape{0.4, {{1.5, 0, 0}}}, 0, "pole"}},
+                          0.02, 2.0);
+    setup.materials = {std::move(material)};
+    RandomSequence random(seed, 1, 0);
+    for (int k = 0; k < particles; ++k) {
+        const Vec3 direction = random.unit_vector();
+        Particle particle = particle_of(2.7 * direction, {}, radius);
+        particle.velocity = -4.0 * direction + 2.0 * random.unit_vector();
+        particle.mass = 0.2 + random.uniform();
+        if (radius > 0.0) particle.spin = 5.0 * random.unit_vector();
+        setup.particles.push_back(particle);
+    }
+    return setup;
+}
+
+struct Sums {
+    Vec3 momentum;
+    Vec3 angular_momentum;  ///< about the origin, with spin
+    double energy = 0.0;    ///< kinetic
+    double scale = 0.0;     ///< of momentum: without cancellation
+};
+
+Sums sums_of(const Particles& particles) {
+    Sums sums;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double m = particles.mass[i];
+        const double inertia = 0.4 * m * particles.radius[i] * particles.radius[i];
+        const Vec3& v = particles.velocity[i];
+        const Vec3& spin = particles.spin[i];
+        sums.momentum += m * v;
+        sums.angular_momentum += m * cross(particles.position[i], v) + inertia * spin;
+        sums.energy += 0.5 * m * dot(v, v) + 0.5 * inertia * dot(spin, spin);
+        sums.scale += m * length(v);
+    }
+    return sums;
+}
+
+Vec3 impulse_of(const ContactRecord& record) { return record.mass * (record.velocity_after - record.velocity_before); }
+Vec3 foot_of(const ContactRecord& record) { return record.position - record.radius * record.normal; }
+
+/// Of the point of its collider that was touched: from the frame's pose at the time of the impact.
+Vec3 wall_velocity(const Simulation& simulation, const ContactRecord& record) {
+    const MovingPose pose = simulation.collider_pose(simulation.surface_name(record.surface).collider, record.time);
+    return pose.velocity + cross(pose.angular_velocity, foot_of(record) - pose.world_from_frame.translation);
+}
+
+TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusEOfItsApproach) {
+    for (const double e : {1.0, 0.6}) {
+        for (const double radius : {0.0, 0.05}) {
+            Simulation simulation(stirred_room({"", e, 0.0}, radius, test::scaled(400), 21));
+            std::size_t hits = 0;
+            for (const ContactRecord& record : all_contacts(simulation)) {
+                const Vec3 w = wall_velocity(simulation, record);
+                const double approach = dot(record.normal, record.velocity_before - w);
+                const Vec3 expected = -(1.0 + e) * record.mass * approach * record.normal;
+                const double scale = record.mass * (length(record.velocity_before) + length(w));
+                ASSERT_LT(length(impulse_of(record) - expected), 1e-12 * scale) << record.time;
+                ASSERT_LT(length(record.surface_velocity - w), 1e-12 * (1.0 + length(w))) << record.time;
+                hits += w != Vec3{} ? 1 : 0;
+            }
+            EXPECT_GT(hits, simulation.particles().size() / 8);
+        }
+    }
+}
+
+/// Runs it step by step: what all particles have gained is what impacts have given them, with arms to the contacts.
+void expect_closed(Simulation& simulation, bool has_energy) {
+    std::size_t contacts = 0;
+    Vec3 totals;
+    const auto total_impulse = [&] {
+        Vec3 sum;
+        for (std::size_t k = 0; k < simulation.colliders().size(); ++k) {
+            for (const Vec3& impulse : simulation.triangle_totals(k).impulse) sum += impulse;
+        }
+        return sum;
+    };
+    while (!simulation.finished()) {
+        const Sums before = sums_of(simulation.particles());
+        simulation.step();
+        const Sums after = sums_of(simulation.particles());
+        Vec3 impulse;
+        Vec3 torque;
+        double work = 0.0;
+        for (const ContactRecord& record : simulation.contact_records()) {
+            impulse += impulse_of(record);
+            torque += cross(foot_of(record), impulse_of(record));
+            work += dot(impulse_of(record), wall_velocity(simulation, record));
+        }
+        contacts += simulation.contact_records().size();
+        const double scale = before.scale + after.scale;
+        ASSERT_LT(length(after.momentum - before.momentum - impulse), 1e-12 * scale) << simulation.time();
+        ASSERT_LT(length(after.angular_momentum - before.angular_momentum - torque), 1e-12 * 5.0 * scale)
+            << simulation.time();
+        if (has_energy) {
+            ASSERT_NEAR(after.energy - before.energy, work, 1e-12 * (before.energy + after.energy))
+                << simulation.time();
+        }
+        // The totals of all surfaces have the same.
+        const Vec3 given = total_impulse();
+        ASSERT_LT(length(given - totals + impulse), 1e-12 * (scale + length(given))) << simulation.time();
+        totals = given;
+    }
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_GT(contacts, simulation.particles().size());
+}
+
+// Elastic and smooth: the work of the walls, J . w, is all the energy that is given.
+TEST(MomentumAndEnergy, GivenByCollidersThatMoveAreTheirRecordedImpulses) {
+    for (const double radius : {0.0, 0.05}) {
+        Simulation simulation(stirred_room({"", 1.0, 0.0}, radius, test::scaled(400), 22));
+        expect_closed(simulation, true);
+    }
+}
+
+// With friction spheres take spin: their angular momentum closes with it.
+TEST(MomentumAndAngularMomentum, AreClosedWithFrictionAndSpinToo) {
+    for (const double radius : {0.0, 0.05}) {
+        Simulation simulation(stirred_room({"", 0.7, 0.4}, radius, test::scaled(400), 23));
+        expect_closed(simulation, false);
+    }
+}
+
+// A plate that turns in a cold beam along -z of speed u. At the lever s the beam comes with u cos(angle) + w s along
+// its normal, and as many particles a second as that says; each gives twice its momentum. Integrated over the plate and
+// over the angle, from -a to a:  impulse along z  2 rho d / w  int cos (2 h u^2 cos^2 + 2/3 h^3 w^2),  angular impulse
+// 2 rho d / w  int 4/3 h^3 u w cos,  h: half its width, d: its depth.
+TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature) {
+    const double u = 10.0;
+    const double w = 4.0;
+    const double h = 0.5;
+    const double d = 1.0;
+    const double angle = 0.4;
+    const double duration = 2.0 * angle / w;
+    const int count = test::scaled(40000);
+    // Turned by -angle at first, so that it faces the beam in the middle.
+    auto setup = setup_of({frame_of("rotor", {KeyedRotation{{0, 1, 0},
+                                                            KeyedCurve<double>({{0.0, -angle * 180.0 / kPi},
+                                                                                {1.0, (w - angle) * 180.0 / kPi}})}})},
+                          {{"plate", CuboidShape{{2.0 * h, d, 1e-3}, {}}, 0, "rotor"}}, duration / 8.0, duration);
+    setup.options.verify = false;
+    const Vec3 lower{-0.6, -0.5, -0.3};
+    const Vec3 upper{0.6, 0.5, u * duration + 0.3};
+    const double volume = 1.2 * 1.0 * (upper.z - lower.z);
+    RandomSequence random(25, 1, 0);
+    for (int k = 0; k < count; ++k) {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis) p[axis] = lower[axis] + random.uniform() * (upper[axis] - lower[axis]);
+        // Only what comes from the plate's front side.
+        if (p.x * std::sin(-angle) + p.z * std::cos(angle) < 1e-3) continue;
+        Particle particle = particle_of(p, {0, 0, -u});
+        particle.mass = 1.0 / count;
+        setup.particles.push_back(particle);
+    }
+    Simulation simulation(std::move(setup));
+    Vec3 impulse;
+    Vec3 torque;
+    double hits = 0.0;
+    for (const ContactRecord& record : all_contacts(simulation)) {
+        if (record.velocity_before != Vec3{0, 0, -u}) continue;  // its second one
+        impulse -= impulse_of(record);
+        torque -= cross(record.position, impulse_of(record));
+        ++hits;
+    }
+    const double density = 1.0 / volume;
+    const double s = std::sin(angle);
+    const double cubed = 2.0 * (s - s * s * s / 3.0);  // of cos^3
+    const double down = 2.0 * density * d / w * (2.0 * h * u * u * cubed + 2.0 / 3.0 * h * h * h * w * w * 2.0 * s);
+    const double turning = 2.0 * density * d / w * (4.0 / 3.0 * h * h * h * u * w * 2.0 * s);
+    const double noise = 4.0 / std::sqrt(hits);
+    EXPECT_GT(hits, 0.5 * count);
+    EXPECT_NEAR(impulse.z, -down, noise * down);
+    EXPECT_NEAR(std::fabs(torque.y), turning, noise * down * h);
+    EXPECT_NEAR(impulse.x, 0.0, noise * down);
+    EXPECT_LT(torque.y * w, 0.0);  // against its turning
+}
+
+}  // namespace
+}  // namespace ricochet::testing

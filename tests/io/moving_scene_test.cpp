@@ -1,0 +1,139 @@
+// Colliders that move, as a scene says it: what comes of it, and what is wrong and where.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/io/scene.h"
+
+namespace ricochet {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+constexpr const char* kCollider = R"("frame": "arm", "motion": [
+    {"time": 0, "position": [0, 0, 1]},
+    {"time": 2, "position": [0, 0, 0.5], "rotation": {"axis": [0, 1, 0], "degrees": 90}}])";
+
+std::string scene_of(const std::string& collider, const std::string& simulation = "", const std::string& more = "") {
+    return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1)" + simulation + R"(},
+  "frames": {"arm": {"motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 90}]}},
+  "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+                {"name": "press", "type": "box", "size": [1, 1, 1], "position": [3, 0, 0], )" +
+           collider + R"(}],
+  "particles": [{"position": [0, 0, 9]}])" +
+           more + "}";
+}
+
+/// The errors of a scene, as path and sentence.
+Lines errors_of(const std::string& scene) {
+    try {
+        (void)parse_scene(scene, "s.json");
+    } catch (const SceneError& error) {
+        Lines lines = error.messages();
+        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
+        return lines;
+    }
+    return {};
+}
+
+/// The same of the sample with one text replaced by another.
+Lines errors_with(const std::string& text, const std::string& replacement) {
+    std::string scene = scene_of(kCollider);
+    const std::size_t at = scene.find(text);
+    EXPECT_NE(at, std::string::npos) << text;
+    return errors_of(scene.replace(at, text.size(), replacement));
+}
+
+TEST(MovingScene, StandsCollidersInTheirFramesAndThroughTheirPoses) {
+    const SceneDescription scene = parse_scene(scene_of(kCollider), "s.json");
+    const SimulationSetup& setup = scene.setup;
+    EXPECT_EQ(setup.colliders[0].frame, "");
+    EXPECT_EQ(setup.colliders[1].frame, "motion of press");
+    const FrameTree expected({{"arm", "", {}, {0, 0, 1}, 0.0, {Spin{{0, 0, 1}, 90.0}}},
+                              {"press",
+                               "arm",
+                               {},
+                               {0, 0, 1},
+                               0.0,
+                               motions_through({{0.0, {0, 0, 1}}, {2.0, {0, 0, 0.5}, {0, 1, 0}, 90.0}})}});
+    const std::size_t frame = setup.frames->find("motion of press").value();
+    EXPECT_EQ(setup.frames->hash(frame), expected.hash(1));
+    // Its own place is within that.
+    const auto& box = std::get<CuboidShape>(setup.colliders[1].shape);
+    EXPECT_EQ(box.placement.position, Vec3(3, 0, 0));
+    EXPECT_LT(length(setup.frames->at(frame, 1.0).point({3, 0, 0}) - expected.at(1, 1.0).point({3, 0, 0})), 1e-15);
+}
+
+TEST(MovingScene, ReadsKeysInAnyOrder) {
+    const char* reordered = R"("motion": [
+    {"position": [0, 0, 1], "time": 0},
+    {"rotation": {"degrees": 90, "axis": [0, 1, 0]}, "position": [0, 0, 0.5], "time": 2}], "frame": "arm")";
+    const SceneDescription a = parse_scene(scene_of(kCollider), "s.json");
+    const SceneDescription b = parse_scene(scene_of(reordered), "s.json");
+    const auto hash = [](const SceneDescription& scene) {
+        return scene.setup.frames->hash(scene.setup.frames->find(scene.setup.colliders[1].frame).value());
+    };
+    EXPECT_EQ(hash(a), hash(b));
+}
+
+TEST(MovingScene, GivesPosesAFrameOfTheirOwnWhateverItsNeighboursAreCalled) {
+    const SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
+  "frames": {"motion of ball": {}},
+  "colliders": [{"name": "ball", "type": "sphere", "radius": 1, "motion": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]},
+                {"type": "sphere", "radius": 1, "motion": [{"time": 0}, {"time": 1, "position": [2, 0, 0]}]}],
+  "particles": [{"position": [0, 0, 9]}]})",
+                                               "s.json");
+    const SimulationSetup& setup = scene.setup;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto frame = setup.frames->find(setup.colliders[k].frame);
+        ASSERT_TRUE(frame) << setup.colliders[k].frame;
+        EXPECT_EQ(setup.frames->at(*frame, 1.0).world_from_frame.translation, Vec3(1.0 + static_cast<double>(k), 0, 0));
+    }
+    EXPECT_NO_THROW(Simulation(parse_scene(scene_of(kCollider), "s.json").setup));
+}
+
+TEST(MovingScene, SaysWhatIsWrongAndWhere) {
+    EXPECT_EQ(errors_with(R"("frame": "arm")", R"("frame": "amr")"),
+              (Lines{"colliders[1].frame: there is no frame \"amr\"; did you mean \"arm\"?"}));
+    EXPECT_EQ(errors_with(R"("frame": "arm")", R"("frame": 7)"),
+              (Lines{"colliders[1].frame: found 7, expected a text that is not empty"}));
+    EXPECT_EQ(errors_with(R"("time": 2, )", R"("time": 0, )"),
+              (Lines{"colliders[1].motion[1].time: found 0 s, expected a time after the 0 s of the key before"}));
+    EXPECT_EQ(errors_with(R"("time": 2, )", ""),
+              (Lines{"colliders[1].motion[1].time: missing, expected a number (s)"}));
+    EXPECT_EQ(errors_with(R"("time": 2, )", R"("tiem": 2, )"),
+              (Lines{"colliders[1].motion[1].tiem: unknown key; did you mean \"time\"?"}));
+    EXPECT_EQ(errors_with(R"("degrees": 90)", R"("degrees": "much")"),
+              (Lines{"colliders[1].motion[1].rotation.degrees: found \"much\", expected a number (degrees)"}));
+    EXPECT_EQ(
+        errors_with(R"("axis": [0, 1, 0])", R"("axis": [0, 0, 0])"),
+        (Lines{"colliders[1].motion[1].rotation.axis: found a vector of no length, expected [x, y, z], not all zero"}));
+    EXPECT_EQ(errors_with(R"("position": [0, 0, 0.5])", R"("position": [0, 0.5])"),
+              (Lines{"colliders[1].motion[1].position: found a list of 2, expected [x, y, z] (m)"}));
+    EXPECT_EQ(errors_of(scene_of(R"("motion": [])")),
+              (Lines{"colliders[1].motion: found an empty list, expected a list [...] of objects, at least one"}));
+    EXPECT_EQ(errors_of(scene_of(R"("motion": {"time": 0})")),
+              (Lines{"colliders[1].motion: found an object, expected a list [...] of objects, at least one"}));
+    EXPECT_EQ(errors_of(scene_of(R"("motion": [{"time": 0, "position": [-1e75, 0, 0]}, {"time": 1e-300}])")),
+              (Lines{"colliders[1].motion[0]: keys 0 and 1 of a curve are too near in time for their values"}));
+}
+
+TEST(MovingScene, SaysWhichResponsesKnowNoCollidersThatMove) {
+    for (const std::string response : {"rollback", "project", "penalty"}) {
+        const std::string option = R"(, "response": ")" + response + "\"";
+        const std::string sentence =
+            "the response \"" + response + "\" knows no colliders that move, expected none, or \"exact\"";
+        EXPECT_EQ(errors_of(scene_of(R"("frame": "arm")", option)), (Lines{"colliders[1].frame: " + sentence}));
+        EXPECT_EQ(errors_of(scene_of(R"("motion": [{"time": 0}])", option)),
+                  (Lines{"colliders[1].motion: " + sentence}));
+        EXPECT_EQ(errors_of(scene_of(kCollider, option)), (Lines{"colliders[1].frame: " + sentence}));
+    }
+    EXPECT_EQ(errors_of(scene_of(R"("motion": [{"time": 0}])",
+                                 R"(, "motion": "flow", "flow": {"type": "uniform", "velocity": [1, 2, 3]})")),
+              (Lines{"colliders[1].motion: particles that a flow carries know no colliders that move, expected none"}));
+}
+
+}  // namespace
+}  // namespace ricochet

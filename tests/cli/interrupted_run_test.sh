@@ -64,7 +64,10 @@ cat >"$folder/resumed.json" <<'SCENE'
   "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
   "attributes": {"charge": {"default": 1.5}},
   "materials": {"plain": {"restitution": 0.8, "diffuse": 0.3}},
-  "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "plain"}],
+  "frames": {"hub": {"motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 200}]}},
+  "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "plain"},
+                {"name": "paddle", "type": "box", "size": [0.8, 0.02, 0.2], "frame": "hub", "material": "plain",
+                 "motion": [{"time": 0, "position": [0, 0, 0.1]}, {"time": 1, "position": [0.1, 0, 0.15]}]}],
   "emitters": [{"type": "box", "center": [0, 0, 0.5], "size": [1, 1, 0.4], "burst": 500, "rate": 400}],
   "output": {"every": 50, "contacts": true, "checkpoint_every": 100}
 }
@@ -94,6 +97,13 @@ if [[ -f "$folder/resumed/checkpoint.bin" ]]; then
         grep -q "$(basename "$frame")" "$folder/resumed/particles.pvd" || fail "a frame is missing in the series"
     done
     grep -q '"interrupted": false' "$folder/resumed/summary.json" || fail "the resumed run was not finished"
+    for frame in "$folder"/whole/moving_*.vtp; do
+        cmp "$frame" "$folder/resumed/$(basename "$frame")" || fail "a moving collider of a resumed run differs"
+    done
+    for series in particles moving colliders; do
+        cmp "$folder/whole/$series.pvd" "$folder/resumed/$series.pvd" || fail "the series of $series differs"
+    done
+    cmp <(cd "$folder/whole" && ls) <(cd "$folder/resumed" && ls) || fail "a resumed run has other files"
     open_with_vtk resumed --attribute charge
 else
     echo "the run was too fast to be interrupted: resuming was not tried"

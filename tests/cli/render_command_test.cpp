@@ -55,6 +55,37 @@ TEST(RenderCommand, DrawsTheLastFrameOrTheOneThatIsAskedFor) {
     EXPECT_TRUE(png == files.folder.read("ten.png"));
 }
 
+// At each time the picture is, to the bit, that of a scene in which the collider stands where it is then.
+TEST(RenderCommand, ShowsCollidersThatMoveWhereTheyAreInThatFrame) {
+    const TemporaryFolder folder;
+    const auto pictures = [&](const std::string& name, const std::string& placement) {
+        const auto scene = folder.write(
+            name + ".json", R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1}, "output": {"every": 5},
+            "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+                          {"name": "box", "type": "box", "size": [0.5, 0.5, 0.5], )" +
+                                placement + R"(}],
+            "particles": [{"position": [0, 9, 9]}]})");
+        const std::string output = folder.path(name).string();
+        EXPECT_EQ(run_ricochet({"run", scene.string(), "--output", output, "--quiet"}).exit_code, 0);
+        std::vector<std::string> seen;
+        for (const char* frame : {"0", "10"}) {
+            const ProgramResult result =
+                run_ricochet({"render", output, "--frame", frame, "--output", folder.path("p.png").string(), "--size",
+                              "96x64", "--samples", "1", "--camera", "0,-6,2,0,0,0.5,40"});
+            EXPECT_EQ(result.exit_code, 0) << result.errors;
+            seen.push_back(folder.read("p.png"));
+        }
+        return seen;
+    };
+    const auto moving = pictures("moving", R"("motion": [{"time": 0, "position": [-1, 0, 0.5]},
+                                                         {"time": 1, "position": [1, 0, 0.5]}])");
+    const auto left = pictures("left", R"("position": [-1, 0, 0.5])");
+    const auto right = pictures("right", R"("position": [1, 0, 0.5])");
+    EXPECT_TRUE(moving[0] == left[0]);
+    EXPECT_TRUE(moving[1] == right[1]);
+    EXPECT_TRUE(left[0] != right[1]);
+}
+
 TEST(RenderCommand, NumbersThePicturesOfAllFramesByTheirStep) {
     const RunFolderFiles files;
     EXPECT_EQ(files.render("p.png", {"--frame", "all", "--color-by", "contacts", "--color-map", "viridis"}).exit_code,

@@ -2,11 +2,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/run_program.h"
+#include "ricochet/core/box3.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/temporary_folder.h"
 
@@ -106,6 +108,47 @@ TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     const std::string state = files.folder.read("state.csv");
     EXPECT_EQ(std::count(state.begin(), state.end(), '\n'), 1001);
     EXPECT_NE(result.output.find(summary["state_hash"].get<std::string>()), std::string::npos) << result.output;
+}
+
+// A box that goes from -1 to 1 m and a quarter turn round, beside one at rest.
+TEST(RunCommand, WritesCollidersThatMoveWhereTheyAreInEveryFrame) {
+    const RunFiles files;
+    (void)files.folder.write("scene.json", R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
+        "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+                      {"name": "box", "type": "box", "size": [0.5, 0.25, 1], "motion": [
+                          {"time": 0, "position": [-1, 0, 2]},
+                          {"time": 1, "position": [1, 0, 2], "rotation": {"axis": [0, 0, 1], "degrees": 90}}]}],
+        "particles": [{"position": [0, 9, 9]}], "output": {"every": 5}})");
+    ASSERT_EQ(files.run().exit_code, 0);
+    for (const int step : {0, 5, 10}) {
+        const std::string name =
+            "out/moving_" + std::string(step < 10 ? "00000" : "0000") + std::to_string(step) + ".vtp";
+        const VtkPolyData frame = read_vtp(files.folder.path(name));
+        ASSERT_EQ(frame.points.size(), 8U);
+        ASSERT_EQ(frame.triangles.size(), 12U);
+        Box3 box;
+        for (const Vec3& point : frame.points) box.include(point);
+        const double time = 0.1 * step;
+        EXPECT_LT(length(box.center() - Vec3(2.0 * time - 1.0, 0, 2)), 1e-14) << step;
+        const double turned = time * 0.5 * 3.14159265358979323846;
+        const double c = std::cos(turned);
+        const double s = std::sin(turned);
+        EXPECT_LT(length(box.size() - Vec3(0.5 * c + 0.25 * s, 0.5 * s + 0.25 * c, 1)), 1e-14) << step;
+        const VtkArray* numbers = find_array(frame.cell_arrays, "collider");
+        ASSERT_NE(numbers, nullptr);
+        EXPECT_NE(files.folder.read("out/moving.pvd").find(name.substr(4)), std::string::npos);
+    }
+    EXPECT_FALSE(files.exists("out/moving_000001.vtp"));
+    const auto colliders = nlohmann::json::parse(files.folder.read("out/run.json"))["colliders"];
+    EXPECT_FALSE(colliders[0].contains("moves"));
+    EXPECT_EQ(colliders[1]["moves"], true);
+    // In the series of what stands still there is no collider that moves.
+    EXPECT_EQ(files.folder.read("out/colliders.pvd").find("collider_01"), std::string::npos);
+    // The next run has none, and leaves none.
+    (void)files.folder.write("scene.json", kScene);
+    ASSERT_EQ(files.run().exit_code, 0);
+    EXPECT_FALSE(files.exists("out/moving_000000.vtp"));
+    EXPECT_FALSE(files.exists("out/moving.pvd"));
 }
 
 TEST(RunCommand, WritesTheContactLogWhereItIsAskedForAndClearsItAway) {

@@ -41,6 +41,8 @@ CONTACT_ARRAYS = {
     "impulse": ("double", 3),
     "radius": ("double", 1),
 }
+MOVING_CONTACT_ARRAYS = {"surface_velocity": ("double", 3)}  # where a surface moves
+MOVING_ARRAYS = {"collider": ("unsigned int", 1)}
 CELL_ARRAYS = {"hits": ("long long", 1), "impulse": ("double", 3)}
 LONG_NAMES = {"long": "long long"}  # the same 64 bits
 
@@ -99,7 +101,9 @@ def check_frame(folder, time, name, arrays):
 
 
 def check_contacts(folder, time, name):
-    data, points, path = read_points(folder, time, name, CONTACT_ARRAYS)
+    moves = os.path.exists(os.path.join(folder, "moving.pvd"))
+    arrays = {**CONTACT_ARRAYS, **(MOVING_CONTACT_ARRAYS if moves else {})}
+    data, points, path = read_points(folder, time, name, arrays)
     times = data.GetPointData().GetArray("time")
     check(all(times.GetValue(i) <= times.GetValue(i + 1) for i in range(points - 1)), f"{path}: times are not in order")
     return points
@@ -110,6 +114,15 @@ def check_collider(folder, name):
     data = read(path)
     check(data.GetNumberOfPolys() > 0, f"{path}: no triangles")
     check_arrays(data.GetCellData(), CELL_ARRAYS, data.GetNumberOfPolys(), path)
+    return data.GetNumberOfPolys()
+
+
+def check_moving(folder, time, name):
+    path = os.path.join(folder, name)
+    data = read(path)
+    check(data.GetFieldData().GetArray("TimeValue").GetValue(0) == time, f"{path}: TimeValue")
+    check(data.GetNumberOfPolys() > 0, f"{path}: no triangles")
+    check_arrays(data.GetCellData(), MOVING_ARRAYS, data.GetNumberOfPolys(), path)
     return data.GetNumberOfPolys()
 
 
@@ -135,6 +148,9 @@ def main(folder, killed, attributes):
     if os.path.exists(os.path.join(folder, "contacts.pvd")):
         files = listed_files(folder, "contacts", killed)
         print(f"{sum(check_contacts(folder, *file[:2]) for file in files)} contacts in {len(files)} files")
+    if os.path.exists(os.path.join(folder, "moving.pvd")):
+        files = listed_files(folder, "moving", killed)
+        print(f"{len(files)} files of moving colliders of {[check_moving(folder, *file) for file in files]} triangles")
     triangles = [check_collider(folder, name) for _, name in series(os.path.join(folder, "colliders.pvd"))]
     print(f"{len(frames)} frames with {counts} particles, colliders of {triangles} triangles, last time {frames[-1][0]!r}")
 

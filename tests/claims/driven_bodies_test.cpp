@@ -99,7 +99,7 @@ void run(Simulation& simulation) {
 // m v + M V and the velocity between them turned around: v' = (m - M) / (m + M) v, V' = 2 m / (m + M) v.
 TEST(AnElasticHit, SharesVelocitiesWithABodyAsInClosedForm) {
     for (const JointKind joint : {JointKind::free, JointKind::slider}) {
-        for (const double mass : {1.0, 10.0, 1000.0}) {
+        for (const double mass : {0.1, 1.0, 10.0, 1000.0}) {
             for (const double radius : {0.0, 0.1}) {
                 SCOPED_TRACE(std::to_string(static_cast<int>(joint)) + " " + std::to_string(mass));
                 auto setup = setup_with({box_body("block", mass, {1, 1, 1}, joint)}, {1, 1, 1}, 0.1, 1.0);
@@ -283,7 +283,7 @@ TEST(AFreeBody, TumblesWithItsAngularMomentum) {
         }
         const BodyState after = simulation.bodies()[0];
         EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-14);
-        EXPECT_GT(largest, 4.0);  // it turns over
+        EXPECT_GT(largest, 2.0);  // it turns over
         return std::fabs(after.kinetic_energy / before.kinetic_energy - 1.0);
     };
     const double coarse = energy_error(0.01);

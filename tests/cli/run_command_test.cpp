@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,56 @@ TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     const std::string state = files.folder.read("state.csv");
     EXPECT_EQ(std::count(state.begin(), state.end(), '\n'), 1001);
     EXPECT_NE(result.output.find(summary["state_hash"].get<std::string>()), std::string::npos) << result.output;
+}
+
+/// The fields of a table's rows, without the header.
+std::vector<std::vector<std::string>> rows_of(const std::string& table) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream fields(line);
+        rows.emplace_back();
+        for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+    }
+    if (!rows.empty()) rows.erase(rows.begin());
+    return rows;
+}
+
+// Grains fall on a flap: what they give to it is what it has, over the run and in the summary.
+TEST(RunCommand, WritesWhatIsDoneToBodiesAndHowTheyMove) {
+    const RunFiles files;
+    (void)files.folder.write("scene.json",
+                             R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1, "seed": 2},
+        "materials": {"tin": {"restitution": 0.5}},
+        "frames": {"flap": {"body": {"mass": 3, "joint": "hinge", "axis": [0, 1, 0], "feels_forces": false}}},
+        "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, -2], "normal": [0, 0, 1]},
+                      {"name": "flap", "type": "box", "size": [1, 1, 0.1], "position": [0.5, 0, 0], "frame": "flap",
+                       "material": "tin"}],
+        "emitters": [{"type": "box", "center": [0.8, 0, 1], "size": [0.2, 0.5, 0.1], "rate": 50, "speed": 2,
+                      "direction": [0, 0, -1], "mass": 0.01}],
+        "output": {"every": 10}})");
+    ASSERT_EQ(files.run({"--verify"}).exit_code, 0);
+    const nlohmann::json summary = files.summary();
+    const auto colliders = rows_of(files.folder.read("out/colliders.csv"));
+    const auto bodies = rows_of(files.folder.read("out/bodies.csv"));
+    ASSERT_EQ(colliders.size(), 11U);
+    ASSERT_EQ(bodies.size(), 11U);
+    double torque = 0.0;
+    double hits = 0.0;
+    for (const auto& row : colliders) {
+        EXPECT_EQ(row.at(1), "flap");
+        torque += 0.1 * std::stod(row.at(6));  // y, over 0.1 s
+        hits += std::stod(row.at(9));
+    }
+    EXPECT_GT(hits, 10.0);
+    EXPECT_EQ(hits, summary["colliders"][1]["hits"].get<double>());
+    EXPECT_FALSE(summary["colliders"][0].contains("work"));
+    EXPECT_NEAR(torque, summary["colliders"][1]["angular_impulse"][1].get<double>(), 1e-12);
+    // About its axis: 3 kg (1 + 0.01) / 12 m^2 + 3 kg (0.5 m)^2.
+    const double rate = std::stod(bodies.back().at(12));
+    EXPECT_GT(rate, 0.01);
+    EXPECT_NEAR(torque, (3.0 * 1.01 / 12.0 + 0.75) * rate, 1e-12);
+    EXPECT_EQ(rate, summary["bodies"][0]["rate"].get<double>());
 }
 
 // A box that goes from -1 to 1 m and a quarter turn round, beside one at rest.

@@ -90,11 +90,10 @@ TEST(BodyScene, SaysWhatCannotBeABody) {
 }
 
 TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
-    EXPECT_EQ(
-        errors_of(
-            scene_of(R"("mass": 1)", "", "", R"(, "emitters": [{"type": "mesh", "collider": "blade", "rate": 5}])")),
-        (Lines{"emitters[0].collider: impulses of particles move this body, and where it will be within a step is "
-               "not known at the births; expected an emitter in the world or in a frame that moves by itself"}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
+                                 R"(, "emitters": [{"type": "point", "frame": "wheel", "rate": 5}])")),
+              (Lines{"emitters[0].frame: impulses of particles move this body, and where it will be within a step is "
+                     "not known at the births; expected an emitter in the world or in a frame that moves by itself"}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1)",
                            R"({"name": "b", "type": "box", "size": [1, 1, 1], "frame": "wheel", "material": "felt"})",

@@ -80,8 +80,6 @@ public:
     }
     /// True when impulses have changed its velocity where this step, or this part of it, begins.
     [[nodiscard]] bool has_jumped(BodyId body) const { return body != kAtRest && bodies_[body].has_jumped; }
-    /// The frame of a body, by its number in frames().
-    [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
 
 private:
     struct Body {

@@ -7,6 +7,18 @@
 
 namespace ricochet {
 
+/// An impulse, N s, and its moment about a point that is agreed upon, N m s.
+struct Wrench {
+    Vec3 impulse;
+    Vec3 moment;
+
+    Wrench& operator+=(const Wrench& other) {
+        impulse += other.impulse;
+        moment += other.moment;
+        return *this;
+    }
+};
+
 /// The inverses of a body's mass and inertia; what a joint forbids is missing from them.
 struct Mobility {
     SymmetricMatrix of_mass;     ///< 1/kg
@@ -22,17 +34,9 @@ struct Mobility {
         const Vec3 arm = where - center;
         return of_mass * impulse + cross(of_inertia * cross(arm, impulse), arm);
     }
-};
-
-/// An impulse, N s, and its moment about a point that is agreed upon, N m s.
-struct Wrench {
-    Vec3 impulse;
-    Vec3 moment;
-
-    Wrench& operator+=(const Wrench& other) {
-        impulse += other.impulse;
-        moment += other.moment;
-        return *this;
+    /// The same by a wrench about the center.
+    [[nodiscard]] Vec3 change_at(const Vec3& where, const Wrench& wrench) const {
+        return of_mass * wrench.impulse + cross(of_inertia * wrench.moment, where - center);
     }
 };
 

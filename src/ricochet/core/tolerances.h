@@ -302,6 +302,10 @@ inline constexpr double kMostBodyChange = 0.1;
 /// rounding falls into the next part, where it is as good.
 inline constexpr double kPartAfterImpact = 1e-3;
 
+/// Parts of the time step that a part of a step lasts at least. Smaller: bodies between many impacts take longer. Larger:
+/// more impacts are answered as if they came at once, and may put energy in.
+inline constexpr double kShortestPart = 1e-4;
+
 /// Relative to the energies that are exchanged: more than the rounding of their sums. Smaller: parts of steps end at
 /// every impact. Larger: bodies gain energy.
 inline constexpr double kImpactEnergyRounding = 1e-14;

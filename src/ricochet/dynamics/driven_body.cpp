@@ -217,8 +217,7 @@ double DrivenBody::quadratic_energy(const Wrench& wrench) const {
 }
 
 Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {
-    const Mobility by = mobility().seen_by(map_);
-    return by.of_mass * wrench.impulse + cross(by.of_inertia * wrench.moment, where - moment_center());
+    return mobility().seen_by(map_).change_at(where, wrench);
 }
 
 Vec3 DrivenBody::velocity() const {

@@ -57,7 +57,7 @@ struct ColliderSummary {
     std::uint64_t hits = 0;
     Vec3 impulse;  ///< N s
     /// Of one that moves, or whose material does; nothing of others.
-    std::optional<ColliderTotals> loads;
+    std::optional<ColliderTotals> loads = {};
 };
 
 /// Everything that summary.json says.

@@ -52,6 +52,7 @@ private:
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_shared();
+    [[nodiscard]] std::optional<Contact> wait_for_body();
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
@@ -242,7 +243,18 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
+    if (step_.impact().waits_for(contact.all())) return wait_for_body();
     return begin_contact(flight, contact, arriving);
+}
+
+/// The body that it has hit goes away from the next move on: until then it stays where it is.
+std::optional<Contact> ParticleMover::wait_for_body() {
+    step_.log().note_impact();
+    const auto contact = step_.wait(step_.remaining());
+    step_.impact().note_driven();
+    step_.log().note_contact({}, false);
+    flies_anew_ = true;
+    return contact;
 }
 
 /// The horizon of the last flight of a step: as far as its path is known, which it is where the acceleration is

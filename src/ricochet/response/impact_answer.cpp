@@ -32,7 +32,7 @@ bool can_be_followed(const Path& path) {
 
 void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) {
     const Vec3 before = particle_.state.velocity;
-    book_.begin_impact();
+    if (scratch_.record_loads) book_.begin_impact(approach(surfaces));
     answer(surfaces, Rebound::by_material);
     book_.end_impact();
     shatter_by(particle_.state.velocity - before);
@@ -65,6 +65,7 @@ Vec3 ImpactAnswer::carried_velocity_of(const ContactSurface& surface, const Vec3
     const MovingView view(bodies, home_.body(), {time, time, time, 0.0, 0.0});
     const WayPoint foot = view.point_at(center - particle_.state.radius * surface.normal, 0.0);
     Vec3 velocity = view.velocity_of(body, foot);
+    if (!given_.empty()) velocity += home_.direction_in_frame(velocity_given_to(body, foot.world), time);
     const Material& material = material_of(surface.surface);
     if (!material.drives()) return velocity;
     const MovingView seen(bodies, body, view.clock());
@@ -246,8 +247,30 @@ void ImpactAnswer::bounce_off_body(const ContactSurface& surface, const Material
     const Mobility body = home_.bodies().mobility(home_.bodies().body_of(surface.surface), state.time);
     const YieldingSurface yielding{surface.normal, restitution, material.friction, velocity_of(surface), body};
     const Motion after = ricochet::bounce({state.velocity, particle_.spin}, state, yielding);
+    const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
     particle_.state.velocity = after.velocity;
     particle_.spin = after.spin;
+    const Vec3 where = state.position - state.radius * surface.normal;
+    given_.push_back({home_.bodies().body_of(surface.surface), {impulse, cross(where - body.center, impulse)}});
+}
+
+/// m/s, in the world, of a body's point by what it has been given.
+Vec3 ImpactAnswer::velocity_given_to(BodyId body, const Vec3& where) const {
+    Vec3 velocity;
+    for (const Given& given : given_) {
+        if (given.body != body) continue;
+        velocity += home_.bodies().mobility(body, particle_.state.time).change_at(where, given.wrench);
+    }
+    return velocity;
+}
+
+bool ImpactAnswer::waits_for(std::span<const ContactSurface> surfaces) const {
+    return !given_.empty() && std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+        if (!yields(surface.surface)) return false;
+        const Vec3 where = particle_.state.position - particle_.state.radius * surface.normal;
+        const Vec3 given = velocity_given_to(home_.bodies().body_of(surface.surface), where);
+        return departure_from(surface) + dot(given, surface.normal) < 0.0;
+    });
 }
 
 /// Absorbs, or reflects by the cosine law or as a mirror, as this particle's own random numbers say (Maxwell's model:

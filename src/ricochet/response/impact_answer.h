@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_problem.h"
@@ -31,6 +32,8 @@ public:
           book_(rules, particle, scratch, home) {}
 
     /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
+    /// Bodies that yield move, for the particle, with what it has given to them in this move; where they are does not
+    /// change by that before the move's end.
     void reflect(std::span<const ContactSurface> surfaces);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
@@ -80,6 +83,9 @@ public:
     /// The surface as one on which the particle lands without a rebound.
     [[nodiscard]] ImpactSurface landing_on(const ContactSurface& surface) const;
 
+    /// True where it goes on towards a surface whose body has been pushed away, but is still there.
+    [[nodiscard]] bool waits_for(std::span<const ContactSurface> surfaces) const;
+
 private:
     enum class Rebound { by_material, none };
 
@@ -87,6 +93,7 @@ private:
     [[nodiscard]] bool is_carried(SurfaceId surface) const {
         return rules_.bodies != nullptr && rules_.bodies->body_of(surface) != home_.body();
     }
+    [[nodiscard]] Vec3 velocity_given_to(BodyId body, const Vec3& where) const;
     [[nodiscard]] Vec3 carried_velocity_of(const ContactSurface& surface, const Vec3& center) const;
     [[nodiscard]] Vec3 carried_angular_velocity_of(SurfaceId surface) const;
 
@@ -115,6 +122,11 @@ private:
     MoveOutcome& outcome_;
     const HomeFrame& home_;
     LoadBook book_;
+    struct Given {
+        BodyId body;
+        Wrench wrench;  // about the center of its mobility
+    };
+    std::vector<Given> given_;  // to bodies that yield, in this move
 };
 
 }  // namespace ricochet

@@ -11,8 +11,9 @@ void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change
     if (is_entered(hit.surface)) enter(hit, couple);
 }
 
-void LoadBook::begin_impact() {
+void LoadBook::begin_impact(double approach) {
     if (!scratch_.record_loads) return;
+    approach_ = approach;
     first_of_impact_ = scratch_.loads.size();
     energy_before_ = kinetic_energy();
 }
@@ -89,6 +90,7 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.moment = cross(load.place - pose.world_from_frame.translation, hit.impulse) + couple;
     load.work = dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, load.place)) +
                 dot(load.moment, pose.angular_velocity);
+    load.approach = approach_;
     load.impact = hit.impact;
     scratch_.loads.push_back(load);
 }

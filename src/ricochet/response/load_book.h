@@ -26,8 +26,8 @@ public:
     /// Enters an impulse on a surface, and the change of the spin that is made with it, rad/s; without it all that has
     /// changed since the last entry.
     void add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change);
-    /// The entries between these two belong to one impact.
-    void begin_impact();
+    /// The entries between these two belong to one impact. approach: its largest speed, m/s.
+    void begin_impact(double approach);
     void end_impact();
     /// Enters what has changed the spin since, with the last surface.
     void close();
@@ -48,6 +48,7 @@ private:
     std::size_t first_;  // entry of this move
     std::size_t first_of_impact_ = 0;
     double energy_before_ = 0.0;  // J, the impact
+    double approach_ = 0.0;       // m/s, of it
 };
 
 }  // namespace ricochet

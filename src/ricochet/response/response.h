@@ -42,6 +42,7 @@ struct ColliderLoad {
     Vec3 couple;               ///< N m s, given besides the moment that the impulse has at `place`
     double work = 0.0;         ///< J, given
     double lost_energy = 0.0;  ///< J, kinetic, that the particle has lost by the impact; with the impact's last load
+    double approach = 0.0;     ///< m/s, of the impact
     bool impact = true;        ///< false: of a contact that lasts
 };
 

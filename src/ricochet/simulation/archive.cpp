@@ -85,6 +85,14 @@ std::uint64_t Simulation::Impl::settings_hash() const {
         if (m.motion.is_none()) continue;
         for (const Vec3& v : {m.motion.velocity, m.motion.angular_velocity, m.motion.center}) hash.add(v);
     }
+    for (const DrivenBody& body : driven.bodies()) {
+        const BodyDescription& b = body.description();
+        add(b.mass, b.inertia.xx, b.inertia.yy, b.inertia.zz, b.inertia.xy, b.inertia.xz, b.inertia.yz, b.joint,
+            b.settings.spring, b.settings.spring_rest, b.settings.damping, b.settings.drive, b.settings.friction,
+            b.settings.motor_rate, b.settings.motor_most, b.feels_forces);
+        hash.add(b.center);
+        hash.add(b.axis);
+    }
     if (bounds) {
         hash.add(bounds->lower);
         hash.add(bounds->upper);
@@ -96,7 +104,7 @@ template <class Archive>
 void Simulation::Impl::archive(Archive& a) {
     expect(a, kStateFormat, "not a state that this version can read");
     expect(a, collider_hash(), "the state belongs to other colliders");
-    expect(a, settings_hash(), "the state belongs to other options, materials or bounds");
+    expect(a, settings_hash(), "the state belongs to other options, materials, bodies or bounds");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
     expect(a, static_cast<std::uint64_t>(coupled.springs().springs().size()), "the state belongs to other springs");
     expect(a, static_cast<std::uint64_t>(particles().attributes.columns().size()),
@@ -133,6 +141,10 @@ void Simulation::Impl::require_sound_state() const {
                 "a particle that moves and is nowhere");
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
+    }
+    for (const DrivenBody& body : driven.bodies()) {
+        require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),
+                "a body that is nowhere");
     }
     for (const Origin& origin : p.origin) {
         require(origin.emitter == kNoEmitter || origin.emitter < emitters.size(), "a particle of no emitter");

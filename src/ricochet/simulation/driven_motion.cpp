@@ -65,8 +65,12 @@ private:
 }  // namespace
 
 DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
-                           const ForceField& forces)
-    : frames_(frames), colliders_(colliders), forces_(forces) {
+                           const ForceField& forces, const ResponseSettings& settings)
+    : frames_(frames),
+      colliders_(colliders),
+      forces_(forces),
+      slow_(settings.resting_speed),
+      shortest_part_(kShortestPart * settings.time_step) {
     for (BodyDescription& description : bodies) {
         const auto frame = frames_ == nullptr ? std::nullopt : frames_->find(description.frame);
         if (!frame || !frames_->description(*frame).is_driven) {
@@ -123,12 +127,19 @@ std::optional<std::size_t> DrivenMotion::body_of(const ColliderLoad& load) const
 }
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
-    std::erase_if(preview, [&](const ColliderLoad& load) { return !load.impact || !body_of(load); });
+    // What lies on a body lands on it anew, slowly, at every change of its velocity.
+    std::erase_if(preview,
+                  [&](const ColliderLoad& load) { return !load.impact || load.approach <= slow_ || !body_of(load); });
     std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
     std::vector<Tally> tallies(bodies_.begin(), bodies_.end());
-    double until = paths_.front().back().begin;  // what has been taken so far
+    const double begin = paths_.front().back().begin;
+    const double end = paths_.front().back().end;
+    double until = begin;  // what has been taken so far
+    const auto cut = [&](double next) {
+        return std::min(end, std::max(soon_after(until, next), begin + shortest_part_));
+    };
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
         const std::vector<Tally> before = tallies;
         for (; next < preview.size() && preview[next].time == preview[first].time; ++next) {
@@ -139,11 +150,10 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
                 const std::size_t body = *body_of(load);
                 return tallies[body].is_too_much(load, before[body].wrench());
             });
-        if (is_too_much) return soon_after(until, preview[first].time);
+        if (is_too_much) return cut(preview[first].time);
         until = preview[first].time;
     }
-    const double end = paths_.front().back().end;
-    return preview.empty() ? end : soon_after(until, end);
+    return preview.empty() ? end : cut(end);
 }
 
 std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> loads) const {

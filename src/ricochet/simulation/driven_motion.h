@@ -22,7 +22,7 @@ public:
     /// frames and colliders: in which the bodies move; null where there are none. All must outlive it. Throws
     /// InputError for descriptions that cannot be.
     DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
-                 const ForceField& forces);
+                 const ForceField& forces, const ResponseSettings& settings);
 
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
@@ -63,6 +63,8 @@ private:
     FrameTree* frames_;
     MovingColliders* colliders_;
     const ForceField& forces_;
+    double slow_;                               // m/s, of impacts that end bounces
+    double shortest_part_;                      // s
     std::vector<std::vector<BodyPath>> paths_;  // of each body, as far back as may be asked for; the last is planned
     bool is_planned_ = false;                   // the last of them has not been followed
 };

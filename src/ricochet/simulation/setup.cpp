@@ -185,7 +185,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       world(*shared_world),
       frames(own_frames(setup)),
       bodies(make_bodies(world, colliders, frames)),
-      driven(std::move(setup.bodies), frames.get(), bodies.get(), forces),
+      driven(std::move(setup.bodies), frames.get(), bodies.get(), forces, options),
       queries(Simulation::queries_of(shared_world)),
       coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
       emitters(make_emitters(setup)),

@@ -71,8 +71,15 @@ public:
 
     /// How a body of a driven frame yields, in the frame's coordinates.
     void set_mobility(BodyId body, const Mobility& mobility) { bodies_[body].mobility = mobility; }
-    /// For what begins next: whether impulses have just changed its velocity.
-    void set_jumped(BodyId body, bool has_jumped) { bodies_[body].has_jumped = has_jumped; }
+    /// For what begins next: whether impulses have just changed its velocity; and its angular momentum, kg m^2/s, where
+    /// it is free.
+    void set_motion(BodyId body, bool has_jumped, const std::optional<Vec3>& angular_momentum) {
+        bodies_[body].has_jumped = has_jumped;
+        bodies_[body].angular_momentum = angular_momentum;
+    }
+    /// rad/s, by which the angular velocity of a free body differs at a time, s, from that of its path, which keeps the
+    /// one of the path's middle: an impact would not keep the energy with that.
+    [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
     [[nodiscard]] bool yields(BodyId body) const { return body != kAtRest && bodies_[body].mobility.has_value(); }
     /// How it yields at a time, s, in the world; only of one that does.
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
@@ -90,6 +97,7 @@ private:
         MovingPose at_begin;
         MovingPose at_end;
         std::optional<Mobility> mobility{};
+        std::optional<Vec3> angular_momentum{};
         bool has_jumped = false;
     };
 

@@ -65,7 +65,7 @@ Vec3 ImpactAnswer::carried_velocity_of(const ContactSurface& surface, const Vec3
     const MovingView view(bodies, home_.body(), {time, time, time, 0.0, 0.0});
     const WayPoint foot = view.point_at(center - particle_.state.radius * surface.normal, 0.0);
     Vec3 velocity = view.velocity_of(body, foot);
-    if (!given_.empty()) velocity += home_.direction_in_frame(velocity_given_to(body, foot.world), time);
+    if (bodies.yields(body)) velocity += home_.direction_in_frame(velocity_beside_path(body, foot.world), time);
     const Material& material = material_of(surface.surface);
     if (!material.drives()) return velocity;
     const MovingView seen(bodies, body, view.clock());
@@ -254,12 +254,15 @@ void ImpactAnswer::bounce_off_body(const ContactSurface& surface, const Material
     given_.push_back({home_.bodies().body_of(surface.surface), {impulse, cross(where - body.center, impulse)}});
 }
 
-/// m/s, in the world, of a body's point by what it has been given.
-Vec3 ImpactAnswer::velocity_given_to(BodyId body, const Vec3& where) const {
+/// m/s, in the world, of a body's point, by what it has been given and by how it turns beside its path.
+Vec3 ImpactAnswer::velocity_beside_path(BodyId body, const Vec3& where) const {
+    const double time = particle_.state.time;
+    const Vec3 turning = home_.bodies().turning_beside_path(body, time);
     Vec3 velocity;
+    if (turning != Vec3{}) velocity = cross(turning, where - home_.bodies().mobility(body, time).center);
     for (const Given& given : given_) {
         if (given.body != body) continue;
-        velocity += home_.bodies().mobility(body, particle_.state.time).change_at(where, given.wrench);
+        velocity += home_.bodies().mobility(body, time).change_at(where, given.wrench);
     }
     return velocity;
 }
@@ -268,7 +271,7 @@ bool ImpactAnswer::waits_for(std::span<const ContactSurface> surfaces) const {
     return !given_.empty() && std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
         if (!yields(surface.surface)) return false;
         const Vec3 where = particle_.state.position - particle_.state.radius * surface.normal;
-        const Vec3 given = velocity_given_to(home_.bodies().body_of(surface.surface), where);
+        const Vec3 given = velocity_beside_path(home_.bodies().body_of(surface.surface), where);
         return departure_from(surface) + dot(given, surface.normal) < 0.0;
     });
 }

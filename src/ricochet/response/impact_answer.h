@@ -93,7 +93,7 @@ private:
     [[nodiscard]] bool is_carried(SurfaceId surface) const {
         return rules_.bodies != nullptr && rules_.bodies->body_of(surface) != home_.body();
     }
-    [[nodiscard]] Vec3 velocity_given_to(BodyId body, const Vec3& where) const;
+    [[nodiscard]] Vec3 velocity_beside_path(BodyId body, const Vec3& where) const;
     [[nodiscard]] Vec3 carried_velocity_of(const ContactSurface& surface, const Vec3& center) const;
     [[nodiscard]] Vec3 carried_angular_velocity_of(SurfaceId surface) const;
 

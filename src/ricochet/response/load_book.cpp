@@ -91,6 +91,10 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.work = dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, load.place)) +
                 dot(load.moment, pose.angular_velocity);
     load.approach = approach_;
+    if (body != kAtRest && rules_.bodies->yields(body)) {
+        const Vec3 arm = load.place - rules_.bodies->mobility(body, time).center;
+        load.work += dot(cross(arm, hit.impulse) + couple, rules_.bodies->turning_beside_path(body, time));
+    }
     load.impact = hit.impact;
     scratch_.loads.push_back(load);
 }

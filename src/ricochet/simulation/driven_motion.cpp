@@ -187,7 +187,10 @@ double DrivenMotion::begin_part_again(double time) {
 void DrivenMotion::tell_of_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kAtRest) return;
     const std::vector<BodyPath>& paths = paths_[body];
-    colliders_->set_jumped(collider_of_[body], path > 0 && jumps(paths[path - 1], paths[path]));
+    const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
+    const bool is_free = bodies_[body].description().joint == JointKind::free;
+    colliders_->set_motion(collider_of_[body], has_jumped,
+                           is_free ? std::optional(bodies_[body].angular_momentum()) : std::nullopt);
 }
 
 }  // namespace ricochet

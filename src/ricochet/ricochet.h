@@ -23,6 +23,7 @@
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/springs.h"
+#include "ricochet/geometry/mesh/mesh_motion.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/geometry/sweep/moving_triangle.h"

@@ -9,6 +9,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
@@ -58,6 +59,9 @@ std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
         return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
     }
+    if (impl().bodies && impl().bodies->deforming().is_mesh(i)) {
+        return impl().bodies->deforming().mesh_at(i, time());
+    }
     return impl().world_of(i).mesh_of(i);
 }
 MovingPose Simulation::collider_pose(std::size_t i, double time) const {
@@ -68,6 +72,10 @@ std::size_t Simulation::triangle_count() const {
     std::size_t count = impl().world.triangles().size();
     for (BodyId body = 0; impl().bodies && body < impl().bodies->size(); ++body) {
         count += impl().bodies->world(body).triangles().size();
+    }
+    for (std::size_t i = 0; impl().bodies && i < colliders().size(); ++i) {
+        const DeformingColliders& deforming = impl().bodies->deforming();
+        if (deforming.is_mesh(i)) count += deforming.triangles_of(i).size();
     }
     return count;
 }
@@ -84,6 +92,11 @@ SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
     require_index(record.surface, impl().world.surface_count(), "surface");
     const std::uint32_t collider = impl().world.name_of(record.surface).collider;
     const MovingPose pose = collider_pose(collider, record.time);
+    if (impl().bodies && impl().bodies->deforming().is_mesh(collider)) {
+        const auto [a, b, c] = impl().bodies->deforming().corners_at(record.surface, record.time);
+        const ClosestPointOnTriangle closest = closest_point_on_triangle(record.position, a, b, c);
+        return {closest.point, barycentric_coordinates(closest, a, b, c)};
+    }
     const CollisionWorld& world = impl().world_of(collider);
     if (&world == &impl().world) return world.closest_point_on(record.surface, record.position);
     SurfacePosition position = world.closest_point_on(record.surface, pose.image(record.position));

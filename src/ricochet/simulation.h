@@ -199,7 +199,8 @@ public:
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
     /// Of the setup, in its order.
     [[nodiscard]] std::span<const Material> materials() const;
-    /// Mesh of collider i (placement baked in), in the world or in the frame that it stands in; nothing for planes.
+    /// Mesh of collider i (placement baked in), in the world or in the frame that it stands in; nothing for planes. One
+    /// that deforms is as it is at time().
     /// Balls and cylinders, which have no triangles, are shown by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
     /// Where the frame of collider i is at a time, s, and how it moves: the world itself for those at rest.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/transform.h"
+#include "ricochet/geometry/mesh/mesh_motion.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -28,6 +29,9 @@ struct MeshShape {
     /// Material of every triangle, as indices into the simulation's materials; empty: the collider's material
     /// everywhere.
     std::vector<std::uint32_t> triangle_materials = {};
+    /// Where its vertices are in time, before the placement, where it deforms: those of the mesh say nothing then. Null:
+    /// it keeps its shape.
+    std::shared_ptr<const MeshMotion> motion = nullptr;
 };
 
 /// A ball about the local origin: a sphere, or an ellipsoid under a scale that differs by axis. Solid from both sides.
@@ -83,5 +87,11 @@ struct ColliderDescription {
     /// The frame that it stands in, and moves with: its placement is within that. Empty: the world.
     std::string frame = {};
 };
+
+/// True for a mesh whose vertices move.
+[[nodiscard]] inline bool is_deforming(const ColliderDescription& collider) {
+    const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
+    return mesh != nullptr && mesh->motion != nullptr;
+}
 
 }  // namespace ricochet

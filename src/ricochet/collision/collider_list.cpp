@@ -65,6 +65,11 @@ std::uint32_t ColliderList::material_of(SurfaceId surface) const {
 
 void ColliderList::drop_mesh(std::size_t collider) { std::get<MeshShape>(colliders_[collider].shape).mesh.reset(); }
 
+void ColliderList::replace_motion(std::size_t collider, std::shared_ptr<const MeshMotion> motion) {
+    std::get<MeshShape>(colliders_[collider].shape).motion = std::move(motion);
+    drop_mesh(collider);
+}
+
 std::size_t ColliderList::memory_bytes() const {
     std::size_t bytes = first_surfaces_.capacity() * sizeof(SurfaceId);
     for (const ColliderDescription& collider : colliders_) {

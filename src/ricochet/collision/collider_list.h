@@ -30,6 +30,8 @@ public:
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
     /// Lets go of a mesh of which a world holds its own copy.
     void drop_mesh(std::size_t collider);
+    /// The same of one that deforms, whose motion, placed, takes the place of the one that was given.
+    void replace_motion(std::size_t collider, std::shared_ptr<const MeshMotion> motion);
     /// Bytes, without the meshes.
     [[nodiscard]] std::size_t memory_bytes() const;
 

@@ -73,7 +73,7 @@ CollisionWorld::CollisionWorld(std::vector<ColliderDescription> colliders, doubl
 CollisionWorld::CollisionWorld(std::shared_ptr<ColliderList> colliders, std::string_view frame, double chord_margin)
     : list_(std::move(colliders)) {
     for (std::size_t number = 0; number < list_->all().size(); ++number) {
-        if (list_->all()[number].frame == frame) {
+        if (list_->all()[number].frame == frame && !is_deforming(list_->all()[number])) {
             add(number);
         } else {
             add_range(number, Kind::elsewhere);

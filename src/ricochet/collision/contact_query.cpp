@@ -135,7 +135,7 @@ int NearSurfaces::side_of_surface(SurfaceId surface, const WayPoint& p) const {
 
 bool NearSurfaces::is_flat(SurfaceId surface) const {
     const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return (is_own ? world() : foreign_->world_of(surface)).is_flat(surface);
+    return is_own ? world().is_flat(surface) : foreign_->is_flat(surface);
 }
 
 double NearSurfaces::offset_at(const WayPoint& p) const {

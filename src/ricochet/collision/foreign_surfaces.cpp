@@ -8,12 +8,17 @@ namespace ricochet {
 
 bool ForeignSurfaces::are_free(const WayPoint& p, const WayPoint& q) const {
     return std::all_of(bodies_.begin(), bodies_.end(),
-                       [&](const Body& body) { return body.near.is_free(image(body, p), image(body, q)); });
+                       [&](const Body& body) { return body.near.is_free(image(body, p), image(body, q)); }) &&
+           std::all_of(deforming_.begin(), deforming_.end(),
+                       [&](const Deforming& triangle) { return is_free(triangle, p, q); });
 }
 
 std::optional<SurfaceId> ForeignSurfaces::blocker(const WayPoint& p, const WayPoint& q) const {
     for (const Body& body : bodies_) {
         if (const auto surface = body.near.blocker(image(body, p), image(body, q))) return surface;
+    }
+    for (const Deforming& triangle : deforming_) {
+        if (!is_free(triangle, p, q)) return triangle.surface;
     }
     return std::nullopt;
 }
@@ -23,22 +28,36 @@ bool ForeignSurfaces::cover_chord(double from, double to) const {
                        [&](const Body& body) { return body.near.covers_chord(body.path, from, to); });
 }
 
+bool ForeignSurfaces::is_flat(SurfaceId surface) const {
+    return deforms(surface) || world_of(surface).is_flat(surface);
+}
+
 CollisionWorld::Nearest ForeignSurfaces::nearest(SurfaceId surface, const WayPoint& p) const {
+    if (deforms(surface)) {
+        CollisionWorld::Nearest nearest = deforming().nearest(surface, p.world, time_of(p));
+        nearest.normal = view_.direction_from(kAtRest, nearest.normal, p.time);
+        return nearest;
+    }
     CollisionWorld::Nearest nearest = world_of(surface).nearest(surface, image_in(surface, p));
     nearest.normal = view_.direction_from(view_.bodies().body_of(surface), nearest.normal, p.time);
     return nearest;
 }
 
 double ForeignSurfaces::signed_distance_from(SurfaceId surface, const WayPoint& p) const {
+    if (deforms(surface)) return deforming().signed_distance_from(surface, p.world, time_of(p));
     return world_of(surface).signed_distance_from(surface, image_in(surface, p));
 }
 
 Vec3 ForeignSurfaces::unit_normal_of(SurfaceId surface, const WayPoint& p) const {
+    if (deforms(surface)) {
+        return view_.direction_from(kAtRest, deforming().unit_normal_of(surface, time_of(p)), p.time);
+    }
     const Vec3 normal = world_of(surface).unit_normal_of(surface, image_in(surface, p));
     return view_.direction_from(view_.bodies().body_of(surface), normal, p.time);
 }
 
 int ForeignSurfaces::side_of_surface(SurfaceId surface, const WayPoint& p) const {
+    if (deforms(surface)) return deforming().side_of_surface(surface, p.world, time_of(p));
     return world_of(surface).side_of_surface(surface, image_in(surface, p));
 }
 
@@ -50,6 +69,7 @@ double ForeignSurfaces::offset_at(const WayPoint& p) const {
         const double time = view_.clock().at(p.time);
         offset = std::max(offset, contact_offset(view_.bodies().pose(body.id, time).world_from_frame.translation));
     }
+    for (const Deforming& triangle : deforming_) offset = std::max(offset, deforming().offset_of(triangle.surface));
     return offset;
 }
 

@@ -1,12 +1,15 @@
 /// \file
-/// The surfaces near a path that stand in other frames than the path is given in: bodies that move, and the world as
-/// it is seen from a body.
+/// Surfaces near a path that stand in other frames than it is given in, and meshes that deform: the certificate of links
+/// in their frames, and in space and time, and what is asked of them.
 #pragma once
 
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
+#include "ricochet/collision/moving_colliders.h"
 #include "ricochet/collision/way_point.h"
 
 namespace ricochet {
@@ -21,11 +24,18 @@ public:
         Path path;  ///< in its coordinates
         NearSurfaces near;
     };
+    /// A triangle of a mesh that deforms.
+    struct Deforming {
+        SurfaceId surface = 0;
+        double radius = 0.0;  ///< m, of the ball that links keep off it
+    };
 
-    /// start: of the path, stored. Bodies are added in ascending order of their queries.
+    /// start: of the path, stored. Bodies are added in ascending order of their queries, triangles in that of their
+    /// numbers.
     ForeignSurfaces(const MovingView& view, const WayPoint& start) : view_(view), start_(start) {}
 
     void add(Body body) { bodies_.push_back(std::move(body)); }
+    void add(const Deforming& triangle) { deforming_.push_back(triangle); }
 
     [[nodiscard]] const MovingView& view() const { return view_; }
     [[nodiscard]] const WayPoint& start() const { return start_; }
@@ -36,9 +46,7 @@ public:
     [[nodiscard]] bool cover_chord(double from, double to) const;
 
     // Of surfaces of other frames, as they are seen from the path's own.
-    [[nodiscard]] const CollisionWorld& world_of(SurfaceId surface) const {
-        return view_.bodies().world(view_.bodies().body_of(surface));
-    }
+    [[nodiscard]] bool is_flat(SurfaceId surface) const;
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const WayPoint& p) const;
@@ -52,10 +60,20 @@ private:
     [[nodiscard]] Vec3 image_in(SurfaceId surface, const WayPoint& p) const {
         return view_.image(view_.bodies().body_of(surface), p.world, p.time);
     }
+    [[nodiscard]] const CollisionWorld& world_of(SurfaceId surface) const {
+        return view_.bodies().world(view_.bodies().body_of(surface));
+    }
+    [[nodiscard]] const DeformingColliders& deforming() const { return view_.bodies().deforming(); }
+    [[nodiscard]] bool deforms(SurfaceId surface) const { return deforming().owns(surface); }
+    [[nodiscard]] double time_of(const WayPoint& p) const { return view_.clock().at(p.time); }
+    [[nodiscard]] bool is_free(const Deforming& triangle, const WayPoint& p, const WayPoint& q) const {
+        return deforming().is_free(triangle.surface, {p.world, time_of(p)}, {q.world, time_of(q)}, triangle.radius);
+    }
 
     MovingView view_;
     WayPoint start_;
     std::vector<Body> bodies_;
+    std::vector<Deforming> deforming_;
 };
 
 }  // namespace ricochet

@@ -65,7 +65,7 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
 
 MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
                                  std::shared_ptr<const FrameTree> frames, double chord_margin)
-    : at_rest_(at_rest), colliders_(colliders), frames_(std::move(frames)) {
+    : at_rest_(at_rest), colliders_(colliders), frames_(std::move(frames)), deforming_(colliders) {
     for (const ColliderDescription& collider : colliders->all()) {
         if (collider.frame.empty()) {
             body_of_collider_.push_back(kAtRest);
@@ -82,6 +82,9 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::share
         bodies_.push_back(
             {std::make_unique<CollisionWorld>(colliders, collider.frame, chord_margin), *frame, {}, {}, {}, {}});
     }
+    for (std::size_t mesh = 0; mesh < deforming_.size(); ++mesh) {
+        body_of_collider_[deforming_.collider_of(mesh)] = static_cast<BodyId>(bodies_.size() + mesh);
+    }
 }
 
 void MovingColliders::prepare_radius(double radius) {
@@ -93,7 +96,7 @@ void MovingColliders::set_culling(bool culls) {
 }
 
 MovingPose MovingColliders::pose(BodyId body, double time) const {
-    if (body == kAtRest) return {};
+    if (body == kAtRest || is_deforming(body)) return {};
     const Body& moving = bodies_[body];
     if (time == begin_ && begin_ < end_) return moving.at_begin;
     if (time == end_ && begin_ < end_) return moving.at_end;
@@ -104,6 +107,7 @@ void MovingColliders::begin_step(double begin, double end) {
     begin_ = begin;
     end_ = end;
     for (Body& body : bodies_) sweep(body);
+    deforming_.begin_step(begin, end);
 }
 
 void MovingColliders::sweep(Body& body) const {
@@ -128,10 +132,11 @@ void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& 
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {
     static const MotionBounds at_rest{};
-    return body == kAtRest ? at_rest : bodies_[body].bounds;
+    return body == kAtRest || is_deforming(body) ? at_rest : bodies_[body].bounds;
 }
 
 double MovingColliders::next_key(BodyId body, double time) const {
+    if (is_deforming(body)) return deforming_.next_key(time);
     return body == kAtRest ? kInfinity : frames_->next_key(bodies_[body].frame, time);
 }
 
@@ -140,6 +145,7 @@ std::optional<double> MovingColliders::next_jump(BodyId body, double from, doubl
         return length(a - b) > kSameVelocity * (length(a) + length(b));
     };
     double key = next_key(body, from);
+    if (is_deforming(body)) return key <= until ? std::optional(key) : std::nullopt;
     for (int count = 0; count < kMostKeysInStep && key <= until; ++count, key = next_key(body, key)) {
         const MovingPose before = pose(body, std::nextafter(key, from));
         const MovingPose after = pose(body, key);

@@ -13,13 +13,14 @@
 
 #include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/mobility.h"
 
 namespace ricochet {
 
-/// Number of a body: the colliders that stand in one moving frame.
+/// Number of a body: the colliders that stand in one moving frame, or a mesh that deforms.
 using BodyId = std::uint32_t;
 /// The colliders that stand in the world.
 inline constexpr BodyId kAtRest = 0xFFFFFFFFU;
@@ -34,9 +35,13 @@ public:
                     std::shared_ptr<const FrameTree> frames, double chord_margin);
 
     [[nodiscard]] const std::shared_ptr<const FrameTree>& frames() const { return frames_; }
+    /// Of bodies with a frame; they have the numbers below, and those that deform the ones from there on.
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-    [[nodiscard]] bool empty() const { return bodies_.empty(); }
-    /// The colliders of a body in its coordinates, or those at rest.
+    [[nodiscard]] bool empty() const { return bodies_.empty() && deforming_.empty(); }
+    /// The meshes that deform. They stand in the world: their pose() is that of what is at rest.
+    [[nodiscard]] const DeformingColliders& deforming() const { return deforming_; }
+    [[nodiscard]] bool is_deforming(BodyId body) const { return body != kAtRest && body >= bodies_.size(); }
+    /// The colliders of a body with a frame in its coordinates, or those at rest.
     [[nodiscard]] const CollisionWorld& world(BodyId body) const {
         return body == kAtRest ? at_rest_ : *bodies_[body].world;
     }
@@ -108,6 +113,7 @@ private:
     std::shared_ptr<const FrameTree> frames_;
     std::vector<Body> bodies_;
     std::vector<BodyId> body_of_collider_;
+    DeformingColliders deforming_;
     double begin_ = 0.0;
     double end_ = 0.0;
 };

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <memory>
 
+#include "ricochet/collision/deforming_sweep.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
+
+/// Of a path's duration: as near to its ends as a key of a mesh that deforms may cut it.
+constexpr double kLeastPart = 0x1p-45;
 
 /// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
 constexpr int kNewtonSteps = 4;
@@ -24,12 +28,16 @@ Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     return piece;
 }
 
+Box3 grown(const Box3& box, double margin) {
+    const Vec3 by{margin, margin, margin};
+    return {box.lower - by, box.upper + by};
+}
+
 Box3 box_of(const Path& path, double margin) {
     Box3 box;
     for (const Vec3& point : path.control_points()) box.include(point);
     box.include(path.end);
-    const Vec3 by{margin, margin, margin};
-    return {box.lower - by, box.upper + by};
+    return grown(box, margin);
 }
 
 /// Bounds of the derivatives of a path.
@@ -72,6 +80,18 @@ void MovingSweep::find_near() {
         box.include(start_.world + by);
     }
     bodies.near(box, view_.home(), near_);
+    if (!bodies.deforming().empty()) find_deforming(box);
+}
+
+/// With those within reach of all positions that are tried beside the path.
+void MovingSweep::find_deforming(const Box3& box) {
+    const DeformingColliders& deforming = view_.bodies().deforming();
+    if (deforming.stay_out(box)) return;
+    deforming.near(box, deforming_);
+    double by = rounding() + query_.beside;
+    for (const BodyId body : near_) by += 8.0 * tolerance_of(body);
+    deforming_.clear();
+    deforming.near(grown(box, 8.0 * by), deforming_);
 }
 
 DerivativeBounds MovingSweep::world_bounds() const {
@@ -117,7 +137,11 @@ double MovingSweep::rounding() const {
     };
     include(view_.home());
     for (const BodyId body : near_) include(body);
-    return kLargestContactOffsetUlps / kContactOffsetUlps * contact_offset(largest);
+    double offset = contact_offset(largest);
+    for (const SurfaceId surface : deforming_) {
+        offset = std::max(offset, view_.bodies().deforming().offset_of(surface));
+    }
+    return kLargestContactOffsetUlps / kContactOffsetUlps * offset;
 }
 
 /// At the keys of all bodies that are near, and evenly between them.
@@ -135,12 +159,17 @@ void MovingSweep::cut() {
     };
     add_keys(view_.home());
     for (const BodyId body : near_) add_keys(body);
+    for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
     std::sort(keys.begin(), keys.end());
     double rate = 0.0;  // pieces a second
     const DerivativeBounds world = world_bounds();
     for (const BodyId body : near_) {
         rate = std::max(rate, std::sqrt(std::sqrt(fourth_derivative(body, world) / (384.0 * tolerance_of(body)))));
+    }
+    if (view_.home() != kAtRest && !deforming_.empty()) {
+        const double derivative = fourth_derivative(kAtRest, world);
+        rate = std::max(rate, std::sqrt(std::sqrt(derivative / (384.0 * tolerance_of(kAtRest)))));
     }
     cuts_.assign(1, 0.0);
     for (std::size_t k = 1; k < keys.size(); ++k) {
@@ -151,6 +180,42 @@ void MovingSweep::cut() {
         cuts_.push_back(keys[k]);
     }
     if (cuts_.size() == 1) cuts_.push_back(duration);
+    if (!deforming_.empty()) set_times();
+}
+
+/// s, all keys of meshes that deform within the path's time, where some are near.
+std::vector<double> MovingSweep::deforming_keys() const {
+    std::vector<double> keys;
+    if (deforming_.empty()) return keys;
+    const DeformingColliders& deforming = view_.bodies().deforming();
+    const PathClock& clock = view_.clock();
+    for (double key = deforming.next_key(clock.begin); key < clock.end; key = deforming.next_key(key)) {
+        keys.push_back(key);
+    }
+    return keys;
+}
+
+/// Of a key within the path's time: inside the path, also where rounding has it at its ends.
+double MovingSweep::path_time_of(double key) const {
+    const PathClock& clock = view_.clock();
+    const double least = kLeastPart * query_.path.duration;
+    return std::clamp(key - clock.base - clock.offset, least, query_.path.duration - least);
+}
+
+/// Pieces that end at a key end at its very time.
+void MovingSweep::set_times() {
+    const PathClock& clock = view_.clock();
+    const std::vector<double> keys = deforming_keys();
+    times_.clear();
+    for (const double cut : cuts_) times_.push_back(clock.at(cut));
+    times_.back() = clock.end;
+    for (const double key : keys) {
+        const auto at = std::find(cuts_.begin(), cuts_.end(), path_time_of(key)) - cuts_.begin();
+        for (std::ptrdiff_t k = 0; k < std::ssize(times_); ++k) {
+            double& time = times_[static_cast<std::size_t>(k)];
+            time = k < at ? std::min(time, key) : (k > at ? std::max(time, key) : key);
+        }
+    }
 }
 
 /// The piece as a body sees it.
@@ -164,7 +229,7 @@ Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& s
     return hermite_path(from, leaving, to, arriving, piece_.duration);
 }
 
-/// Makes a contact with a body the first one where it is, or a part of it.
+/// Makes a contact with a body, whose path it was found on, the first one where it is, or a part of it.
 void MovingSweep::take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const {
     Contact contact = found;
     if (body != view.home()) {
@@ -174,6 +239,10 @@ void MovingSweep::take(const Contact& found, BodyId body, const MovingView& view
             normal = view.direction_from(body, normal, contact.time);
         }
     }
+    merge(contact, first);
+}
+
+void MovingSweep::merge(Contact contact, std::optional<Contact>& first) const {
     if (!first) {
         first = contact;
         return;
@@ -230,6 +299,10 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
     const double to = cuts_[piece + 1];
     piece_ = piece_of(query_.path, from, to, start.position);
     clock_ = view_.clock().piece(from, to);
+    if (!times_.empty()) {
+        clock_.begin = times_[piece];
+        clock_.end = times_[piece + 1];
+    }
     const MovingView view(view_.bodies(), view_.home(), clock_);
     const WayPoint first_point{start.position, 0.0, start.world};
     foreign_.emplace(view, first_point);
@@ -252,9 +325,26 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
         if (found.contact) take(*found.contact, near_[k], view, first);
         foreign_->add({near_[k], path, found.near});
     }
+    if (!deforming_.empty()) meet_deforming(view, first_point, beside_there, first);
     own.contact = first;
     own.near.join(*foreign_);
     return own;
+}
+
+/// beside: m, as far beside the path positions may be asked about.
+void MovingSweep::meet_deforming(const MovingView& view, const WayPoint& start, double beside,
+                                 std::optional<Contact>& first) {
+    const DeformingColliders& deforming = view.bodies().deforming();
+    const Path path = view.home() == kAtRest ? piece_ : path_in(kAtRest, view, start);
+    const DeformingSweep sweep(deforming, path, {clock_.begin, clock_.end}, query_.radius, query_.held, beside);
+    std::optional<Contact> contact = sweep.first_contact(
+        deforming_, [&](const ForeignSurfaces::Deforming& triangle) { foreign_->add(triangle); });
+    if (!contact) return;
+    for (int k = 0; k < contact->count; ++k) {
+        Vec3& normal = contact->surfaces[static_cast<std::size_t>(k)].normal;
+        normal = view.direction_from(kAtRest, normal, contact->time);
+    }
+    merge(*contact, first);
 }
 
 std::optional<Contact> MovingSweep::first_contact() {

@@ -6,6 +6,9 @@
 /// derivative; E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6). Those
 /// are swept as all paths are; the time of an impact is then found again on the true way. What is left of the
 /// approximation moves a graze; it lets nothing through, since every link is certified for stored positions.
+///
+/// Meshes that deform are met in the world, where path and vertices are polynomials. Pieces end at their keys, whose times
+/// are those that positions are stored with: no link leads over one.
 #pragma once
 
 #include <cstddef>
@@ -41,13 +44,19 @@ public:
 
 private:
     void find_near();
+    void find_deforming(const Box3& box);
     void cut();
+    void set_times();
+    [[nodiscard]] std::vector<double> deforming_keys() const;
+    [[nodiscard]] double path_time_of(double key) const;
     [[nodiscard]] double fourth_derivative(BodyId body, const DerivativeBounds& world) const;
     [[nodiscard]] double tolerance_of(BodyId body) const;
     [[nodiscard]] double rounding() const;
     [[nodiscard]] DerivativeBounds world_bounds() const;
     [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const WayPoint& start) const;
     void take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const;
+    void merge(Contact contact, std::optional<Contact>& first) const;
+    void meet_deforming(const MovingView& view, const WayPoint& start, double beside, std::optional<Contact>& first);
     void find_true_time(Contact& contact, BodyId body, const MovingView& view) const;
 
     MovingView view_;
@@ -56,7 +65,9 @@ private:
     WayPoint start_;
     ContactScratch& scratch_;
     std::vector<BodyId> near_;
+    std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
     std::vector<double> cuts_;
+    std::vector<double> times_;  // s, simulation times of the cuts; only where something that deforms is near
     std::optional<ForeignSurfaces> foreign_;
     Path piece_;
     PathClock clock_;

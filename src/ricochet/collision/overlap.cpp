@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -25,6 +26,14 @@ void visit_distances(const CollisionWorld& world, const Vec3& center, double wit
         within = consider(world.surface_of_triangle(triangle), std::sqrt(squared));
         return within;
     });
+}
+
+/// The triangles of meshes that deform which come within a distance in this step.
+std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3& center, double within) {
+    std::vector<SurfaceId> near;
+    const Vec3 by{within, within, within};
+    if (!bodies.deforming().empty()) bodies.deforming().near({center - by, center + by}, near);
+    return near;
 }
 
 }  // namespace
@@ -49,6 +58,12 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const Movi
         const auto overlap = deepest_overlap(bodies->world(body), bodies->pose(body, time).image(center), radius);
         if (overlap && (!deepest || overlap->distance < deepest->distance)) deepest = overlap;
     }
+    if (bodies == nullptr || !(radius > 0.0) || !is_finite(center)) return deepest;
+    const double least = radius - sphere_tolerance(radius, max_abs(center));
+    for (const SurfaceId surface : near_deforming(*bodies, center, radius)) {
+        const double distance = bodies->deforming().nearest(surface, center, time).distance;
+        if (distance < least && (!deepest || distance < deepest->distance)) deepest = Overlap{surface, distance};
+    }
     return deepest;
 }
 
@@ -72,6 +87,16 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
         if (normal == Vec3{}) continue;
         off = flush_tiny(pose.point(image + kOffsets * offset * normalized(normal)));
     }
+    Vec3 normal;
+    double offset = 0.0;
+    const Vec3 position = off.value_or(center);
+    for (const SurfaceId surface : near_deforming(bodies, position, 0.0)) {
+        const auto [a, b, c] = bodies.deforming().corners_at(surface, time);
+        if (!point_on_triangle(position, a, b, c)) continue;
+        normal += bodies.deforming().unit_normal_of(surface, time);
+        offset = std::max(offset, bodies.deforming().offset_of(surface));
+    }
+    if (normal != Vec3{}) off = flush_tiny(position + kOffsets * offset * normalized(normal));
     return off;
 }
 

@@ -279,7 +279,7 @@ VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, co
     return frame;
 }
 
-bool is_moving(const ColliderDescription& collider) { return !collider.frame.empty(); }
+bool is_moving(const ColliderDescription& collider) { return !collider.frame.empty() || is_deforming(collider); }
 
 VtkPolyData moving_collider_frame(const Simulation& simulation, const Box3& region) {
     VtkPolyData frame;

@@ -42,7 +42,7 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
 /// The colliders that move as they stand now, as one mesh; the array `collider` of its triangles says which each
 /// belongs to. region: as of plane_collider_frame().
 [[nodiscard]] VtkPolyData moving_collider_frame(const Simulation& simulation, const Box3& region);
-/// True for a collider that stands in a frame.
+/// True for a collider that stands in a frame, or deforms.
 [[nodiscard]] bool is_moving(const ColliderDescription& collider);
 
 }  // namespace ricochet

@@ -107,8 +107,8 @@ bool ParticleMover::has_room() {
     return before - step_.remaining() > kLeastWayOut * step_.duration();
 }
 
-/// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several until those of
-/// one are left.
+/// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several, and of meshes
+/// that deform, until those of one are left.
 std::optional<Contact> ParticleMover::resume() {
     if (rides_ == nullptr) return contact_phase_.resume();
     return step_.catch_up() ? resume_among_bodies() : std::nullopt;
@@ -131,7 +131,7 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
         }
         const bool is_shared = std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
                                            [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
-        if (is_shared) {
+        if (is_shared || rules_.bodies->is_deforming(body)) {
             next = SharedContact(step_).follow();
         } else if (body == kAtRest) {
             next = contact_phase_.resume();
@@ -179,11 +179,13 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     std::size_t count = 0;
     for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
     std::sort(bodies.begin(), bodies.begin() + count);
-    if (bodies[0] != bodies[count - 1] && step_.remaining() > 0.0 && SharedContact(step_).is_slow(contact, arriving)) {
+    const bool is_shared = bodies[0] != bodies[count - 1] || rules_.bodies->is_deforming(bodies[0]);
+    if (is_shared && step_.remaining() > 0.0 && SharedContact(step_).is_slow(contact, arriving)) {
         return begin_shared();
     }
     for (std::size_t k = count; k-- > 0;) {  // those at rest first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
+        if (rules_.bodies->is_deforming(bodies[k])) continue;  // it has no frame to ride in
         Contact own = contact;
         own.count = 0;
         for (const ContactSurface& surface : contact.all()) {

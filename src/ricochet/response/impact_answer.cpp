@@ -66,6 +66,11 @@ Vec3 ImpactAnswer::carried_velocity_of(const ContactSurface& surface, const Vec3
     const WayPoint foot = view.point_at(center - particle_.state.radius * surface.normal, 0.0);
     Vec3 velocity = view.velocity_of(body, foot);
     if (bodies.yields(body)) velocity += home_.direction_in_frame(velocity_beside_path(body, foot.world), time);
+    if (bodies.is_deforming(body)) {
+        // In the axes of the frame; what that itself does there is in the velocity already.
+        velocity += home_.direction_in_frame(bodies.deforming().motion_at(surface.surface, foot.world, time).velocity,
+                                             time);
+    }
     const Material& material = material_of(surface.surface);
     if (!material.drives()) return velocity;
     const MovingView seen(bodies, body, view.clock());
@@ -81,7 +86,11 @@ Vec3 ImpactAnswer::carried_angular_velocity_of(SurfaceId surface) const {
     const MovingView view(bodies, home_.body(), {time, time, time, 0.0, 0.0});
     const Material& material = material_of(surface);
     Vec3 turning = material.drives() ? view.direction_from(body, material.motion.angular_velocity, 0.0) : Vec3{};
-    const Vec3 of_body = bodies.pose(body, time).angular_velocity - bodies.pose(home_.body(), time).angular_velocity;
+    Vec3 of_body = bodies.pose(body, time).angular_velocity - bodies.pose(home_.body(), time).angular_velocity;
+    if (bodies.is_deforming(body)) {
+        const Vec3 center = home_.in_world({particle_.state.position, {}, {}}, time).position;
+        of_body += bodies.deforming().motion_at(surface, center, time).turning;
+    }
     return turning + home_.direction_in_frame(of_body, time);
 }
 

@@ -1,10 +1,14 @@
 // A particle among colliders that move: its way in their frames, and what it does where they leave it no room.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
@@ -128,7 +132,7 @@ void ParticleStep::turn_contact(Contact* contact, const HomeFrame& from, const H
 }
 
 /// Exact, in the frames of all colliders.
-bool ParticleStep::is_link_free(const Stored& from, const Stored& to) const {
+bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition& to) const {
     const MovingColliders& bodies = *rules_->bodies;
     const double radius = particle_.state.radius;
     const auto is_free_in = [&](BodyId body) {
@@ -141,20 +145,70 @@ bool ParticleStep::is_link_free(const Stored& from, const Stored& to) const {
     for (BodyId body = 0; body < bodies.size(); ++body) {
         if (!is_free_in(body)) return false;
     }
-    return is_free_in(kAtRest);
+    return is_free_in(kAtRest) && bodies.deforming().is_link_free(from, to, radius);
+}
+
+/// What is next to a mesh that deforms goes with the point of it that is nearest, at the same distance.
+Vec3 ParticleStep::carried_by_mesh(SurfaceId surface, double until) const {
+    const DeformingColliders& deforming = rules_->bodies->deforming();
+    const auto [a, b, c] = deforming.corners_at(surface, stored_.time);
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(stored_.position, a, b, c);
+    const Vec3 weights = barycentric_coordinates(closest, a, b, c);
+    const std::array<Vec3, 3> later = deforming.corners_at(surface, until);
+    const Vec3 way = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
+    const Vec3 moved = stored_.position + way;
+    const double distance = std::sqrt(closest.distance_squared);
+    const CollisionWorld::Nearest nearest = deforming.nearest(surface, moved, until);
+    const Vec3 normal = dot(nearest.normal, closest.offset) < 0.0 ? -nearest.normal : nearest.normal;
+    return flush_tiny(moved + (distance - nearest.distance) * normal);
+}
+
+/// Goes with a mesh that deforms until a time, as far as links are free.
+bool ParticleStep::carry_by_mesh(SurfaceId surface, double until, int depth) {
+    const double key = rules_->bodies->deforming().next_key(stored_.time);
+    if (key < until) return carry_by_mesh(surface, key, depth) && carry_by_mesh(surface, until, depth);
+    if (take_link({carried_by_mesh(surface, until), until})) return true;
+    const double middle = 0.5 * (stored_.time + until);
+    if (depth == 0 || !(middle > stored_.time) || !(middle < until)) return false;
+    return carry_by_mesh(surface, middle, depth - 1) && carry_by_mesh(surface, until, depth - 1);
+}
+
+/// By each of the triangles that it is next to, by turns.
+bool ParticleStep::carry_by_meshes(double until) {
+    const DeformingColliders& deforming = rules_->bodies->deforming();
+    const double radius = particle_.state.radius;
+    const double beside = 2.0 * kEdgeOffsets * contact_offset(stored_.position) +
+                          2.0 * sphere_tolerance(radius, max_abs(stored_.position));
+    const Vec3 reach{radius + beside, radius + beside, radius + beside};
+    std::vector<SurfaceId> near;
+    deforming.near({stored_.position - reach, stored_.position + reach}, near);
+    for (const SurfaceId surface : near) {
+        if (stored_.time >= until) break;
+        const double distance = deforming.nearest(surface, stored_.position, stored_.time).distance;
+        if (distance <= radius + std::max(beside, kEdgeOffsets * deforming.offset_of(surface))) {
+            static_cast<void>(carry_by_mesh(surface, until, kCarryDepth));
+        }
+    }
+    return stored_.time >= until;
+}
+
+/// Moves it along a link, where that is free.
+bool ParticleStep::take_link(const StoredPosition& next) {
+    if (!is_link_free(stored_, next)) return false;
+    if (scratch_.record_segments) {
+        scratch_.segments.push_back({stored_.position, next.position, stored_.time, stored_.time, next.time});
+    }
+    stored_ = next;
+    return true;
 }
 
 /// Goes with a frame until a time, as far as links are free. image: where it is in that frame.
 bool ParticleStep::carry(BodyId frame, const Vec3& image, double until, int depth) {
+    const double key = rules_->bodies->deforming().next_key(stored_.time);
+    if (key < until) return carry(frame, image, key, depth) && carry(frame, image, until, depth);
     const MovingPose pose = rules_->bodies->pose(frame, until);
-    const Stored next{frame == kAtRest ? stored_.position : flush_tiny(pose.point(image)), until};
-    if (is_link_free(stored_, next)) {
-        if (scratch_.record_segments) {
-            scratch_.segments.push_back({stored_.position, next.position, stored_.time, stored_.time, until});
-        }
-        stored_ = next;
-        return true;
-    }
+    const StoredPosition next{frame == kAtRest ? stored_.position : flush_tiny(pose.point(image)), until};
+    if (take_link(next)) return true;
     const double middle = 0.5 * (stored_.time + until);
     if (depth == 0 || !(middle > stored_.time) || !(middle < until)) return false;
     return carry(frame, image, middle, depth - 1) && carry(frame, image, until, depth - 1);
@@ -178,6 +232,7 @@ bool ParticleStep::wait_out(double until) {
         for (BodyId body = 0; body < rules_->bodies->size() && stored_.time < until; ++body) {
             if (body != home_.body()) static_cast<void>(carry_on(body, until));
         }
+        if (stored_.time < until) static_cast<void>(carry_by_meshes(until));
         if (stored_.time >= until || stored_.time == before) break;
     }
     state().position =

@@ -104,12 +104,6 @@ private:
     };
 
     [[nodiscard]] bool can_follow(const Path& path);
-    /// A position in the world, and its time.
-    struct Stored {
-        Vec3 position;
-        double time = 0.0;  ///< s
-    };
-
     [[nodiscard]] double go(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] double go_along(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] std::optional<Contact> follow_among_bodies(const Flight& flight, const Integrator& integrator);
@@ -121,7 +115,11 @@ private:
     void turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const;
     [[nodiscard]] bool carry_on(BodyId frame, double until);
     [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
-    [[nodiscard]] bool is_link_free(const Stored& from, const Stored& to) const;
+    [[nodiscard]] bool take_link(const StoredPosition& next);
+    [[nodiscard]] Vec3 carried_by_mesh(SurfaceId surface, double until) const;
+    [[nodiscard]] bool carry_by_mesh(SurfaceId surface, double until, int depth);
+    [[nodiscard]] bool carry_by_meshes(double until);
+    [[nodiscard]] bool is_link_free(const StoredPosition& from, const StoredPosition& to) const;
     [[nodiscard]] bool is_link_free(const ForeignSurfaces& foreign, const WayPoint& from, const WayPoint& to) const {
         const PathClock& clock = foreign.view().clock();
         return is_link_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
@@ -152,7 +150,7 @@ private:
     ImpactAnswer impact_;
     MotionLog log_;
     Vec3 start_;
-    Stored stored_;                   // where something moves
+    StoredPosition stored_;           // where something moves
     std::optional<double> part_end_;  // s, of begin_part()
     double rest_after_part_ = 0.0;    // s
     double whole_step_end_ = 0.0;     // s

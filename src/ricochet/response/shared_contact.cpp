@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_arc.h"
+#include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/impact_problem.h"
 
 namespace ricochet {
@@ -41,6 +42,20 @@ void SharedContact::gather() {
     step_.rules().bodies->near({state_.position - by, state_.position + by}, kAtRest, near);
     count_ = 0;
     for (const BodyId body : near) gather_in(body);
+    gather_deforming();
+}
+
+void SharedContact::gather_deforming() {
+    const MovingColliders& bodies = *step_.rules().bodies;
+    const double departure = step_.rules().settings.resting_speed;
+    for (const ContactSurface& surface : touched_surfaces(deforming(), state_, departure)) {
+        if (count_ == kMostHolding) return;
+        Touched& touched = touched_[count_++];
+        touched.surface = surface;
+        touched.body = bodies.body_of(surface.surface);
+        touched.velocity = step_.impact().velocity_of(surface);
+        touched.turning = deforming().motion_at(surface.surface, state_.position, state_.time).turning;
+    }
 }
 
 void SharedContact::gather_in(BodyId body) {
@@ -140,6 +155,12 @@ HoldingSurface SharedContact::holding(const Touched& touched, const Vec3& shift)
                         material.spinning_friction,
                         relative - dot(relative, n) * n,
                         impact.angular_velocity_of(touched.surface.surface)};
+    if (deforms(touched)) {
+        const SurfaceBend bent = bend_of(deforming(), state_, touched.surface);
+        held.bend = bent.bend;
+        held.slip_bend = bent.slip_bend;
+        return held;
+    }
     const MovingView view = view_at(state_.time);
     const MovingPose pose = view.bodies().pose(touched.body, state_.time);
     const Vec3 arm = state_.position - pose.world_from_frame.translation;
@@ -166,7 +187,10 @@ double SharedContact::longest() const {
     for (const Touched& one : touched()) {
         rate = std::max(rate, length(one.turning));
         if (one.surface.flat) continue;
-        const double size = std::max(state_.radius, step_.rules().bodies->world(one.body).size_of(one.surface.surface));
+        const SurfaceId surface = one.surface.surface;
+        const double own = deforms(one) ? deforming().motion_at(surface, state_.position, state_.time).size
+                                        : step_.rules().bodies->world(one.body).size_of(surface);
+        const double size = std::max(state_.radius, own);
         rate = std::max(rate, length(state_.velocity - one.velocity) / size);
     }
     return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
@@ -202,7 +226,7 @@ SharedContact::Hold SharedContact::plan(double duration) {
     bool is_shared = false;
     for (std::size_t k = 0; k < count_; ++k) {
         if (interval_.push[k] == Vec3{}) continue;
-        is_shared = is_shared || (holder && *holder != touched_[k].body);
+        is_shared = is_shared || (holder && *holder != touched_[k].body) || deforms(touched_[k]);
         holder = touched_[k].body;
     }
     if (!holder) return Hold::none;
@@ -217,6 +241,10 @@ SharedContact::Hold SharedContact::plan(double duration) {
 }
 
 SharedContact::Height SharedContact::height_above(const Touched& touched, const Vec3& position, double time) const {
+    if (deforms(touched)) {
+        const auto [normal, above] = ricochet::height_above(deforming(), touched.surface, position, time);
+        return {normal, above, 2.0 * deforming().offset_of(touched.surface.surface)};
+    }
     const MovingView view = view_at(time);
     const CollisionWorld& world = view.bodies().world(touched.body);
     const SurfaceId surface = touched.surface.surface;

@@ -1,6 +1,6 @@
 /// \file
 /// Private to the exact response: contact that lasts with surfaces of different frames, such as the floor and a blade
-/// that pushes along it.
+/// that pushes along it, and with meshes that deform.
 #pragma once
 
 #include <array>
@@ -41,6 +41,11 @@ private:
 
     void gather();
     void gather_in(BodyId body);
+    void gather_deforming();
+    [[nodiscard]] const DeformingColliders& deforming() const { return step_.rules().bodies->deforming(); }
+    [[nodiscard]] bool deforms(const Touched& touched) const {
+        return step_.rules().bodies->is_deforming(touched.body);
+    }
     [[nodiscard]] bool land();
     [[nodiscard]] Hold settle(double duration);
     [[nodiscard]] double departure_from(const Touched& touched) const;

@@ -65,6 +65,18 @@ std::uint64_t Simulation::Impl::collider_hash() const {
     for (std::size_t k = 0; bodies && k < colliders->all().size(); ++k) {
         hash.add(static_cast<std::uint64_t>(bodies->body_of_collider(k)));
     }
+    for (std::size_t i = 0; bodies && i < world.colliders().size(); ++i) {
+        if (!bodies->deforming().is_mesh(i)) continue;
+        const MeshMotion& motion = bodies->deforming().motion_of(i);
+        hash.add(static_cast<double>(motion.ends() == MeshEnds::repeat));
+        for (const Triangle& triangle : bodies->deforming().triangles_of(i)) {
+            for (const std::uint32_t corner : triangle) hash.add(static_cast<std::uint64_t>(corner));
+        }
+        for (std::size_t key = 0; key < motion.key_count(); ++key) {
+            hash.add(motion.times()[key]);
+            for (const Vec3& vertex : motion.positions(key)) hash.add(vertex);
+        }
+    }
     hash.add(static_cast<std::uint64_t>(world.surface_count()));
     return hash.value();
 }

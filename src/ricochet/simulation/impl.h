@@ -58,6 +58,7 @@ struct Simulation::Impl {
     void add(Particle&& particle);
     [[nodiscard]] BirthTest birth_test() const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
+    /// Of its frame; of a mesh that deforms, which is in none, that of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
     void prepare_radius(double radius);
     void hold_what_touches(std::size_t i);

@@ -36,6 +36,12 @@ double triangles_of(const ColliderShape& shape) {
     return mesh != nullptr && mesh->mesh ? static_cast<double>(mesh->mesh->triangles.size()) : 0.0;
 }
 
+/// Bytes of the positions of a mesh that deforms, of one copy of them.
+double positions_of(const ColliderShape& shape) {
+    const auto* const mesh = std::get_if<MeshShape>(&shape);
+    return mesh != nullptr && mesh->motion ? static_cast<double>(mesh->motion->memory_bytes()) : 0.0;
+}
+
 /// What of the estimate a setup itself holds already, or was held while it was made.
 double bytes_taken(const SimulationSetup& setup) {
     constexpr double kStillToCome = kParticle - static_cast<double>(sizeof(Particle));
@@ -43,7 +49,7 @@ double bytes_taken(const SimulationSetup& setup) {
     double bytes = particles * ((setup.springs.empty() ? kParticle : kJoinedParticle) - kStillToCome);
     bytes += static_cast<double>(setup.springs.size()) * (kSpring - static_cast<double>(sizeof(Spring)));
     for (const ColliderDescription& collider : setup.colliders) {
-        bytes += triangles_of(collider.shape) * (kTriangle - kStandingTriangle);
+        bytes += triangles_of(collider.shape) * (kTriangle - kStandingTriangle) + positions_of(collider.shape);
     }
     return kProgram + bytes;
 }
@@ -136,7 +142,11 @@ private:
     void add_colliders() {
         const double each = kTriangle + (setup_.options.verify ? kVerifiedTriangle : 0.0);
         for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
-            add({MemoryNeed::Part::collider, k}, triangles_of(setup_.colliders[k].shape), each);
+            const ColliderShape& shape = setup_.colliders[k].shape;
+            add({MemoryNeed::Part::collider, k}, triangles_of(shape), each);
+            // As they are given and as they are placed, and by options.verify once more with boxes of as much.
+            const double copies = setup_.options.verify ? 4.0 : 2.0;
+            if (positions_of(shape) > 0.0) estimate_.needs.back().bytes += copies * positions_of(shape);
         }
     }
 

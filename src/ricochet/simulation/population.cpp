@@ -87,7 +87,8 @@ std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) co
 }
 
 const CollisionWorld& Simulation::Impl::world_of(std::size_t collider) const {
-    return bodies ? bodies->world(bodies->body_of_collider(collider)) : world;
+    const bool is_framed = bodies && !bodies->deforming().is_mesh(collider);
+    return is_framed ? bodies->world(bodies->body_of_collider(collider)) : world;
 }
 
 void Simulation::Impl::prepare_radius(double radius) {

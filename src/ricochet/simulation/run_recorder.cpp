@@ -137,10 +137,24 @@ namespace {
 /// Particles per unit of parallel work.
 constexpr std::size_t kBlock = 64;
 
+VerifiedDeformation verified_deformation(const std::vector<Triangle>& triangles, const MeshMotion& motion) {
+    VerifiedDeformation surface{triangles, {motion.times().begin(), motion.times().end()}, {}, false};
+    surface.repeats = motion.ends() == MeshEnds::repeat;
+    for (std::size_t key = 0; key < motion.key_count(); ++key) {
+        surface.vertices.emplace_back(motion.positions(key).begin(), motion.positions(key).end());
+    }
+    return surface;
+}
+
 /// The colliders as they collide, each in the frame that it stands in; planes and shapes own one surface each.
 std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders* bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (bodies != nullptr && bodies->deforming().is_mesh(i)) {
+            const DeformingColliders& deforming = bodies->deforming();
+            surfaces[i] = verified_deformation(deforming.triangles_of(i), deforming.motion_of(i));
+            continue;
+        }
         const CollisionWorld& own = bodies == nullptr ? world : bodies->world(bodies->body_of_collider(i));
         const ColliderShape& shape = own.colliders()[i].shape;
         if (const auto* ball = std::get_if<BallShape>(&shape)) {

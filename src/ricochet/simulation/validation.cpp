@@ -140,6 +140,10 @@ void validate(const TriangleMesh* mesh, const Subject& subject) {
 void validate(const MeshShape& shape, const Subject& subject, std::size_t materials) {
     validate(shape.mesh.get(), subject);
     validate(shape.placement, subject);
+    if (shape.motion && shape.motion->vertex_count() != shape.mesh->vertices.size()) {
+        subject.refuse("motion", fmt::format("{} vertices", shape.motion->vertex_count()),
+                       fmt::format("the {} of the mesh", shape.mesh->vertices.size()));
+    }
     const auto& list = shape.triangle_materials;
     if (!list.empty() && list.size() != shape.mesh->triangles.size()) {
         subject.refuse("triangle_materials", list.size(),
@@ -290,12 +294,27 @@ void validate_names(const std::vector<Named>& all, std::string_view kind) {
     }
 }
 
+void validate_deforming(const ColliderDescription& collider, const SimulationOptions& options, const Subject& subject) {
+    if (!collider.frame.empty()) {
+        subject.refuse("frame", collider.frame, "none: a mesh that deforms stands in the world");
+    }
+    if (options.response != ResponseKind::exact) {
+        subject.refuse("motion", "positions in time",
+                       fmt::format("none: the {} response knows no meshes that deform, only exact does",
+                                   name_of(options.response)));
+    }
+    if (options.flow) {
+        subject.refuse("motion", "positions in time", "none: particles that a flow carries know no meshes that deform");
+    }
+}
+
 /// Only the exact response knows where a collider is within a step.
 void validate_moving_colliders(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
         const ColliderDescription& collider = setup.colliders[k];
-        if (collider.frame.empty()) continue;
         const Subject subject("collider", k, collider.name);
+        if (is_deforming(collider)) validate_deforming(collider, setup.options, subject);
+        if (collider.frame.empty()) continue;
         if (!setup.frames || !setup.frames->find(collider.frame)) {
             subject.refuse("frame", collider.frame, "the name of a frame of the setup");
         }

@@ -8,12 +8,14 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/verify/checked_deformation.h"
 #include "ricochet/verify/checked_frame.h"
 #include "ricochet/verify/energy.h"
 
 namespace ricochet {
 namespace {
 
+using verify::CheckedDeformation;
 using verify::CheckedFrame;
 
 bool same_bits(const Vec3& a, const Vec3& b) {
@@ -44,17 +46,22 @@ struct Verifier::Impl {
     void check_sides(const Judged& judged, VerifiedParticle& particle) const;
     void check_distance(const Judged& judged, VerifiedParticle& particle) const;
     static void check_energy(const Judged& judged);
-    [[nodiscard]] bool moves() const { return frames.size() > 1; }
+    [[nodiscard]] bool moves() const { return frames.size() > 1 || !deformations.empty(); }
     [[nodiscard]] std::size_t side_count() const;
     [[nodiscard]] std::vector<Side> sides_of(const Vec3& p, double time) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
 
     std::vector<CheckedFrame> frames;  ///< the first: of what is at rest
+    std::vector<CheckedDeformation> deformations;
 };
 
 Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces, const VerifiedMotion& motion) {
     frames.emplace_back(nullptr, std::nullopt);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (const auto* deformation = std::get_if<VerifiedDeformation>(&surfaces[i])) {
+            deformations.emplace_back(static_cast<std::uint32_t>(i), *deformation);
+            continue;
+        }
         const std::optional<std::size_t> frame = i < motion.frame_of.size() ? motion.frame_of[i] : std::nullopt;
         auto of_frame = std::find_if(frames.begin(), frames.end(),
                                      [&](const CheckedFrame& checked) { return checked.frame() == frame; });
@@ -67,6 +74,7 @@ Verifier::Impl::Impl(const std::vector<VerifiedSurface>& surfaces, const Verifie
 std::size_t Verifier::Impl::side_count() const {
     std::size_t count = 0;
     for (const CheckedFrame& frame : frames) count += frame.side_count();
+    for (const CheckedDeformation& deformation : deformations) count += deformation.is_closed() ? 1 : 0;
     return count;
 }
 
@@ -74,12 +82,17 @@ std::vector<Side> Verifier::Impl::sides_of(const Vec3& p, double time) const {
     std::vector<Side> sides;
     sides.reserve(side_count());
     for (const CheckedFrame& frame : frames) frame.append_sides(p, time, sides);
+    for (const CheckedDeformation& deformation : deformations) {
+        if (deformation.is_closed()) sides.push_back(deformation.side(p, time));
+    }
     return sides;
 }
 
 bool Verifier::Impl::is_on_surface(const Vec3& p, double time) const {
     return std::any_of(frames.begin(), frames.end(),
-                       [&](const CheckedFrame& frame) { return frame.is_on_surface(p, time); });
+                       [&](const CheckedFrame& frame) { return frame.is_on_surface(p, time); }) ||
+           std::any_of(deformations.begin(), deformations.end(),
+                       [&](const CheckedDeformation& deformation) { return deformation.is_on_surface(p, time); });
 }
 
 /// Where colliders move, the times have to join too.
@@ -112,6 +125,10 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
         const bool stays = same_bits(segment.from, segment.to) && (!frame.frame() || segment.begin == segment.end);
         if (!stays) frame.find_crossings(segment, starts_on_surface, crossings);
     }
+    const bool passes = !same_bits(segment.from, segment.to) || segment.begin != segment.end;
+    for (const CheckedDeformation& deformation : deformations) {
+        if (passes) deformation.find_crossings(segment, crossings);
+    }
     std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) {
         return a.collider != b.collider ? a.collider < b.collider : a.triangle < b.triangle;
     });
@@ -127,13 +144,17 @@ void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particl
     std::vector<Side> sides = sides_of(step.to, step.stored_time);
     if (particle.sides.empty()) particle.sides.assign(sides.size(), Side::on_surface);
     std::size_t first = 0;
+    const auto compare = [&](std::size_t k, std::uint32_t collider) {
+        const Side before = particle.sides[k];
+        if (before == sides[k] || before == Side::on_surface) return;
+        judged.report(ViolationKind::wrong_side, step.to, step.time, collider);
+    };
     for (const CheckedFrame& frame : frames) {
-        frame.visit_sides([&](std::size_t k, std::uint32_t collider) {
-            const Side before = particle.sides[first + k];
-            if (before == sides[first + k] || before == Side::on_surface) return;
-            judged.report(ViolationKind::wrong_side, step.to, step.time, collider);
-        });
+        frame.visit_sides([&](std::size_t k, std::uint32_t collider) { compare(first + k, collider); });
         first += frame.side_count();
+    }
+    for (const CheckedDeformation& deformation : deformations) {
+        if (deformation.is_closed()) compare(first++, deformation.collider());
     }
     particle.sides = std::move(sides);
 }
@@ -159,6 +180,9 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     };
     for (const CheckedFrame& frame : frames) {
         frame.visit_overlapped(step.to, step.stored_time, step.radius, largest, way, consider);
+    }
+    for (const CheckedDeformation& deformation : deformations) {
+        deformation.visit_overlapped(step.to, step.stored_time, step.radius, largest, consider);
     }
     if (first && particle.has_been_free) {
         judged.report(ViolationKind::overlap, step.to, step.time, first->collider, first->triangle);
@@ -199,6 +223,9 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius, double tim
     const auto overlaps = [&](std::uint32_t, std::optional<std::uint32_t>) { particle.has_been_free = false; };
     for (const auto& frame : impl_->frames) {
         frame.visit_overlapped(position, time, radius, max_abs(position), 0.0, overlaps);
+    }
+    for (const auto& deformation : impl_->deformations) {
+        deformation.visit_overlapped(position, time, radius, max_abs(position), overlaps);
     }
     return particle;
 }

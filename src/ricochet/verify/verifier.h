@@ -61,8 +61,16 @@ struct VerifiedShape {
     bool is_cylinder = false;
 };
 
+/// A mesh that deforms: vertices at keys, and between them each on a straight line at constant speed.
+struct VerifiedDeformation {
+    std::vector<Triangle> triangles;
+    std::vector<double> times;                ///< s, of the keys, ascending
+    std::vector<std::vector<Vec3>> vertices;  ///< m, at each key
+    bool repeats = false;                     ///< the keys again and again; else they are held at both ends
+};
+
 /// A collider in world coordinates. Triangles of a mesh without area take no part, as in collisions.
-using VerifiedSurface = std::variant<TriangleMesh, VerifiedPlane, VerifiedShape>;
+using VerifiedSurface = std::variant<TriangleMesh, VerifiedPlane, VerifiedShape, VerifiedDeformation>;
 
 /// Which surfaces move, and how.
 struct VerifiedMotion {

@@ -25,7 +25,11 @@ Fields<MeshShape> mesh_fields() {
            "Materials of parts of an OBJ mesh: names that the file gives to its faces, each with one of the names in "
            "`materials`. A face goes by its `usemtl` name; where that is not listed by its `g` name (the whole line, "
            "then word by word), then by its `o` name. Faces without a listed name take the collider's material.",
-           Without{"the collider's material everywhere"}}}});
+           Without{"the collider's material everywhere"}},
+          {"deformation", ValueType::object,
+           "Its vertices move: `file` says the faces only. Only with the response \"exact\", and without `frame` and "
+           "`motion`.",
+           &deformation_spec(), Without{"it keeps its shape"}}}});
 }
 
 // A shape's own measures, then where it stands.
@@ -197,12 +201,32 @@ private:
         MeshShape mesh = view.read<MeshShape>();
         if (view.has("file")) mesh.file = context_.file_of(view).string();
         mesh.mesh = context_.load_mesh(view);
+        mesh.motion = deformation_of(context_, view);
         mesh.triangle_materials = triangle_materials(view, material);
         return mesh;
     }
 
+    // What a mesh that deforms does not go together with.
+    void require_exact(const ObjectView& view) {
+        for (const char* key : {"frame", "motion"}) {
+            if (view.has(key)) context_.error(view, key, "a mesh that deforms stands in the world, expected none");
+        }
+        if (setup_.options.response != ResponseKind::exact) {
+            context_.error(view, "deformation",
+                           fmt::format("the response \"{}\" knows no meshes that deform, expected none, or \"exact\"",
+                                       name_of(setup_.options.response)));
+        } else if (setup_.options.flow) {
+            context_.error(view, "deformation",
+                           "particles that a flow carries know no meshes that deform, expected none");
+        }
+    }
+
     // The name of the frame that it stands in; its own keys make one more.
     std::string frame_of(const ObjectView& view, const std::string& name) {
+        if (view.has("deformation")) {
+            require_exact(view);
+            return {};
+        }
         std::string parent;
         if (view.has("frame") && is_frame_named(context_, view, scene_frames_)) parent = view.text("frame");
         const bool moves = !parent.empty() || view.has("motion");

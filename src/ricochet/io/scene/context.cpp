@@ -32,8 +32,8 @@ void SceneContext::warn(const ObjectView& view, const std::string& what) const {
 }
 
 std::filesystem::path SceneContext::file_of(const ObjectView& view) const {
-    std::filesystem::path path = (folder_ / view.text("file")).lexically_normal();
-    files_.insert(path);
+    std::filesystem::path path = path_of_file(view.text("file"));
+    note(path);
     return path;
 }
 

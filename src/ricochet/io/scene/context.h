@@ -47,6 +47,12 @@ public:
 
     /// The path that the key "file" means; noted among files().
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
+    /// That which a name means.
+    [[nodiscard]] std::filesystem::path path_of_file(const std::string& name) const {
+        return (folder_ / name).lexically_normal();
+    }
+    /// Among files().
+    void note(const std::filesystem::path& path) const { files_.insert(path); }
     /// Notes memory that the scene itself holds, bytes.
     void add_memory(double bytes) const { memory_bytes_ += bytes; }
     /// All that was noted.
@@ -159,6 +165,11 @@ private:
     const SceneContext& context_;
     std::map<std::string, FlowPointer, std::less<>> flows_;
 };
+
+/// Where the vertices of a mesh that deforms are in time: a key of colliders of the type mesh.
+[[nodiscard]] const ObjectSpec& deformation_spec();
+/// What a collider's key "deformation" says; null pointer where there is none, or after reporting.
+[[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
 /// frames: those of the scene; the ones that colliders move in by their own keys are added.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);

@@ -158,6 +158,11 @@ const MeshShape* mesh_collider(const SceneContext& context, const SimulationSetu
     std::vector<std::string_view> names;
     for (const ColliderDescription& collider : setup.colliders) {
         const auto* mesh = std::get_if<MeshShape>(&collider.shape);
+        if (mesh != nullptr && collider.name == name && mesh->motion) {
+            context.error(view, "collider",
+                          fmt::format("'{}' is a mesh that deforms, expected one that keeps its shape", name));
+            return nullptr;
+        }
         if (mesh != nullptr && collider.name == name) return mesh;
         if (mesh != nullptr) names.push_back(collider.name);
     }

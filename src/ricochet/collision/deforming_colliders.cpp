@@ -1,0 +1,254 @@
+#include "ricochet/collision/deforming_colliders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/moving_separation.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kBlock = 1 << 14;
+
+/// Relative to the coordinates: more than the rounding of a vertex between two keys.
+constexpr double kBoxRounding = 0x1p-48;
+
+/// A key that is as near as this, in units in the last place of the time, has come.
+constexpr double kKeyUlps = 16.0;
+
+Box3 grown(Box3 box, double by) {
+    box.lower -= Vec3{by, by, by};
+    box.upper += Vec3{by, by, by};
+    return box;
+}
+
+Box3 box_of(const MovingTriangle& triangle) {
+    Box3 box;
+    for (const MovingPoint& corner : triangle.corners) {
+        box.include(corner.from);
+        box.include(corner.to);
+    }
+    return box;
+}
+
+/// Of a link, with all that a sphere on it may touch.
+Box3 box_of(const StoredPosition& from, const StoredPosition& to, double radius) {
+    Box3 box;
+    box.include(from.position);
+    box.include(to.position);
+    return grown(box, radius * (1.0 + kBoxRounding) + kBoxRounding * (max_abs(box.lower) + max_abs(box.upper)));
+}
+
+}  // namespace
+
+DeformingColliders::DeformingColliders(const std::shared_ptr<ColliderList>& colliders)
+    : colliders_(colliders), mesh_of_(colliders->all().size(), kNone) {
+    for (std::size_t number = 0; number < mesh_of_.size(); ++number) {
+        if (is_deforming(colliders->all()[number])) add(number);
+    }
+}
+
+void DeformingColliders::add(std::size_t number) {
+    const ColliderDescription& collider = colliders_->all()[number];
+    const auto& shape = std::get<MeshShape>(collider.shape);
+    const auto refuse = [&](const std::string& what) {
+        throw InputError("collider \"" + collider.name + "\": " + what);
+    };
+    if (shape.motion->vertex_count() != shape.mesh->vertices.size()) {
+        refuse("its motion has " + std::to_string(shape.motion->vertex_count()) + " vertices, expected the " +
+               std::to_string(shape.mesh->vertices.size()) + " of its mesh");
+    }
+    const AffineMap map = world_from_local(shape.placement);
+    if (!(map.determinant() != 0.0)) refuse("its placement is singular, expected a scale without zeros");
+    Mesh mesh;
+    mesh.collider = number;
+    mesh.first_surface = colliders_->first_surface_of(number);
+    mesh.triangles = shape.mesh->triangles;
+    if (map.determinant() < 0.0) {
+        for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    }
+    try {
+        mesh.motion = std::make_shared<const MeshMotion>(shape.motion->mapped(map));
+    } catch (const InputError& problem) {
+        refuse(problem.what());
+    }
+    colliders_->replace_motion(number, mesh.motion);
+    mesh_of_[number] = static_cast<std::uint32_t>(meshes_.size());
+    meshes_.push_back(std::move(mesh));
+}
+
+TriangleMesh DeformingColliders::mesh_at(std::size_t collider, double time) const {
+    const Mesh& of = mesh(collider);
+    const MeshMoment moment = of.motion->at(time);
+    TriangleMesh result;
+    result.triangles = of.triangles;
+    for (std::size_t v = 0; v < of.motion->vertex_count(); ++v) result.vertices.push_back(moment.position(v));
+    return result;
+}
+
+void DeformingColliders::begin_step(double begin, double end) {
+    begin_ = begin;
+    end_ = end;
+    for (Mesh& mesh : meshes_) sweep(mesh);
+}
+
+/// Between keys vertices move along lines, so that their places at both ends and at keys hold all.
+void DeformingColliders::sweep(Mesh& mesh) {
+    std::vector<MeshMoment> moments{mesh.motion->at(begin_)};
+    for (double key = mesh.motion->next_key(begin_); key < end_; key = mesh.motion->next_key(key)) {
+        moments.push_back(mesh.motion->at(key));
+    }
+    moments.push_back(mesh.motion->at(end_));
+    const std::size_t count = mesh.motion->vertex_count();
+    lower_.resize(count);
+    upper_.resize(count);
+    std::vector<double> largest((count + kBlock - 1) / kBlock, 0.0);
+    parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t first, std::size_t last) {
+        for (std::size_t v = first; v < last; ++v) {
+            lower_[v] = upper_[v] = moments[0].position(v);
+            for (std::size_t k = 1; k < moments.size(); ++k) {
+                const Vec3 p = moments[k].position(v);
+                lower_[v] = min(lower_[v], p);
+                upper_[v] = max(upper_[v], p);
+            }
+            largest[block] = std::max({largest[block], max_abs(lower_[v]), max_abs(upper_[v])});
+        }
+    });
+    const double most = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+    mesh.offset = contact_offset({most, 0.0, 0.0});
+    boxes_.resize(mesh.triangles.size());
+    parallel_for_blocks(boxes_.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t t = first; t < last; ++t) {
+            const auto [a, b, c] = mesh.triangles[t];
+            const Box3 box{min(lower_[a], min(lower_[b], lower_[c])), max(upper_[a], max(upper_[b], upper_[c]))};
+            boxes_[t] = grown(box, kBoxRounding * most);
+        }
+    });
+    mesh.tree.fit(boxes_);
+}
+
+void DeformingColliders::near(const Box3& box, std::vector<SurfaceId>& out) const {
+    const auto first = static_cast<std::ptrdiff_t>(out.size());
+    for (const Mesh& mesh : meshes_) {
+        mesh.tree.near(box, [&](std::uint32_t triangle) { out.push_back(mesh.first_surface + triangle); });
+    }
+    std::sort(out.begin() + first, out.end());
+}
+
+bool DeformingColliders::stay_out(const Box3& box) const {
+    return std::none_of(meshes_.begin(), meshes_.end(),
+                        [&](const Mesh& mesh) { return BoxTree::meet(mesh.tree.bounds(), box); });
+}
+
+double DeformingColliders::next_key(double time) const {
+    double first = std::numeric_limits<double>::infinity();
+    for (const Mesh& mesh : meshes_) first = std::min(first, mesh.motion->next_key(time));
+    return first;
+}
+
+std::array<Vec3, 3> DeformingColliders::corners_at(SurfaceId surface, double time) const {
+    const Mesh& mesh = mesh_with(surface);
+    const Triangle& triangle = mesh.triangles[surface - mesh.first_surface];
+    const MeshMoment moment = mesh.motion->at(time);
+    return {moment.position(triangle[0]), moment.position(triangle[1]), moment.position(triangle[2])};
+}
+
+MovingTriangle DeformingColliders::between(SurfaceId surface, double begin, double end) const {
+    const std::array<Vec3, 3> from = corners_at(surface, begin);
+    const std::array<Vec3, 3> to = corners_at(surface, end);
+    return {{{{from[0], to[0]}, {from[1], to[1]}, {from[2], to[2]}}}};
+}
+
+CollisionWorld::Nearest DeformingColliders::nearest(SurfaceId surface, const Vec3& p, double time) const {
+    const auto [a, b, c] = corners_at(surface, time);
+    if (!are_collinear(a, b, c)) return CollisionWorld::nearest(TrianglePlane(a, b, c), p);
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
+    const double distance = length(closest.offset);
+    return {distance > 0.0 ? closest.offset / distance : Vec3{0, 0, 1}, distance, false, true};
+}
+
+double DeformingColliders::signed_distance_from(SurfaceId surface, const Vec3& p, double time) const {
+    const auto [a, b, c] = corners_at(surface, time);
+    return are_collinear(a, b, c) ? nearest(surface, p, time).distance : signed_distance(p, a, b, c);
+}
+
+Vec3 DeformingColliders::unit_normal_of(SurfaceId surface, double time) const {
+    const auto [a, b, c] = corners_at(surface, time);
+    return are_collinear(a, b, c) ? Vec3{0, 0, 1} : unit_normal(a, b, c);
+}
+
+int DeformingColliders::side_of_surface(SurfaceId surface, const Vec3& p, double time) const {
+    const auto [a, b, c] = corners_at(surface, time);
+    return orient3d(a, b, c, p);
+}
+
+DeformingColliders::Motion DeformingColliders::motion_at(SurfaceId surface, const Vec3& p, double time) const {
+    const Mesh& mesh = mesh_with(surface);
+    const auto [i, j, k] = mesh.triangles[surface - mesh.first_surface];
+    const MeshMoment moment = mesh.motion->at(time + kKeyUlps * ulp(time));
+    const Vec3 a = moment.position(i);
+    const Vec3 e = moment.position(j) - a;
+    const Vec3 f = moment.position(k) - a;
+    const Vec3 weights = barycentric_coordinates(closest_point_on_triangle(p, a, a + e, a + f), a, a + e, a + f);
+    const Vec3 v = moment.velocity(i);
+    const Vec3 e_rate = moment.velocity(j) - v;
+    const Vec3 f_rate = moment.velocity(k) - v;
+    Motion motion{v + weights.y * e_rate + weights.z * f_rate, {}, std::max(length(e), length(f))};
+    const Vec3 across = cross(e, f);
+    const double area = length(across);
+    if (!(area > 0.0)) return motion;
+    const Vec3 normal = across / area;
+    const Vec3 rate = (cross(e_rate, f) + cross(e, f_rate)) / area;
+    const double about_normal = (dot(e_rate, f) - dot(f_rate, e)) / (2.0 * area);
+    motion.turning = cross(normal, rate) + about_normal * normal;
+    return motion;
+}
+
+bool DeformingColliders::is_free(SurfaceId surface, const StoredPosition& from, const StoredPosition& to,
+                                 double radius) const {
+    const MovingTriangle triangle = between(surface, from.time, to.time);
+    const double key = mesh_with(surface).motion->next_key(from.time);
+    if (!(key < to.time)) {
+        if (!BoxTree::meet(box_of(triangle), box_of(from, to, radius))) return true;
+        return stay_apart({from.position, to.position}, radius, triangle);
+    }
+    Box3 box = box_of(triangle);
+    for (double at = key; at < to.time; at = mesh_with(surface).motion->next_key(at)) {
+        for (const Vec3& corner : corners_at(surface, at)) box.include(corner);
+    }
+    return !BoxTree::meet(box, box_of(from, to, radius));
+}
+
+bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
+    const Box3 box = box_of(from, to, radius);
+    std::vector<SurfaceId> all;
+    if (begin_ <= from.time && to.time <= end_) {
+        near(box, all);
+    } else {  // it goes on from where its clock has stood still
+        for (const Mesh& mesh : meshes_) {
+            for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all.push_back(mesh.first_surface + t);
+        }
+    }
+    const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
+    return std::all_of(all.begin(), all.end(), [&](SurfaceId surface) {
+        if (radius == 0.0) return is_free(surface, from, to, 0.0);
+        const double distance = nearest(surface, from.position, from.time).distance;
+        return is_free(surface, from, to, std::max(0.0, std::min(radius, distance) - tolerance));
+    });
+}
+
+std::size_t DeformingColliders::memory_bytes() const {
+    std::size_t bytes = (lower_.capacity() + upper_.capacity()) * sizeof(Vec3) + boxes_.capacity() * sizeof(Box3);
+    for (const Mesh& mesh : meshes_) {
+        bytes += mesh.triangles.capacity() * (sizeof(Triangle) + 2 * sizeof(Box3)) + mesh.motion->memory_bytes();
+    }
+    return bytes;
+}
+
+}  // namespace ricochet

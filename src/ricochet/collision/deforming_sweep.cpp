@@ -1,0 +1,141 @@
+#include "ricochet/collision/deforming_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/moving_separation.h"
+
+namespace ricochet {
+namespace {
+
+/// Below this part of the relative speed, a point moves along the triangle and not towards it.
+constexpr double kGraze = 1e-12;
+
+/// Of a distance that a sphere has already, what counts as nearer still.
+constexpr double kNearerStill = 1.0 - 0x1p-40;
+
+std::array<Vec3, 3> corners_of(const MovingTriangle& triangle, double part) {
+    const auto& [a, b, c] = triangle.corners;
+    return {a.at(part), b.at(part), c.at(part)};
+}
+
+double distance_at_start(const Path& path, const MovingTriangle& triangle) {
+    const auto [a, b, c] = corners_of(triangle, 0.0);
+    return std::sqrt(closest_point_on_triangle(path.c[0], a, b, c).distance_squared);
+}
+
+}  // namespace
+
+DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times,
+                               double radius, std::span<const SurfaceId> held, double beside)
+    : deforming_(deforming),
+      path_(path),
+      times_(times),
+      radius_(radius),
+      tolerance_(0.0),
+      held_(held) {
+    for (const Vec3& point : path.control_points()) box_.include(point);
+    box_.include(path.end);
+    const double largest = std::max(max_abs(box_.lower), max_abs(box_.upper));
+    if (radius > 0.0) tolerance_ = sphere_tolerance(radius, largest);
+    const double margin = radius + 2.0 * beside + kCandidateSlack * (largest + radius);
+    box_.lower -= Vec3{margin, margin, margin};
+    box_.upper += Vec3{margin, margin, margin};
+}
+
+bool DeformingSweep::is_held(SurfaceId surface) const {
+    return std::find(held_.begin(), held_.end(), surface) != held_.end();
+}
+
+bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
+    Box3 box;
+    for (const MovingPoint& corner : triangle.corners) {
+        box.include(corner.from);
+        box.include(corner.to);
+    }
+    return BoxTree::meet(box, box_);
+}
+
+/// What is overlapped from the start, or held, blocks only what intersects it.
+double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
+    if (radius_ == 0.0 || is_held(surface)) return 0.0;
+    const double least = radius_ - tolerance_;
+    return distance_at_start(path_, triangle) < least ? 0.0 : std::max(least, 0.0);
+}
+
+/// A contact at a time, where the particle comes nearer to the triangle there.
+std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
+                                                          double time) const {
+    const double part = path_.duration > 0.0 ? time / path_.duration : 0.0;
+    const auto [a, b, c] = corners_of(triangle, part);
+    const Vec3 p = path_.position(time);
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
+    const Vec3 weights = barycentric_coordinates(closest, a, b, c);
+    Vec3 relative = path_.velocity(time);
+    for (int k = 0; k < 3; ++k) {
+        const MovingPoint& corner = triangle.corners[static_cast<std::size_t>(k)];
+        relative -= (weights[k] / path_.duration) * (corner.to - corner.from);
+    }
+    const bool is_degenerate = are_collinear(a, b, c);
+    if (radius_ > 0.0) {
+        const CollisionWorld::Nearest nearest =
+            is_degenerate
+                ? CollisionWorld::Nearest{normalized(closest.offset), std::sqrt(closest.distance_squared), false, true}
+                : CollisionWorld::nearest(TrianglePlane(a, b, c), p);
+        if (!(dot(nearest.normal, relative) < 0.0)) return std::nullopt;
+        return Hit{time, {surface, nearest.normal, nearest.flat}};
+    }
+    if (is_degenerate) return std::nullopt;
+    const Vec3 normal = unit_normal(a, b, c);
+    const double rate = dot(normal, relative);
+    if (!(std::fabs(rate) > kGraze * length(relative))) return std::nullopt;
+    return Hit{time, {surface, rate < 0.0 ? normal : -normal, true}};
+}
+
+std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const MovingTriangle& triangle) const {
+    if (!(path_.duration > 0.0)) return std::nullopt;
+    double radius = radius_;
+    if (radius > 0.0) {
+        const double distance = distance_at_start(path_, triangle);
+        if (distance <= radius) {
+            if (const auto hit = hit_at(surface, triangle, 0.0)) return hit;
+            radius = kNearerStill * distance;
+        }
+    }
+    const std::optional<double> part = first_meeting(path_, radius, triangle);
+    return part ? hit_at(surface, triangle, *part * path_.duration) : std::nullopt;
+}
+
+/// Of several at one time all; an edge beside a face, and what has one normal, once.
+std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
+    if (hits.empty()) return std::nullopt;
+    const auto earlier = [](const Hit& a, const Hit& b) {
+        if (a.time != b.time) return a.time < b.time;
+        return a.surface.surface < b.surface.surface;
+    };
+    std::sort(hits.begin(), hits.end(), earlier);
+    Contact contact;
+    contact.time = hits.front().time;
+    // Faces before edges, so that a seam is not felt beside the face that it belongs to.
+    for (const bool flat : {true, false}) {
+        for (const Hit& hit : hits) {
+            if (hit.time > contact.time + kSimultaneousUlps * ulp(contact.time)) break;
+            const auto is_same = [&](const ContactSurface& known) {
+                return dot(known.normal, hit.surface.normal) > 1.0 - kSameNormal;
+            };
+            const auto known = contact.all();
+            if (hit.surface.flat != flat || std::any_of(known.begin(), known.end(), is_same)) continue;
+            if (contact.count < Contact::kMostSurfaces) {
+                contact.surfaces[static_cast<std::size_t>(contact.count++)] = hit.surface;
+            }
+        }
+    }
+    std::sort(contact.surfaces.begin(), contact.surfaces.begin() + contact.count,
+              [](const ContactSurface& a, const ContactSurface& b) { return a.surface < b.surface; });
+    return contact;
+}
+
+}  // namespace ricochet

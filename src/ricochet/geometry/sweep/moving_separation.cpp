@@ -1,0 +1,390 @@
+#include "ricochet/geometry/sweep/moving_separation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/exact_arithmetic.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
+
+namespace ricochet {
+namespace {
+
+/// Pieces of one pair that are looked at before its separation counts as not proved. Each contact takes some 2 for
+/// every halving of the gap that a single polynomial does not see.
+constexpr int kMostSeparationPieces = 512;
+
+/// Halvings of the time: to rounding, of a certificate and of a search.
+constexpr int kDeepestProof = 40;
+constexpr int kDeepestSearch = 50;
+
+/// Halvings after which a change of sign is taken for the first one.
+constexpr int kShallowRoot = 3;
+
+/// Relative errors of a coefficient, with room to spare: some hundred roundings, each of 2^-53 and 7 x 2^-106.
+template <class Real>
+constexpr double kError = 0x1p-44;
+template <>
+constexpr double kError<DoubleDouble> = 0x1p-92;
+
+/// Below this, products may have been rounded to zero, and nothing is certain.
+constexpr double kSmallestSize = 0x1p-900;
+
+double high(double x) { return x; }
+double high(const DoubleDouble& x) { return x.hi; }
+
+/// A polynomial in Bernstein's form: its coefficients times the binomials, so that products are convolutions. size:
+/// the same of the magnitudes of all that was added.
+template <class Real, std::size_t Degree>
+struct Polynomial {
+    std::array<Real, Degree + 1> c{};
+    std::array<double, Degree + 1> size{};
+
+    /// All coefficients certainly have this sign, +1 or -1.
+    [[nodiscard]] bool has_sign(int sign) const {
+        for (std::size_t k = 0; k <= Degree; ++k) {
+            const double value = static_cast<double>(sign) * high(c[k]);
+            if (!(size[k] > kSmallestSize) || !(value > kError<Real> * size[k]) || !std::isfinite(value)) return false;
+        }
+        return true;
+    }
+};
+
+template <class Real, std::size_t M, std::size_t N>
+Polynomial<Real, M + N> operator*(const Polynomial<Real, M>& a, const Polynomial<Real, N>& b) {
+    Polynomial<Real, M + N> product;
+    for (std::size_t i = 0; i <= M; ++i) {
+        for (std::size_t j = 0; j <= N; ++j) {
+            product.c[i + j] = product.c[i + j] + a.c[i] * b.c[j];
+            product.size[i + j] += a.size[i] * b.size[j];
+        }
+    }
+    return product;
+}
+
+/// a + factor b.
+template <class Real, std::size_t N>
+Polynomial<Real, N> sum(const Polynomial<Real, N>& a, const Polynomial<Real, N>& b, const Real& factor) {
+    Polynomial<Real, N> result;
+    for (std::size_t k = 0; k <= N; ++k) {
+        result.c[k] = a.c[k] + factor * b.c[k];
+        result.size[k] = a.size[k] + std::fabs(high(factor)) * b.size[k];
+    }
+    return result;
+}
+
+/// The same polynomial with a higher degree.
+template <std::size_t To, class Real, std::size_t N>
+Polynomial<Real, To> raised(const Polynomial<Real, N>& p) {
+    static_assert(To >= N);
+    if constexpr (To == N) {
+        return p;
+    } else {
+        Polynomial<Real, N + 1> next;
+        for (std::size_t k = 0; k <= N; ++k) {
+            next.c[k] = next.c[k] + p.c[k];
+            next.c[k + 1] = p.c[k];
+            next.size[k] += p.size[k];
+            next.size[k + 1] = p.size[k];
+        }
+        return raised<To>(next);
+    }
+}
+
+template <class Real, std::size_t N>
+using Vector = std::array<Polynomial<Real, N>, 3>;
+
+template <class Real, std::size_t M, std::size_t N>
+Polynomial<Real, M + N> dot(const Vector<Real, M>& a, const Vector<Real, N>& b) {
+    return sum(sum(a[0] * b[0], a[1] * b[1], Real(1.0)), a[2] * b[2], Real(1.0));
+}
+
+template <class Real, std::size_t M, std::size_t N>
+Vector<Real, M + N> cross(const Vector<Real, M>& a, const Vector<Real, N>& b) {
+    const auto minor = [&](std::size_t i, std::size_t j) { return sum(a[i] * b[j], a[j] * b[i], Real(-1.0)); };
+    return {minor(1, 2), minor(2, 0), minor(0, 1)};
+}
+
+/// b of no higher degree.
+template <class Real, std::size_t M, std::size_t N>
+Vector<Real, M> difference(const Vector<Real, M>& a, const Vector<Real, N>& b) {
+    return {sum(a[0], raised<M>(b[0]), Real(-1.0)), sum(a[1], raised<M>(b[1]), Real(-1.0)),
+            sum(a[2], raised<M>(b[2]), Real(-1.0))};
+}
+
+template <class Real, std::size_t N>
+Vector<Real, N> negative(const Vector<Real, N>& a) {
+    return difference(Vector<Real, N>{}, a);
+}
+
+DoubleDouble exact_difference(double a, double b, DoubleDouble /*kind*/) { return two_diff(a, b); }
+double exact_difference(double a, double b, double /*kind*/) { return a - b; }
+
+/// The offset of two points that both move along lines, over a piece [s, t] of the time.
+template <class Real>
+Vector<Real, 1> offset_on(const MovingPoint& from, const MovingPoint& to, double s, double t) {
+    Vector<Real, 1> offset;
+    const std::array<double, 2> ends{s, t};
+    for (int axis = 0; axis < 3; ++axis) {
+        const Real begin = exact_difference(to.from[axis], from.from[axis], Real());
+        const Real end = exact_difference(to.to[axis], from.to[axis], Real());
+        Polynomial<Real, 1>& p = offset[static_cast<std::size_t>(axis)];
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double rest = 1.0 - ends[k];  // exact: a multiple of 2^-52
+            p.c[k] = rest * begin + ends[k] * end;
+            p.size[k] = rest * std::fabs(high(begin)) + ends[k] * std::fabs(high(end));
+        }
+    }
+    return offset;
+}
+
+/// What is asked of one piece of the time: w leads from the corner a to the point, whose path has this degree, u and v
+/// to the corners b and c.
+template <class Real, std::size_t Degree>
+class Piece {
+public:
+    Piece(const Vector<Real, Degree>& w, const Vector<Real, 1>& u, const Vector<Real, 1>& v, double radius)
+        : w_(w), u_(u), v_(v), radius_(radius) {}
+
+    /// Proved by the part of the triangle that is nearest in the middle.
+    [[nodiscard]] bool is_free_of(TriangleFeature feature) {
+        normal_ = cross(u_, v_);
+        switch (feature) {
+            case TriangleFeature::kFace: return is_over_face();
+            case TriangleFeature::kEdgeAB: return is_beyond_ab() || is_over_face();
+            case TriangleFeature::kEdgeBC: return is_beyond_bc() || is_over_face();
+            case TriangleFeature::kEdgeCA: return is_beyond_ca() || is_over_face();
+            case TriangleFeature::kVertexA:
+                return is_beyond_corner(w_, u_, v_) || is_beyond_ab() || is_beyond_ca() || is_over_face();
+            case TriangleFeature::kVertexB:
+                return is_beyond_corner(difference(w_, u_), difference(v_, u_), negative(u_)) || is_beyond_ab() ||
+                       is_beyond_bc() || is_over_face();
+            case TriangleFeature::kVertexC: break;
+        }
+        return is_beyond_corner(difference(w_, v_), negative(v_), difference(u_, v_)) || is_beyond_bc() ||
+               is_beyond_ca() || is_over_face();
+    }
+    /// Proved by a direction, of any length.
+    [[nodiscard]] bool is_free_along(const Vec3& n) const {
+        const double least = radius_ * length(n) * (1.0 + kError<double>);
+        const Vector<Real, 0> direction{constant(n.x), constant(n.y), constant(n.z)};
+        const auto is_beyond = [&](const Vector<Real, Degree>& offset) {
+            return sum(dot(offset, direction), raised<Degree>(constant(least)), Real(-1.0)).has_sign(1);
+        };
+        return is_beyond(w_) && is_beyond(difference(w_, u_)) && is_beyond(difference(w_, v_));
+    }
+
+private:
+    [[nodiscard]] static Polynomial<Real, 0> constant(double value) { return {{Real(value)}, {std::fabs(value)}}; }
+    /// squared > radius^2 of the square of a length.
+    template <std::size_t M, std::size_t N>
+    [[nodiscard]] bool is_further(const Polynomial<Real, M>& squared, const Polynomial<Real, N>& of) const {
+        const Real r(radius_);
+        return sum(squared, raised<M>(of), Real(-1.0) * (r * r)).has_sign(1);
+    }
+    [[nodiscard]] bool is_over_face() const {
+        const auto height = dot(w_, normal_);
+        if (radius_ > 0.0) return is_further(height * height, dot(normal_, normal_));
+        return height.has_sign(1) || height.has_sign(-1);
+    }
+    [[nodiscard]] bool is_beyond_edge(const Vector<Real, Degree>& w, const Vector<Real, 1>& edge) const {
+        if (!dot(w, cross(edge, normal_)).has_sign(1)) return false;
+        if (radius_ == 0.0) return true;
+        const auto across = cross(w, edge);
+        return is_further(dot(across, across), dot(edge, edge));
+    }
+    [[nodiscard]] bool is_beyond_ab() const { return is_beyond_edge(w_, u_); }
+    [[nodiscard]] bool is_beyond_bc() const { return is_beyond_edge(difference(w_, u_), difference(v_, u_)); }
+    [[nodiscard]] bool is_beyond_ca() const { return is_beyond_edge(difference(w_, v_), negative(v_)); }
+    [[nodiscard]] bool is_beyond_corner(const Vector<Real, Degree>& w, const Vector<Real, 1>& e,
+                                        const Vector<Real, 1>& f) const {
+        if (!dot(w, e).has_sign(-1) || !dot(w, f).has_sign(-1)) return false;
+        return radius_ == 0.0 || is_further(dot(w, w), constant(1.0));
+    }
+
+    const Vector<Real, Degree>& w_;
+    const Vector<Real, 1>& u_;
+    const Vector<Real, 1>& v_;
+    double radius_;
+    Vector<Real, 2> normal_;
+};
+
+ClosestPointOnTriangle nearest_at(const Vec3& p, const MovingTriangle& triangle, double s) {
+    const auto& [a, b, c] = triangle.corners;
+    return closest_point_on_triangle(p, a.at(s), b.at(s), c.at(s));
+}
+
+/// The proof for a point that moves along a line.
+class Proof {
+public:
+    Proof(const MovingPoint& point, double radius, const MovingTriangle& triangle)
+        : point_(point), radius_(radius), triangle_(triangle) {}
+
+    [[nodiscard]] bool holds(double s, double t, int depth) {
+        if (is_free(s, t)) return true;
+        if (depth == 0 || ++pieces_ > kMostSeparationPieces || meet_in(s, t)) return false;
+        const double middle = s + 0.5 * (t - s);
+        return holds(s, middle, depth - 1) && holds(middle, t, depth - 1);
+    }
+
+private:
+    /// To rounding: the sphere overlaps the triangle at an end or in the middle; the point is over its face at both ends,
+    /// on different sides. Searching on would not help.
+    [[nodiscard]] bool meet_in(double s, double t) const {
+        const auto& [a, b, c] = triangle_.corners;
+        if (radius_ > 0.0) {
+            const auto overlaps = [&](double at) {
+                const double squared = nearest_at(point_.at(at), triangle_, at).distance_squared;
+                return squared < radius_ * radius_ * (1.0 - kError<double>);
+            };
+            return overlaps(s) || overlaps(t) || overlaps(s + 0.5 * (t - s));
+        }
+        const auto is_over_face = [&](double at) {
+            return nearest_at(point_.at(at), triangle_, at).feature == TriangleFeature::kFace;
+        };
+        const auto side = [&](double at) { return orient3d(a.at(at), b.at(at), c.at(at), point_.at(at)); };
+        return is_over_face(s) && is_over_face(t) && side(s) * side(t) <= 0;
+    }
+    [[nodiscard]] bool is_free(double s, double t) const {
+        const double middle = s + 0.5 * (t - s);
+        const ClosestPointOnTriangle nearest = nearest_at(point_.at(middle), triangle_, middle);
+        return is_free_in<double>(s, t, nearest) || is_free_in<DoubleDouble>(s, t, nearest) ||
+               is_apart(point_, radius_, triangle_, s, t);
+    }
+    template <class Real>
+    [[nodiscard]] bool is_free_in(double s, double t, const ClosestPointOnTriangle& nearest) const {
+        const auto& [a, b, c] = triangle_.corners;
+        const Vector<Real, 1> w = offset_on<Real>(a, point_, s, t);
+        const Vector<Real, 1> u = offset_on<Real>(a, b, s, t);
+        const Vector<Real, 1> v = offset_on<Real>(a, c, s, t);
+        Piece<Real, 1> piece(w, u, v, radius_);
+        if constexpr (std::is_same_v<Real, double>) {
+            if (piece.is_free_along(nearest.offset)) return true;
+        }
+        return piece.is_free_of(nearest.feature);
+    }
+
+    const MovingPoint& point_;
+    double radius_;
+    const MovingTriangle& triangle_;
+    int pieces_ = 0;
+};
+
+/// The search along a curved path.
+class Search {
+public:
+    Search(const Path& path, double radius, const MovingTriangle& triangle)
+        : path_(path), radius_(radius), triangle_(triangle), control_(path.control_points()) {}
+
+    [[nodiscard]] std::optional<double> first(double s, double t, int depth) {
+        if (is_free(s, t)) return std::nullopt;
+        if (depth >= kShallowRoot) {
+            if (const auto root = root_in(s, t)) return root;
+        }
+        if (depth == kDeepestSearch || ++pieces_ > kMostSeparationPieces) return s;
+        const double middle = s + 0.5 * (t - s);
+        const auto early = first(s, middle, depth + 1);
+        return early ? early : first(middle, t, depth + 1);
+    }
+
+private:
+    [[nodiscard]] Vec3 position(double s) const { return path_.position(s * path_.duration); }
+
+    /// The control points of the piece, by de Casteljau's algorithm.
+    template <std::size_t Degree>
+    [[nodiscard]] std::array<Vec3, Degree + 1> piece_of(double s, double t) const {
+        std::array<Vec3, Degree + 1> piece;
+        for (std::size_t k = 0; k <= Degree; ++k) {
+            std::array<Vec3, 4> p = control_.point;
+            for (std::size_t level = 0; level < Degree; ++level) {
+                const double at = level < k ? t : s;
+                for (std::size_t i = 0; i < Degree - level; ++i) p[i] = p[i] + at * (p[i + 1] - p[i]);
+            }
+            piece[k] = p[0];
+        }
+        return piece;
+    }
+    template <std::size_t Degree>
+    [[nodiscard]] Vector<double, Degree> offset_from(const MovingPoint& corner, double s, double t) const {
+        constexpr std::array<std::array<double, 4>, 4> kBinomials{
+            {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}}};
+        const std::array<Vec3, Degree + 1> piece = piece_of<Degree>(s, t);
+        Vector<double, Degree> offset;
+        for (std::size_t k = 0; k <= Degree; ++k) {
+            const double part = static_cast<double>(k) / static_cast<double>(Degree);
+            const Vec3 value = kBinomials[Degree][k] * (piece[k] - corner.at(s + (t - s) * part));
+            for (int axis = 0; axis < 3; ++axis) {
+                offset[static_cast<std::size_t>(axis)].c[k] = value[axis];
+                offset[static_cast<std::size_t>(axis)].size[k] = std::fabs(value[axis]);
+            }
+        }
+        return offset;
+    }
+    [[nodiscard]] bool is_free(double s, double t) const {
+        if (control_.count == 2) return is_free_of_degree<1>(s, t);
+        return control_.count == 3 ? is_free_of_degree<2>(s, t) : is_free_of_degree<3>(s, t);
+    }
+    template <std::size_t Degree>
+    [[nodiscard]] bool is_free_of_degree(double s, double t) const {
+        const double middle = s + 0.5 * (t - s);
+        const ClosestPointOnTriangle nearest = nearest_at(position(middle), triangle_, middle);
+        const auto& [a, b, c] = triangle_.corners;
+        const Vector<double, Degree> w = offset_from<Degree>(a, s, t);
+        const Vector<double, 1> u = offset_on<double>(a, b, s, t);
+        const Vector<double, 1> v = offset_on<double>(a, c, s, t);
+        Piece<double, Degree> piece(w, u, v, radius_);
+        return piece.is_free_along(nearest.offset) || piece.is_free_of(nearest.feature);
+    }
+    /// Of a sphere from the triangle; of a point above its plane.
+    [[nodiscard]] double gap(double s) const {
+        const auto& [a, b, c] = triangle_.corners;
+        if (radius_ == 0.0) return signed_distance(position(s), a.at(s), b.at(s), c.at(s));
+        return std::sqrt(nearest_at(position(s), triangle_, s).distance_squared) - radius_;
+    }
+    /// Where the gap changes its sign, by the Illinois variant of false position (M. Dowell, P. Jarratt, BIT 11, 1971).
+    [[nodiscard]] std::optional<double> root_in(double s, double t) const {
+        double at_s = gap(s);
+        double at_t = gap(t);
+        if (!(at_s * at_t < 0.0) || (radius_ > 0.0 && at_s < 0.0)) return std::nullopt;
+        constexpr int kMostSteps = 80;
+        int side = 0;
+        double root = t;
+        for (int step = 0; step < kMostSteps && t - s > 0x1p-53; ++step) {
+            root = std::clamp((s * at_t - t * at_s) / (at_t - at_s), s, t);
+            const double at = gap(root);
+            if (at == 0.0 || root == s || root == t) break;
+            const bool is_before = (at > 0.0) == (at_s > 0.0);
+            (is_before ? s : t) = root;
+            (is_before ? at_s : at_t) = at;
+            if (side == (is_before ? -1 : 1)) (is_before ? at_t : at_s) *= 0.5;
+            side = is_before ? -1 : 1;
+        }
+        if (radius_ > 0.0) return root;
+        const Vec3 p = position(root);
+        const double off = std::sqrt(nearest_at(p, triangle_, root).distance_squared);
+        const double largest = std::max(max_abs(path_.c[0]), max_abs(path_.end));
+        return off <= kCandidateSlack * largest ? std::optional(root) : std::nullopt;
+    }
+
+    const Path& path_;
+    double radius_;
+    const MovingTriangle& triangle_;
+    ControlPoints control_;
+    int pieces_ = 0;
+};
+
+}  // namespace
+
+bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle) {
+    return Proof(point, radius, triangle).holds(0.0, 1.0, kDeepestProof);
+}
+
+std::optional<double> first_meeting(const Path& path, double radius, const MovingTriangle& triangle) {
+    return Search(path, radius, triangle).first(0.0, 1.0, 0);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,30 @@
+/// \file
+/// Does a point or a sphere stay clear of a triangle whose corners move along straight lines at constant speed, and when
+/// does it meet it first? Also beside triangles that turn, at gaps of rounding's size, where no one direction separates
+/// them for long (moving_triangle.h).
+///
+/// Method: over a piece of the time, the height above the triangle's plane, the distance from the line of an edge with
+/// the side of that edge, and the distance from a corner with the sides of both its edges are polynomials. One whose
+/// coefficients in Bernstein's form are all of one sign has no root in the piece (G. Farin, "Curves and Surfaces for
+/// CAGD", 5th ed., chapter 5). Their signs are certain: doubles with an error bound, then double-double. Pieces that
+/// nothing proves free are halved.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/geometry/sweep/moving_triangle.h"
+#include "ricochet/geometry/sweep/path.h"
+
+namespace ricochet {
+
+/// True only when the closed ball of that radius (0: the point) touches no point of the triangle at any time; false
+/// where that could not be proved in kMostSeparationPieces pieces, which says nothing. Coordinates: finite, at most
+/// 1e75.
+[[nodiscard]] bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle);
+
+/// The first time, as a part of the path's duration, at which the point (radius 0) or the sphere on the path may touch
+/// the triangle, which moves meanwhile: to rounding where they do. Nothing where they stay apart. A sphere does not
+/// touch it at the beginning.
+[[nodiscard]] std::optional<double> first_meeting(const Path& path, double radius, const MovingTriangle& triangle);
+
+}  // namespace ricochet

@@ -1,0 +1,248 @@
+// Meshes that deform: where their vertices are in time, from files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/memory_limit.h"
+#include "ricochet/geometry/mesh/mesh_motion.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/point_cache.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FrameTimes {
+    double frame_rate = 25.0;
+    double start = 0.0;
+};
+struct DeformationKeys {
+    MeshEnds ends = MeshEnds::hold;
+};
+struct MeshKey {
+    double time = 0.0;
+};
+
+const ObjectSpec& mesh_key_spec() {
+    static const ObjectSpec spec = object<MeshKey>(
+        "mesh key", "The vertices of a mesh at a time.",
+        {{"time", &MeshKey::time, kCoordinate, "s", "When; later than the key before.", kRequired},
+         {"file", ValueType::file, "OBJ, PLY or OFF, with the faces of the collider's `file`.", kRequired}});
+    return spec;
+}
+
+/// Positions at times, one by one.
+struct Series {
+    std::vector<double> times;
+    std::vector<std::vector<Vec3>> positions;
+};
+
+/// A file of a numbered series.
+struct NumberedFile {
+    std::uint64_t number = 0;
+    fs::path path;
+};
+
+class DeformationBuilder {
+public:
+    DeformationBuilder(SceneContext& context, const ObjectView& view, const fs::path& base)
+        : context_(context), view_(view), base_(base) {}
+
+    /// Throws InputError with what is wrong as a whole.
+    [[nodiscard]] MeshMotion build() {
+        Series series = view_.type() == "series" ? of_series() : view_.type() == "keys" ? of_keys() : of_cache();
+        const MeshEnds ends = view_.read<DeformationKeys>().ends;
+        const std::size_t count = series.times.size();
+        if (ends == MeshEnds::repeat && count > 1 && series.positions.front() != series.positions.back()) {
+            series.times.push_back(series.times[count - 1] + (series.times[count - 1] - series.times[count - 2]));
+            series.positions.push_back(series.positions.front());
+        }
+        return {std::move(series.times), std::move(series.positions), ends};
+    }
+
+private:
+    [[nodiscard]] double time_of(double frame) const {
+        const auto times = view_.read<FrameTimes>();
+        return times.start + frame / times.frame_rate;
+    }
+
+    [[nodiscard]] Series of_series() {
+        const std::vector<NumberedFile> files = numbered_files();
+        Series series;
+        for (const NumberedFile& file : files) {
+            series.times.push_back(time_of(static_cast<double>(file.number - files.front().number)));
+            series.positions.push_back(vertices_of(file.path, files.size()));
+        }
+        return series;
+    }
+
+    [[nodiscard]] Series of_keys() {
+        Series series;
+        const std::vector<ObjectView> keys = view_.objects("keys");
+        for (const ObjectView& key : keys) {
+            series.times.push_back(key.read<MeshKey>().time);
+            series.positions.push_back(vertices_of(context_.file_of(key), keys.size()));
+        }
+        return series;
+    }
+
+    [[nodiscard]] Series of_cache() {
+        constexpr std::uint64_t kLargest = std::uint64_t{1} << 40;
+        const fs::path path = context_.file_of(view_);
+        PointCache cache = read_point_cache(path, read_bytes(path, kLargest));
+        const std::size_t expected = base().mesh.vertices.size();
+        if (cache.positions.front().size() != expected) {
+            throw InputError(fmt::format("{}: found {} points, expected the {} vertices of {}", path.string(),
+                                         cache.positions.front().size(), expected, base_.string()));
+        }
+        Series series{{}, std::move(cache.positions)};
+        for (const double frame : cache.frames) series.times.push_back(time_of(frame));
+        return series;
+    }
+
+    /// Those that a name with one * for a number means, by number.
+    [[nodiscard]] std::vector<NumberedFile> numbered_files() const {
+        const fs::path pattern = context_.path_of_file(view_.text("files"));
+        const std::string name = pattern.filename().string();
+        const std::size_t star = name.find('*');
+        if (star == std::string::npos || name.find('*', star + 1) != std::string::npos) {
+            throw InputError(fmt::format("found \"{}\", expected a file name with one * for the number", name));
+        }
+        const std::string before = name.substr(0, star);
+        const std::string after = name.substr(star + 1);
+        std::vector<NumberedFile> files;
+        std::error_code error;
+        const fs::path folder = pattern.parent_path();
+        for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
+             it.increment(error)) {
+            if (const auto number = number_in(it->path().filename().string(), before, after)) {
+                files.push_back({*number, folder / it->path().filename()});
+            }
+        }
+        std::sort(files.begin(), files.end(), [](const NumberedFile& a, const NumberedFile& b) {
+            return a.number != b.number ? a.number < b.number : a.path < b.path;
+        });
+        require_series(files, pattern);
+        for (const NumberedFile& file : files) context_.note(file.path);
+        return files;
+    }
+
+    static std::optional<std::uint64_t> number_in(const std::string& name, const std::string& before,
+                                                  const std::string& after) {
+        if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) {
+            return std::nullopt;
+        }
+        const char* const first = name.data() + before.size();
+        const char* const last = name.data() + name.size() - after.size();
+        std::uint64_t number = 0;
+        const auto [end, problem] = std::from_chars(first, last, number);
+        return problem == std::errc() && end == last ? std::optional(number) : std::nullopt;
+    }
+
+    static void require_series(const std::vector<NumberedFile>& files, const fs::path& pattern) {
+        if (files.size() < 2) {
+            throw InputError(fmt::format("{}: found {} numbered files, expected at least 2", pattern.string(),
+                                         files.size()));
+        }
+        for (std::size_t k = 1; k < files.size(); ++k) {
+            if (files[k].number == files[k - 1].number + 1) continue;
+            throw InputError(fmt::format("{}: number {} follows {}, expected consecutive numbers",
+                                         pattern.string(), files[k].number, files[k - 1].number));
+        }
+    }
+
+    /// The mesh that says the faces.
+    [[nodiscard]] const ImportedMesh& base() {
+        if (!mesh_) mesh_ = read_mesh(base_);
+        return *mesh_;
+    }
+
+    /// Of a mesh with the same faces; one of so many.
+    [[nodiscard]] std::vector<Vec3> vertices_of(const fs::path& path, std::size_t count) {
+        if (const auto problem = file_problem(path)) throw InputError(*problem);
+        if (!asked_for_memory_) {
+            const double bytes = static_cast<double>(base().mesh.vertices.size() * sizeof(Vec3) * count);
+            require_memory(2.0 * bytes, path.string());
+        }
+        asked_for_memory_ = true;
+        ImportedMesh mesh = read_mesh(path);
+        if (mesh.weld || base().weld) {
+            throw InputError(fmt::format("{}: found an STL file, which has no numbered vertices; expected OBJ, PLY or "
+                                         "OFF",
+                                         (mesh.weld ? path : base_).string()));
+        }
+        if (mesh.mesh.vertices.size() != base().mesh.vertices.size()) {
+            throw InputError(fmt::format("{}: found {} vertices, expected the {} of {}", path.string(),
+                                         mesh.mesh.vertices.size(), base().mesh.vertices.size(), base_.string()));
+        }
+        if (mesh.polygons.face_offsets != base().polygons.face_offsets ||
+            mesh.polygons.corners != base().polygons.corners) {
+            throw InputError(fmt::format("{}: its faces are not those of {}, expected the same corners in the same "
+                                         "order",
+                                         path.string(), base_.string()));
+        }
+        return std::move(mesh.mesh.vertices);
+    }
+
+    SceneContext& context_;
+    const ObjectView& view_;
+    fs::path base_;
+    std::optional<ImportedMesh> mesh_;
+    bool asked_for_memory_ = false;
+};
+
+}  // namespace
+
+const ObjectSpec& deformation_spec() {
+    using T = FrameTimes;
+    static const Fields<T> frame_times{
+        {"frame_rate", &T::frame_rate, positive_up_to(1e6), "1/s", "Frames a second."},
+        {"start", &T::start, kCoordinate, "s", "When the first file holds; of a cache, when frame 0 does."}};
+    const auto timed = [](std::string_view name, std::string_view description, Fields<T> fields) {
+        fields.insert(fields.end(), frame_times.begin(), frame_times.end());
+        return variant<T>(name, description, fields);
+    };
+    static const ObjectSpec spec = object<DeformationKeys>(
+        "deformation",
+        "Where the vertices of a mesh are in time: at keys, and between two of them each on a straight line at constant "
+        "speed. The collider's position, rotation and scale hold for all of them.",
+        {{"ends", &DeformationKeys::ends, "What holds before the first and after the last key.",
+          Choices{choice(MeshEnds::hold, "hold", "that key's vertices, at rest"),
+                  choice(MeshEnds::repeat, "repeat",
+                         "the keys again and again; the first one follows the last as the last its predecessor, unless "
+                         "both are the same")}}},
+        {timed("series", "A numbered series of meshes.",
+               {{"files", ValueType::text,
+                 "OBJ, PLY or OFF files with the faces of the collider's `file`, such as `\"flag_*.obj\"`: the name "
+                 "with a * in place of the number. The numbers are consecutive.",
+                 kRequired}}),
+         variant<Unbound>("keys", "Meshes at times of their own.",
+                          {{"keys", ValueType::list, "In the order of time, at least two.", &mesh_key_spec(), kRequired,
+                            kNotEmpty}}),
+         timed("cache", "A point cache beside the mesh, in the PC2 format.",
+               {{"file", ValueType::file,
+                 "The cache: as many points as the collider's `file` has vertices, in their order.", kRequired}})});
+    return spec;
+}
+
+std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider) {
+    const ObjectView view = collider.object("deformation");
+    if (view.is_absent() || view.type().empty() || !collider.has("file")) return nullptr;
+    try {
+        return std::make_shared<const MeshMotion>(DeformationBuilder(context, view, context.file_of(collider)).build());
+    } catch (const InputError& problem) {
+        if (!context.failed()) context.error(view, problem.what());
+        return nullptr;
+    }
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,37 @@
+/// \file
+/// Private to the exact response: a mesh that deforms, as contact that lasts sees it.
+#pragma once
+
+#include <vector>
+
+#include "ricochet/collision/contact.h"
+#include "ricochet/collision/deforming_colliders.h"
+#include "ricochet/dynamics/forces.h"
+
+namespace ricochet {
+
+/// What a particle touches of meshes that deform, at its present time: faces first, no normal twice. departure: m/s
+/// along the normal, relative to the surface, above which it has left.
+[[nodiscard]] std::vector<ContactSurface> touched_surfaces(const DeformingColliders& deforming,
+                                                           const ForceInput& particle, double departure);
+
+/// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
+/// (HoldingSurface::bend and slip_bend). Its points are not accelerated between keys. With the normal n, which changes
+/// by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' = s relative to
+/// that changes by n . a + 2 n' . s - r |n'|^2; that to a rim by n . a + s_t^2 / r for the slip s_t across it.
+struct SurfaceBend {
+    double bend = 0.0;
+    Vec3 slip_bend;
+};
+[[nodiscard]] SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& particle,
+                                  const ContactSurface& surface);
+
+/// How far a position is from a surface at a time, on the side that a normal points to.
+struct SurfaceHeight {
+    Vec3 normal;         ///< unit
+    double above = 0.0;  ///< m
+};
+[[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const ContactSurface& surface,
+                                         const Vec3& position, double time);
+
+}  // namespace ricochet

@@ -1,0 +1,204 @@
+#include "ricochet/verify/checked_deformation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "ricochet/core/error.h"
+#include "ricochet/verify/space_time.h"
+
+namespace ricochet::verify {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 8;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void require(bool condition, const char* what) {
+    if (!condition) throw InputError(what);
+}
+
+/// Every edge belongs to an even number of sides.
+bool encloses(const std::vector<Triangle>& triangles) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
+    for (const Triangle& t : triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            bool& odd = is_odd[std::minmax(t[k], t[(k + 1) % 3])];
+            odd = !odd;
+        }
+    }
+    return std::none_of(is_odd.begin(), is_odd.end(), [](const auto& edge) { return edge.second; });
+}
+
+bool meet(const Box3& a, const Box3& b) {
+    const Vec3 gap = max(a.lower - b.upper, b.lower - a.upper);
+    return !(gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0);
+}
+
+}  // namespace
+
+CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface)
+    : collider_(collider), surface_(std::move(surface)), is_closed_(encloses(surface_.triangles)) {
+    require(surface_.times.size() > 1 && surface_.times.size() == surface_.vertices.size(),
+            "verified mesh that deforms: expected two keys or more, and vertices at each");
+    for (const std::vector<Vec3>& key : surface_.vertices) {
+        require(key.size() == surface_.vertices.front().size() && std::all_of(key.begin(), key.end(), is_finite),
+                "verified mesh that deforms: expected the same number of finite vertices at each key");
+        for (const Vec3& vertex : key) largest_ = std::max(largest_, max_abs(vertex));
+    }
+    for (const Triangle& t : surface_.triangles) {
+        require(std::max({t[0], t[1], t[2]}) < surface_.vertices.front().size(),
+                "verified mesh that deforms: found a corner that is not there");
+    }
+    require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
+    order_.resize(surface_.triangles.size());
+    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+    build(0, static_cast<std::uint32_t>(order_.size()));
+    boxes_.resize(nodes_.size() * surface_.times.size());
+    for (std::size_t key = 0; key < surface_.times.size(); ++key) fit(key);
+}
+
+/// Halves by the places at the first key.
+void CheckedDeformation::build(std::uint32_t begin, std::uint32_t end) {
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({begin, end - begin});
+    if (end - begin <= kLeafSize) return;
+    const std::vector<Vec3>& vertices = surface_.vertices.front();
+    const auto middle_of = [&](std::uint32_t t) {
+        const auto [a, b, c] = surface_.triangles[t];
+        return vertices[a] + vertices[b] + vertices[c];
+    };
+    Box3 box;
+    for (std::uint32_t k = begin; k < end; ++k) box.include(middle_of(order_[k]));
+    const Vec3 size = box.size();
+    const int axis = size.x >= std::max(size.y, size.z) ? 0 : (size.y >= size.z ? 1 : 2);
+    const std::uint32_t half = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         const double at_a = middle_of(a)[axis];
+                         const double at_b = middle_of(b)[axis];
+                         return at_a != at_b ? at_a < at_b : a < b;
+                     });
+    build(begin, half);
+    nodes_[index] = {static_cast<std::uint32_t>(nodes_.size()), 0};
+    build(half, end);
+}
+
+void CheckedDeformation::fit(std::size_t key) {
+    const std::vector<Vec3>& vertices = surface_.vertices[key];
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+        Box3 box;
+        const Node& node = nodes_[i];
+        for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+            for (const std::uint32_t corner : surface_.triangles[order_[k]]) box.include(vertices[corner]);
+        }
+        if (node.count == 0) {
+            box.include(boxes_[key * nodes_.size() + i + 1]);
+            box.include(boxes_[key * nodes_.size() + node.first]);
+        }
+        boxes_[key * nodes_.size() + i] = box;
+    }
+}
+
+/// A round of keys that repeat begins with its first key, in place of the last one of the round before.
+CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
+    const std::vector<double>& times = surface_.times;
+    const std::size_t last = times.size() - 1;
+    double round = 0.0;
+    const double period = times.back() - times.front();
+    const auto begin_of = [&](std::size_t key, double in_round) { return times[key] + in_round * period; };
+    if (!surface_.repeats && time < times.front()) return {0, 0, 0.0, times.front()};
+    if (!surface_.repeats && time >= times.back()) return {last, last, 0.0, kInfinity};
+    if (surface_.repeats) {
+        round = std::floor((time - times.front()) / period);
+        while (begin_of(0, round) > time) round -= 1.0;
+        while (begin_of(0, round + 1.0) <= time) round += 1.0;
+    }
+    std::size_t key = 0;
+    while (key + 1 < last && begin_of(key + 1, round) <= time) ++key;
+    const bool wraps = surface_.repeats && key + 1 == last;
+    const double begin = begin_of(key, round);
+    const double end = wraps ? begin_of(0, round + 1.0) : begin_of(key + 1, round);
+    return {key, key + 1, (time - begin) / (end - begin), end};
+}
+
+Vec3 CheckedDeformation::position(std::uint32_t vertex, const Moment& moment) const {
+    const Vec3& a = surface_.vertices[moment.from][vertex];
+    const Vec3& b = surface_.vertices[moment.to][vertex];
+    if (moment.part == 0.0) return a;
+    const auto between = [&](double from, double to) {
+        const double step = moment.part * (to - from);
+        return from + step;
+    };
+    return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z)};
+}
+
+Corners CheckedDeformation::corners_at(std::uint32_t triangle, const Moment& moment) const {
+    const auto [a, b, c] = surface_.triangles[triangle];
+    return {position(a, moment), position(b, moment), position(c, moment)};
+}
+
+/// At its ends and at keys.
+std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Span& span) const {
+    std::vector<Moment> moments{moment_at(span.begin)};
+    while (moments.back().next_key < span.end) moments.push_back(moment_at(moments.back().next_key));
+    if (span.end > span.begin) moments.push_back(moment_at(span.end));
+    return moments;
+}
+
+/// Ends of boxes move no further out than the vertices in them.
+Box3 CheckedDeformation::box_at(std::size_t node, const Moment& moment) const {
+    const Box3& a = boxes_[moment.from * nodes_.size() + node];
+    const Box3& b = boxes_[moment.to * nodes_.size() + node];
+    const double pad = 0x1p-45 * largest_;
+    const Vec3 by{pad, pad, pad};
+    return {a.lower + moment.part * (b.lower - a.lower) - by, a.upper + moment.part * (b.upper - a.upper) + by};
+}
+
+std::shared_ptr<const ParityOracle> CheckedDeformation::oracle_at(double time) const {
+    const std::lock_guard lock(oracles_->mutex);
+    for (const auto& [of, oracle] : oracles_->latest) {
+        if (oracle && of == time) return oracle;
+    }
+    TriangleMesh mesh;
+    const Moment moment = moment_at(time);
+    mesh.triangles = surface_.triangles;
+    for (std::uint32_t v = 0; v < surface_.vertices.front().size(); ++v) mesh.vertices.push_back(position(v, moment));
+    auto& slot = oracles_->latest[oracles_->next++ % oracles_->latest.size()];
+    slot = {time, std::make_shared<const ParityOracle>(mesh)};
+    return slot.second;
+}
+
+Side CheckedDeformation::side(const Vec3& p, double time) const { return oracle_at(time)->side(p); }
+
+bool CheckedDeformation::is_on_surface(const Vec3& p, double time) const {
+    bool is_on = false;
+    visit_near({p, p}, {time, time}, [&](std::uint32_t triangle) {
+        const Corners corners = corners_at(triangle, moment_at(time));
+        is_on = is_on || (!on_one_line(corners.a, corners.b, corners.c) && intersects(p, p, corners));
+    });
+    return is_on;
+}
+
+void CheckedDeformation::find_crossings(const Segment& segment, std::vector<CheckedFrame::Crossing>& crossings) const {
+    Box3 box;
+    box.include(segment.from);
+    box.include(segment.to);
+    const Span span{segment.begin, segment.end};
+    const std::vector<Moment> moments = moments_of(span);
+    const bool leads_over_key = moments.size() > 2;
+    visit_near(box, span, [&](std::uint32_t triangle) {
+        Box3 swept;
+        for (const Moment& moment : moments) {
+            const Corners corners = corners_at(triangle, moment);
+            for (const Vec3& corner : {corners.a, corners.b, corners.c}) swept.include(corner);
+        }
+        if (!meet(box, swept)) return;
+        const MovingCorners moving{corners_at(triangle, moments.front()), corners_at(triangle, moments.back())};
+        if (!leads_over_key && are_apart({segment.from, segment.to}, moving)) return;
+        crossings.push_back({segment.to, collider_, triangle});
+    });
+}
+
+}  // namespace ricochet::verify

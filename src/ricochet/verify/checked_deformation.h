@@ -1,0 +1,113 @@
+/// \file
+/// Private to the verifier: a mesh that deforms, in the world.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/segment.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/verify/checked_frame.h"
+#include "ricochet/verify/parity.h"
+#include "ricochet/verify/triangle_tests.h"
+#include "ricochet/verify/verifier.h"
+
+namespace ricochet::verify {
+
+/// Where a vertex is between two keys is fl(a + fl(part fl(b - a))), as MeshMoment says, evaluated by code of its own.
+/// Safe from any number of threads.
+class CheckedDeformation {
+public:
+    /// Throws InputError for corners that are not there and what is no motion.
+    CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface);
+
+    [[nodiscard]] std::uint32_t collider() const { return collider_; }
+    /// True where it encloses something: it has sides then.
+    [[nodiscard]] bool is_closed() const { return is_closed_; }
+    [[nodiscard]] Side side(const Vec3& p, double time) const;
+    [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
+    /// Appends the crossings of a segment that was travelled. Each has to be free of all triangles in space and time,
+    /// and to end where the mesh has a key, unless it is far from it.
+    void find_crossings(const Segment& segment, std::vector<CheckedFrame::Crossing>& crossings) const;
+    /// Calls found(collider, triangle) for every triangle that a sphere about a point overlaps; see CheckedFrame.
+    template <class Found>
+    void visit_overlapped(const Vec3& p, double time, double radius, double largest, const Found& found) const {
+        const double least = radius - sphere_tolerance(radius, largest);
+        if (!(least > 0.0)) return;
+        const double padded = (1.0 + 0x1p-40) * least + 0x1p-40 * max_abs(p);
+        const Vec3 reach{padded, padded, padded};
+        visit_near({p - reach, p + reach}, {time, time}, [&](std::uint32_t triangle) {
+            if (is_nearer(p, corners_at(triangle, moment_at(time)), least)) {
+                found(collider_, std::optional<std::uint32_t>(triangle));
+            }
+        });
+    }
+
+private:
+    /// Between two keys.
+    struct Moment {
+        std::size_t from = 0;  ///< keys
+        std::size_t to = 0;
+        double part = 0.0;
+        double next_key = 0.0;  ///< s; infinite after the last
+    };
+    struct Span {
+        double begin = 0.0;
+        double end = 0.0;
+    };
+    struct Node {
+        std::uint32_t first = 0;  ///< a leaf's first triangle in order_; else the second child
+        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for others
+    };
+    struct Oracles {
+        std::mutex mutex;
+        std::array<std::pair<double, std::shared_ptr<const ParityOracle>>, 4> latest;
+        std::size_t next = 0;
+    };
+
+    [[nodiscard]] Moment moment_at(double time) const;
+    [[nodiscard]] Vec3 position(std::uint32_t vertex, const Moment& moment) const;
+    [[nodiscard]] Corners corners_at(std::uint32_t triangle, const Moment& moment) const;
+    [[nodiscard]] std::vector<Moment> moments_of(const Span& span) const;
+    [[nodiscard]] Box3 box_at(std::size_t node, const Moment& moment) const;
+    [[nodiscard]] std::shared_ptr<const ParityOracle> oracle_at(double time) const;
+    void build(std::uint32_t begin, std::uint32_t end);
+    void fit(std::size_t key);
+
+    /// Calls visit(triangle) for all that come into a box in a span of time, and perhaps for others.
+    template <class Visit>
+    void visit_near(const Box3& box, const Span& span, const Visit& visit) const {
+        const std::vector<Moment> moments = moments_of(span);
+        std::vector<std::uint32_t> open{0};
+        while (!open.empty()) {
+            const std::uint32_t index = open.back();
+            open.pop_back();
+            Box3 swept;
+            for (const Moment& moment : moments) swept.include(box_at(index, moment));
+            const Vec3 gap = max(box.lower - swept.upper, swept.lower - box.upper);
+            if (gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0) continue;
+            const Node& node = nodes_[index];
+            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) visit(order_[k]);
+            if (node.count > 0) continue;
+            open.push_back(node.first);
+            open.push_back(index + 1);
+        }
+    }
+
+    std::uint32_t collider_;
+    VerifiedDeformation surface_;
+    bool is_closed_ = false;
+    double largest_ = 0.0;  ///< m, coordinate
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;  ///< depth first
+    std::vector<Box3> boxes_;  ///< of each node at each key
+    std::unique_ptr<Oracles> oracles_ = std::make_unique<Oracles>();
+};
+
+}  // namespace ricochet::verify

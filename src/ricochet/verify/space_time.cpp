@@ -1,0 +1,179 @@
+#include "ricochet/verify/space_time.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace ricochet::verify {
+namespace {
+
+/// Halvings of the time, and pieces of it, before nothing is said.
+constexpr int kDeepest = 50;
+constexpr int kMostPieces = 20000;
+
+using Digits = boost::multiprecision::cpp_bin_float_100;
+
+/// What a sum of some hundred rounded products may err by, relative to the sum of magnitudes.
+template <class Real>
+Real error_of() {
+    return 1024 * std::numeric_limits<Real>::epsilon();
+}
+
+/// Values of a polynomial in time that is bounded by them (its Bernstein coefficients), each with the sum of magnitudes
+/// that it was made from.
+template <class Real>
+struct Bounded {
+    std::vector<Real> values;
+    std::vector<Real> sizes;
+
+    /// +1 or -1 where all of the polynomial certainly has that sign, else 0.
+    [[nodiscard]] int sign() const {
+        int common = 0;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const Real bound = error_of<Real>() * sizes[k];
+            if (!(bound > Real(1e-280))) return 0;
+            const int sign = values[k] > bound ? 1 : (values[k] < -bound ? -1 : 0);
+            if (sign == 0 || (common != 0 && sign != common)) return 0;
+            common = sign;
+        }
+        return common;
+    }
+};
+
+template <class Real>
+Real size_of(const Real& x) {
+    return x < 0 ? Real(-x) : x;
+}
+
+double choose(std::size_t n, std::size_t k) {
+    double value = 1.0;
+    for (std::size_t i = 0; i < k; ++i) value = value * static_cast<double>(n - i) / static_cast<double>(i + 1);
+    return value;
+}
+
+/// The product: each value is the mean, with weights, of all products of two that it may come from.
+template <class Real>
+Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
+    const std::size_t m = a.values.size() - 1;
+    const std::size_t n = b.values.size() - 1;
+    Bounded<Real> product{std::vector<Real>(m + n + 1, Real(0)), std::vector<Real>(m + n + 1, Real(0))};
+    for (std::size_t i = 0; i <= m; ++i) {
+        for (std::size_t j = 0; j <= n; ++j) {
+            const Real weight = Real(choose(m, i) * choose(n, j)) / Real(choose(m + n, i + j));
+            product.values[i + j] += weight * a.values[i] * b.values[j];
+            product.sizes[i + j] += weight * a.sizes[i] * b.sizes[j];
+        }
+    }
+    return product;
+}
+
+template <class Real>
+Bounded<Real> combined(Bounded<Real> a, const Bounded<Real>& b, int sign) {
+    for (std::size_t k = 0; k < a.values.size(); ++k) {
+        a.values[k] += sign * b.values[k];
+        a.sizes[k] += b.sizes[k];
+    }
+    return a;
+}
+
+template <class Real>
+using Offset = std::array<Bounded<Real>, 3>;
+
+template <class Real>
+Offset<Real> cross_of(const Offset<Real>& a, const Offset<Real>& b) {
+    return {combined(a[1] * b[2], a[2] * b[1], -1), combined(a[2] * b[0], a[0] * b[2], -1),
+            combined(a[0] * b[1], a[1] * b[0], -1)};
+}
+
+template <class Real>
+Bounded<Real> dot_of(const Offset<Real>& a, const Offset<Real>& b) {
+    return combined(combined(a[0] * b[0], a[1] * b[1], 1), a[2] * b[2], 1);
+}
+
+/// From one moving point to another, over a part of the time.
+template <class Real>
+Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end) {
+    Offset<Real> offset;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Real first = Real(to.from[axis]) - Real(from.from[axis]);
+        const Real last = Real(to.to[axis]) - Real(from.to[axis]);
+        Bounded<Real>& bounded = offset[static_cast<std::size_t>(axis)];
+        for (const double at : {begin, end}) {
+            const Real part(at);
+            bounded.values.push_back((1 - part) * first + part * last);
+            bounded.sizes.push_back((1 - part) * size_of(first) + part * size_of(last));
+        }
+    }
+    return offset;
+}
+
+Vec3 at(const Way& way, double part) { return (1.0 - part) * way.from + part * way.to; }
+
+class Pair {
+public:
+    Pair(const Way& point, const MovingCorners& triangle)
+        : point_(point),
+          corners_{Way{triangle.from.a, triangle.to.a}, Way{triangle.from.b, triangle.to.b},
+                   Way{triangle.from.c, triangle.to.c}} {}
+
+    bool is_apart(double begin, double end, int depth) {
+        if (is_apart_in<double>(begin, end) || is_apart_in<Digits>(begin, end)) return true;
+        if (depth == 0 || ++pieces_ > kMostPieces) return false;
+        const double middle = 0.5 * (begin + end);
+        return is_apart(begin, middle, depth - 1) && is_apart(middle, end, depth - 1);
+    }
+
+private:
+    /// On one side of the plane all the time, beyond one of the edges, or apart along a direction.
+    template <class Real>
+    [[nodiscard]] bool is_apart_in(double begin, double end) const {
+        std::array<Offset<Real>, 3> to_point;
+        std::array<Offset<Real>, 3> edges;
+        for (std::size_t k = 0; k < 3; ++k) {
+            to_point[k] = offset_of<Real>(corners_[k], point_, begin, end);
+            edges[k] = offset_of<Real>(corners_[k], corners_[(k + 1) % 3], begin, end);
+        }
+        if (is_separated(to_point, begin, end)) return true;
+        const Offset<Real> normal = cross_of(edges[0], edges[1]);
+        if (dot_of(normal, to_point[0]).sign() != 0) return true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (dot_of(cross_of(edges[k], normal), to_point[k]).sign() > 0) return true;
+        }
+        return false;
+    }
+
+    template <class Real>
+    [[nodiscard]] bool is_separated(const std::array<Offset<Real>, 3>& to_point, double begin, double end) const {
+        const double middle = 0.5 * (begin + end);
+        const Vec3 p = at(point_, middle);
+        const std::array<Vec3, 3> c{at(corners_[0], middle), at(corners_[1], middle), at(corners_[2], middle)};
+        const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
+        const std::array<Vec3, 5> directions{p - (c[0] + c[1] + c[2]) / 3.0, cross(c[1] - c[0], normal),
+                                             cross(c[2] - c[1], normal), cross(c[0] - c[2], normal),
+                                             dot(normal, p - c[0]) < 0.0 ? -normal : normal};
+        return std::any_of(directions.begin(), directions.end(), [&](const Vec3& n) {
+            Offset<Real> direction;
+            for (int axis = 0; axis < 3; ++axis) {
+                direction[static_cast<std::size_t>(axis)] = {{Real(n[axis])}, {Real(std::fabs(n[axis]))}};
+            }
+            return std::all_of(to_point.begin(), to_point.end(),
+                               [&](const Offset<Real>& offset) { return dot_of(offset, direction).sign() > 0; });
+        });
+    }
+
+    Way point_;
+    std::array<Way, 3> corners_;
+    int pieces_ = 0;
+};
+
+}  // namespace
+
+bool are_apart(const Way& point, const MovingCorners& triangle) {
+    return Pair(point, triangle).is_apart(0.0, 1.0, kDeepest);
+}
+
+}  // namespace ricochet::verify

@@ -1,0 +1,313 @@
+// Nothing gets through meshes that deform, and what they hit bounces as their surfaces move.
+//
+// A long run: many more particles and steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/mesh/mesh_motion.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/parity.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kG = 9.81;
+constexpr double kPi = 3.14159265358979323846;
+
+std::vector<double> evenly(double begin, double end, int parts) {
+    std::vector<double> times;
+    for (int k = 0; k <= parts; ++k) times.push_back(begin + (end - begin) * k / parts);
+    return times;
+}
+
+using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
+
+/// A mesh each of whose vertices goes where a function says.
+MeshShape deforming(const TriangleMesh& mesh, const Deform& deform, std::vector<double> times,
+                    MeshEnds ends = MeshEnds::hold) {
+    const auto positions_at = [&](double time) {
+        std::vector<Vec3> positions;
+        for (const Vec3& vertex : mesh.vertices) positions.push_back(deform(vertex, time));
+        return positions;
+    };
+    MeshShape shape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}};
+    shape.motion = std::make_shared<const MeshMotion>(sampled_motion(positions_at, std::move(times), ends));
+    return shape;
+}
+
+/// A sheet z = 0 over the square |x|, |y| <= half.
+TriangleMesh sheet(double half, int parts) {
+    TriangleMesh mesh;
+    for (int j = 0; j <= parts; ++j) {
+        for (int i = 0; i <= parts; ++i) {
+            mesh.vertices.push_back({half * (2.0 * i / parts - 1.0), half * (2.0 * j / parts - 1.0), 0.0});
+        }
+    }
+    const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (parts + 1) + i); };
+    for (int j = 0; j < parts; ++j) {
+        for (int i = 0; i < parts; ++i) {
+            mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    return mesh;
+}
+
+SimulationSetup setup_of(double time_step, double duration, const Material& material) {
+    SimulationSetup setup;
+    setup.options.time_step = time_step;
+    setup.options.duration = duration;
+    setup.options.verify = true;
+    setup.options.record_contacts = true;
+    setup.materials = {material};
+    return setup;
+}
+
+Particle particle_at(const Vec3& position, const Vec3& velocity, double radius = 0.0) {
+    Particle particle;
+    particle.position = position;
+    particle.velocity = velocity;
+    particle.radius = radius;
+    return particle;
+}
+
+void expect_sound(const Simulation& simulation) {
+    const SimulationStatistics& statistics = simulation.statistics();
+    if (getenv("H1")) fprintf(stderr, "squeezed %lu unsim %g contacts %lu stayed %lu maxb %u\n", statistics.squeezed, statistics.unsimulated_time, statistics.contacts, statistics.stayed, statistics.bounces_per_step_max);
+    EXPECT_EQ(statistics.violations, 0U);
+    EXPECT_EQ(statistics.energy_violations, 0U);
+    EXPECT_EQ(statistics.frozen, 0U);
+}
+
+Vec3 breathing(const Vec3& vertex, double time) {
+    const double size = 1.0 + 0.25 * std::sin(7.0 * time);
+    return size * vertex + 0.05 * std::sin(11.0 * time) * Vec3{vertex.y, vertex.z, vertex.x};
+}
+
+int count_outside(const Simulation& simulation) {
+    const ParityOracle oracle(*simulation.collider_mesh(0));
+    int outside = 0;
+    for (const Vec3& p : simulation.particles().position) outside += oracle.inside(p) ? 0 : 1;
+    return outside;
+}
+
+// By the side of the mesh as it stands after each step, counted here, and by the verifier.
+TEST(ABreathingSphere, KeepsWhatBeginsInside) {
+    for (const double radius : {0.0, 0.03}) {
+        for (const double restitution : {1.0, 0.5}) {
+            const bool is_long = test::is_long_run();
+            SimulationSetup setup = setup_of(0.01, is_long ? 4.0 : 0.6, {"", restitution, 0.3});
+            setup.forces.push_back(make_gravity({0, 0, -kG}));
+            setup.colliders = {
+                {"lung", deforming(sphere_mesh({}, 1.0, 2), breathing, evenly(0.0, 2.0 * kPi / 7.0, 23)), 0}};
+            EmitterDescription emitter;
+            emitter.shape = SphereShape{{}, 0.6, false};
+            emitter.burst = static_cast<std::uint64_t>(test::scaled(is_long ? 2000 : 60));
+            emitter.speed = {2.0, 1.0};
+            emitter.radius = {radius, 0.0};
+            setup.emitters.push_back(std::move(emitter));
+            Simulation simulation(std::move(setup));
+            int outside = 0;
+            while (!simulation.finished()) {
+                simulation.step();
+                outside += count_outside(simulation);
+            }
+            EXPECT_EQ(outside, 0) << radius << " " << restitution;
+            expect_sound(simulation);
+            EXPECT_GT(simulation.statistics().contacts, simulation.statistics().emitted);
+        }
+    }
+}
+
+/// z of a sheet's triangles above a point, where they are a graph.
+double height_of(const TriangleMesh& mesh, double x, double y) {
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 a = mesh.vertices[t[0]];
+        const Vec3 u = mesh.vertices[t[1]] - a;
+        const Vec3 v = mesh.vertices[t[2]] - a;
+        const double area = u.x * v.y - u.y * v.x;
+        const double s = ((x - a.x) * v.y - (y - a.y) * v.x) / area;
+        const double r = (u.x * (y - a.y) - u.y * (x - a.x)) / area;
+        if (s >= -1e-12 && r >= -1e-12 && s + r <= 1.0 + 1e-12) return a.z + s * u.z + r * v.z;
+    }
+    return std::nan("");
+}
+
+TEST(AWavingSheet, HoldsTheRainAboveIt) {
+    const auto wave = [](const Vec3& v, double time) {
+        return Vec3{v.x + 0.05 * std::sin(5.0 * v.y + 4.0 * time), v.y,
+                    0.2 * std::sin(4.0 * v.x - 9.0 * time) + 0.1 * std::cos(3.0 * v.y + 5.0 * time)};
+    };
+    for (const double radius : {0.0, 0.02}) {
+        const bool is_long = test::is_long_run();
+        SimulationSetup setup = setup_of(0.01, is_long ? 4.0 : 0.5, {"", 0.4, 0.2});
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.colliders = {{"sheet", deforming(sheet(1.5, 12), wave, evenly(0.0, 5.0, 120)), 0},
+                           {"left", PlaneShape{{-1, 0, 0}, {1, 0, 0}}, 0},
+                           {"right", PlaneShape{{1, 0, 0}, {-1, 0, 0}}, 0},
+                           {"front", PlaneShape{{0, -1, 0}, {0, 1, 0}}, 0},
+                           {"back", PlaneShape{{0, 1, 0}, {0, -1, 0}}, 0}};
+        EmitterDescription emitter;
+        emitter.shape = BoxShape{{0, 0, 0.9}, {1.8, 1.8, 0.6}};
+        emitter.burst = static_cast<std::uint64_t>(test::scaled(is_long ? 1000 : 60));
+        emitter.speed = {1.0, 0.5};
+        emitter.radius = {radius, 0.0};
+        setup.emitters.push_back(std::move(emitter));
+        Simulation simulation(std::move(setup));
+        int below = 0;
+        while (!simulation.finished()) {
+            simulation.step();
+            const TriangleMesh mesh = *simulation.collider_mesh(0);
+            for (const Vec3& p : simulation.particles().position) below += p.z > height_of(mesh, p.x, p.y) ? 0 : 1;
+        }
+        EXPECT_EQ(below, 0) << radius;
+        expect_sound(simulation);
+        EXPECT_GT(simulation.statistics().contacts, 0U);
+    }
+}
+
+// Two halves that fold about the y axis from flat to a narrow valley and open again, between walls.
+TEST(AFoldingStrip, LetsNothingThrough) {
+    const auto fold = [](const Vec3& v, double time) {
+        const double angle = 1.3 * std::pow(std::sin(2.0 * time), 2);
+        return Vec3{v.x * std::cos(angle), v.y, std::fabs(v.x) * std::sin(angle)};
+    };
+    for (const double radius : {0.0, 0.02}) {
+        const bool is_long = test::is_long_run();
+        SimulationSetup setup = setup_of(0.01, is_long ? 2.0 : 1.0, {"", 0.7, 0.1});
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.colliders = {{"strip", deforming(sheet(6.0, 4), fold, evenly(0.0, 5.0, 90)), 0},
+                           {"front", PlaneShape{{0, -1, 0}, {0, 1, 0}}, 0},
+                           {"back", PlaneShape{{0, 1, 0}, {0, -1, 0}}, 0}};
+        EmitterDescription emitter;
+        emitter.shape = BoxShape{{0, 0, 0.5}, {0.8, 1.6, 0.4}};
+        emitter.burst = static_cast<std::uint64_t>(test::scaled(is_long ? 500 : 40));
+        emitter.speed = {1.0, 0.5};
+        emitter.radius = {radius, 0.0};
+        setup.emitters.push_back(std::move(emitter));
+        Simulation simulation(std::move(setup));
+        int below = 0;
+        while (!simulation.finished()) {
+            simulation.step();
+            const TriangleMesh mesh = *simulation.collider_mesh(0);
+            for (const Vec3& p : simulation.particles().position) below += p.z > height_of(mesh, p.x, p.y) ? 0 : 1;
+        }
+        EXPECT_EQ(below, 0) << radius;
+        expect_sound(simulation);
+        EXPECT_GT(simulation.statistics().contacts, 0U);
+    }
+}
+
+// The same plate, once by its vertices and once by its frame.
+TEST(APlateWhoseVerticesTranslate, IsThatPlateInAMovingFrame) {
+    const Vec3 velocity{0.3, -0.2, 0.7};
+    for (const double radius : {0.0, 0.05}) {
+        std::vector<std::vector<ContactRecord>> contacts;
+        std::vector<Vec3> ends;
+        for (const bool by_vertices : {true, false}) {
+            SimulationSetup setup = setup_of(0.07, 3.0, {"", 0.8, 0.3});
+            setup.forces.push_back(make_gravity({0, 0, -kG}));
+            const TriangleMesh plate = sheet(6.0, 2);
+            if (by_vertices) {
+                const auto moved = [&](const Vec3& v, double time) { return v + time * velocity; };
+                setup.colliders = {{"plate", deforming(plate, moved, {0.0, 8.0}), 0}};
+            } else {
+                FrameDescription frame;
+                frame.name = "lift";
+                frame.motions = {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {8.0, 8.0 * velocity}})}};
+                setup.frames = std::make_shared<const FrameTree>(std::vector{frame});
+                setup.colliders = {
+                    {"plate", MeshShape{std::make_shared<const TriangleMesh>(plate), {}, "", {}}, 0, "lift"}};
+            }
+            setup.particles = {particle_at({0.4, 0.3, 1.5}, {1.0, 0.5, 0.2}, radius)};
+            Simulation simulation(std::move(setup));
+            std::vector<ContactRecord>& all = contacts.emplace_back();
+            while (!simulation.finished()) {
+                simulation.step();
+                all.insert(all.end(), simulation.contact_records().begin(), simulation.contact_records().end());
+            }
+            ends.push_back(simulation.particles().position[0]);
+            expect_sound(simulation);
+        }
+        ASSERT_GT(contacts[0].size(), 3U);
+        ASSERT_EQ(contacts[0].size(), contacts[1].size());
+        for (std::size_t k = 0; k < contacts[0].size(); ++k) {
+            const ContactRecord& a = contacts[0][k];
+            const ContactRecord& b = contacts[1][k];
+            EXPECT_NEAR(a.time, b.time, 1e-12) << k;
+            EXPECT_LT(length(a.velocity_after - b.velocity_after), 1e-12) << k;
+            EXPECT_LT(length(a.surface_velocity - velocity), 1e-12) << k;
+        }
+        EXPECT_LT(length(ends[0] - ends[1]), 1e-11);
+    }
+}
+
+// A wall comes at u from time to time: the ball gains 2 u where it meets it moving, and nothing where it stands.
+TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
+    const auto press = [](const Vec3& v, double time) { return v + Vec3{0, 0, time < 1.0 ? 0.0 : 0.5 * (time - 1.0)}; };
+    for (const auto& [start, expected] : {std::pair{0.5, 1.0}, std::pair{1.5, 2.0}}) {
+        SimulationSetup setup = setup_of(0.03, 3.0, {"", 1.0, 0.0});
+        setup.colliders = {{"wall", deforming(sheet(1.0, 3), press, {0.0, 1.0, 3.0}), 0}};
+        setup.particles = {particle_at({0.1, 0.2, start}, {0, 0, -1.0})};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_NEAR(simulation.particles().velocity[0].z, expected, 1e-14);
+        expect_sound(simulation);
+    }
+}
+
+// A plate that rises, stands, and tips: what lies on it without a rebound goes with it, and slides where it is steep.
+TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
+    const auto lift = [](const Vec3& v, double time) { return v + Vec3{0.2 * time, 0, 0.5 * time}; };
+    for (const double radius : {0.0, 0.05}) {
+        SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.0, 0.5});
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.colliders = {{"plate", deforming(sheet(2.0, 3), lift, {0.0, 2.0}), 0}};
+        setup.particles = {particle_at({0.1, 0.2, radius + 0.01}, {}, radius)};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const Vec3 p = simulation.particles().position[0];
+        const Vec3 v = simulation.particles().velocity[0];
+        EXPECT_NEAR(p.z, radius + 0.5, 1e-12);
+        EXPECT_LT(length(v - Vec3{radius == 0.0 ? 0.2 : v.x, 0, 0.5}), 1e-9);
+        EXPECT_EQ(simulation.statistics().squeezed, 0U);
+        EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+        expect_sound(simulation);
+    }
+}
+
+TEST(MeshesThatDeform, GiveTheSameBitsForAnyNumberOfThreads) {
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 7}) {
+        const ThreadLimit limit(threads);
+        SimulationSetup setup = setup_of(0.01, 0.3, {"", 0.6, 0.3});
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.colliders = {
+            {"lung", deforming(sphere_mesh({}, 1.0, 2), breathing, evenly(0.0, 2.0 * kPi / 7.0, 23)), 0}};
+        EmitterDescription emitter;
+        emitter.shape = SphereShape{{}, 0.6, false};
+        emitter.burst = 300;
+        emitter.speed = {3.0, 1.0};
+        emitter.radius = {0.02, 0.01};
+        setup.emitters.push_back(std::move(emitter));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        hashes.push_back(simulation.state_hash());
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+}  // namespace
+}  // namespace ricochet::testing

@@ -84,7 +84,6 @@ Particle particle_at(const Vec3& position, const Vec3& velocity, double radius =
 
 void expect_sound(const Simulation& simulation) {
     const SimulationStatistics& statistics = simulation.statistics();
-    if (getenv("H1")) fprintf(stderr, "squeezed %lu unsim %g contacts %lu stayed %lu maxb %u\n", statistics.squeezed, statistics.unsimulated_time, statistics.contacts, statistics.stayed, statistics.bounces_per_step_max);
     EXPECT_EQ(statistics.violations, 0U);
     EXPECT_EQ(statistics.energy_violations, 0U);
     EXPECT_EQ(statistics.frozen, 0U);

@@ -159,6 +159,13 @@ std::array<Vec3, 3> DeformingColliders::corners_at(SurfaceId surface, double tim
     return {moment.position(triangle[0]), moment.position(triangle[1]), moment.position(triangle[2])};
 }
 
+std::array<Vec3, 3> DeformingColliders::corner_velocities(SurfaceId surface, double time) const {
+    const Mesh& mesh = mesh_with(surface);
+    const Triangle& triangle = mesh.triangles[surface - mesh.first_surface];
+    const MeshMoment moment = mesh.motion->at(time);
+    return {moment.velocity(triangle[0]), moment.velocity(triangle[1]), moment.velocity(triangle[2])};
+}
+
 MovingTriangle DeformingColliders::between(SurfaceId surface, double begin, double end) const {
     const std::array<Vec3, 3> from = corners_at(surface, begin);
     const std::array<Vec3, 3> to = corners_at(surface, end);

@@ -61,6 +61,8 @@ public:
     [[nodiscard]] std::array<Vec3, 3> corners_at(SurfaceId surface, double time) const;
     /// From one time to another, as links see it.
     [[nodiscard]] MovingTriangle between(SurfaceId surface, double begin, double end) const;
+    /// m/s, of the corners at a time.
+    [[nodiscard]] std::array<Vec3, 3> corner_velocities(SurfaceId surface, double time) const;
     /// CollisionWorld's functions of the same names at a time.
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p, double time) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p, double time) const;

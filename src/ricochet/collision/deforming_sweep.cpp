@@ -6,13 +6,15 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/geometry/sweep/closest_point.h"
-#include "ricochet/geometry/sweep/moving_separation.h"
 
 namespace ricochet {
 namespace {
 
 /// Below this part of the relative speed, a point moves along the triangle and not towards it.
 constexpr double kGraze = 1e-12;
+
+/// Of the time of a path, in which what leaves a triangle does not come back to it.
+constexpr double kShortLeave = 0x1p-20;
 
 /// Of a distance that a sphere has already, what counts as nearer still.
 constexpr double kNearerStill = 1.0 - 0x1p-40;
@@ -66,19 +68,17 @@ double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle&
     return distance_at_start(path_, triangle) < least ? 0.0 : std::max(least, 0.0);
 }
 
-/// A contact at a time, where the particle comes nearer to the triangle there.
+/// A contact, where the particle comes nearer to the triangle there.
 std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
-                                                          double time) const {
-    const double part = path_.duration > 0.0 ? time / path_.duration : 0.0;
-    const auto [a, b, c] = corners_of(triangle, part);
+                                                          const Meeting& meeting) const {
+    const double time = meeting.part * path_.duration;
+    const auto [a, b, c] = corners_of(triangle, meeting.part);
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
-    Vec3 relative = path_.velocity(time);
-    for (int k = 0; k < 3; ++k) {
-        const MovingPoint& corner = triangle.corners[static_cast<std::size_t>(k)];
-        relative -= (weights[k] / path_.duration) * (corner.to - corner.from);
-    }
+    // Of the keys: what a short piece of the path says is rounding.
+    const auto [u, v, w] = deforming_.corner_velocities(surface, 0.5 * times_.begin + 0.5 * times_.end);
+    const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
     const bool is_degenerate = are_collinear(a, b, c);
     if (radius_ > 0.0) {
         const CollisionWorld::Nearest nearest =
@@ -89,24 +89,31 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
         return Hit{time, {surface, nearest.normal, nearest.flat}};
     }
     if (is_degenerate) return std::nullopt;
-    const Vec3 normal = unit_normal(a, b, c);
-    const double rate = dot(normal, relative);
-    if (!(std::fabs(rate) > kGraze * length(relative))) return std::nullopt;
-    return Hit{time, {surface, rate < 0.0 ? normal : -normal, true}};
+    const Vec3 normal = static_cast<double>(meeting.side) * unit_normal(a, b, c);
+    if (!(dot(normal, relative) < -kGraze * length(relative))) return std::nullopt;
+    return Hit{time, {surface, normal, true}};
 }
 
 std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const MovingTriangle& triangle) const {
     if (!(path_.duration > 0.0)) return std::nullopt;
     double radius = radius_;
-    if (radius > 0.0) {
-        const double distance = distance_at_start(path_, triangle);
-        if (distance <= radius) {
-            if (const auto hit = hit_at(surface, triangle, 0.0)) return hit;
-            radius = kNearerStill * distance;
-        }
+    double from = 0.0;
+    const double distance = distance_at_start(path_, triangle);
+    if (radius == 0.0) {
+        // What leaves it is not hit by it at once; what the short time in between hides, the certificate sees.
+        const auto [a, b, c] = corners_of(triangle, 0.0);
+        const bool touches = distance <= kTouchingOffsets * deforming_.offset_of(surface);
+        if (touches && !hit_at(surface, triangle, {0.0, orient3d(a, b, c, path_.c[0])})) from = kShortLeave;
+    } else if (distance <= radius) {
+        if (const auto hit = hit_at(surface, triangle, {})) return hit;
+        radius = kNearerStill * distance;
     }
-    const std::optional<double> part = first_meeting(path_, radius, triangle);
-    return part ? hit_at(surface, triangle, *part * path_.duration) : std::nullopt;
+    std::optional<Hit> hit;
+    static_cast<void>(first_meeting(path_, radius, triangle, from, [&](const Meeting& meeting) {
+        hit = hit_at(surface, triangle, meeting);
+        return hit.has_value();
+    }));
+    return hit;
 }
 
 /// Of several at one time all; an edge beside a face, and what has one normal, once.

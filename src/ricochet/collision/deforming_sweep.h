@@ -9,6 +9,7 @@
 #include "ricochet/collision/contact.h"
 #include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/collision/foreign_surfaces.h"
+#include "ricochet/geometry/sweep/moving_separation.h"
 #include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
@@ -51,7 +52,8 @@ private:
     [[nodiscard]] bool comes_near(const MovingTriangle& triangle) const;
     [[nodiscard]] double certified_radius(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> meet(SurfaceId surface, const MovingTriangle& triangle) const;
-    [[nodiscard]] std::optional<Hit> hit_at(SurfaceId surface, const MovingTriangle& triangle, double time) const;
+    [[nodiscard]] std::optional<Hit> hit_at(SurfaceId surface, const MovingTriangle& triangle,
+                                            const Meeting& meeting) const;
     [[nodiscard]] std::optional<Contact> first_of(std::vector<Hit> hits) const;
 
     const DeformingColliders& deforming_;

@@ -277,15 +277,17 @@ private:
 /// The search along a curved path.
 class Search {
 public:
-    Search(const Path& path, double radius, const MovingTriangle& triangle)
-        : path_(path), radius_(radius), triangle_(triangle), control_(path.control_points()) {}
+    using Counts = std::function<bool(const Meeting&)>;
 
-    [[nodiscard]] std::optional<double> first(double s, double t, int depth) {
+    Search(const Path& path, double radius, const MovingTriangle& triangle, const Counts& counts)
+        : path_(path), radius_(radius), triangle_(triangle), counts_(counts), control_(path.control_points()) {}
+
+    [[nodiscard]] std::optional<Meeting> first(double s, double t, int depth) {
         if (is_free(s, t)) return std::nullopt;
         if (depth >= kShallowRoot) {
-            if (const auto root = root_in(s, t)) return root;
+            if (const auto root = root_in(s, t)) return counted({*root, side_at(s)});
         }
-        if (depth == kDeepestSearch || ++pieces_ > kMostSeparationPieces) return s;
+        if (depth == kDeepestSearch || ++pieces_ > kMostSeparationPieces) return counted({s, side_at(s)});
         const double middle = s + 0.5 * (t - s);
         const auto early = first(s, middle, depth + 1);
         return early ? early : first(middle, t, depth + 1);
@@ -293,6 +295,13 @@ public:
 
 private:
     [[nodiscard]] Vec3 position(double s) const { return path_.position(s * path_.duration); }
+    [[nodiscard]] std::optional<Meeting> counted(const Meeting& meeting) const {
+        return counts_(meeting) ? std::optional(meeting) : std::nullopt;
+    }
+    [[nodiscard]] int side_at(double s) const {
+        const auto& [a, b, c] = triangle_.corners;
+        return orient3d(a.at(s), b.at(s), c.at(s), position(s));
+    }
 
     /// The control points of the piece, by de Casteljau's algorithm.
     template <std::size_t Degree>
@@ -373,6 +382,7 @@ private:
     const Path& path_;
     double radius_;
     const MovingTriangle& triangle_;
+    const Counts& counts_;
     ControlPoints control_;
     int pieces_ = 0;
 };
@@ -383,8 +393,9 @@ bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& t
     return Proof(point, radius, triangle).holds(0.0, 1.0, kDeepestProof);
 }
 
-std::optional<double> first_meeting(const Path& path, double radius, const MovingTriangle& triangle) {
-    return Search(path, radius, triangle).first(0.0, 1.0, 0);
+std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle, double from,
+                                     const std::function<bool(const Meeting&)>& counts) {
+    return Search(path, radius, triangle, counts).first(from, 1.0, 0);
 }
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 /// nothing proves free are halved.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "ricochet/geometry/sweep/moving_triangle.h"
@@ -22,9 +23,16 @@ namespace ricochet {
 /// 1e75.
 [[nodiscard]] bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle);
 
-/// The first time, as a part of the path's duration, at which the point (radius 0) or the sphere on the path may touch
-/// the triangle, which moves meanwhile: to rounding where they do. Nothing where they stay apart. A sphere does not
+/// Where something on a path may touch a triangle: to rounding where it does.
+struct Meeting {
+    double part = 0.0;  ///< time, as a part of the path's duration
+    int side = 0;       ///< of the triangle's plane that a point is on before: +1 where the normal points to
+};
+
+/// Finds the first meeting of a point (radius 0) or a sphere on the path with the triangle, which moves meanwhile, of
+/// those from a part of the time on for which counts(meeting) is true. Nothing where there is none. A sphere does not
 /// touch it at the beginning.
-[[nodiscard]] std::optional<double> first_meeting(const Path& path, double radius, const MovingTriangle& triangle);
+[[nodiscard]] std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle,
+                                                   double from, const std::function<bool(const Meeting&)>& counts);
 
 }  // namespace ricochet

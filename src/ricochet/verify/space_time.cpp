@@ -13,7 +13,7 @@ namespace {
 
 /// Halvings of the time, and pieces of it, before nothing is said.
 constexpr int kDeepest = 50;
-constexpr int kMostPieces = 20000;
+constexpr int kMostPieces = 2000;
 
 using Digits = boost::multiprecision::cpp_bin_float_100;
 

@@ -1,0 +1,104 @@
+// Is what is certified really apart, and is what meets found, also where triangles turn next to a particle?
+#include "ricochet/geometry/sweep/moving_separation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace {
+
+Vec3 in_cube(RandomSequence& random) {
+    return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
+}
+
+MovingTriangle random_triangle(RandomSequence& random, double motion) {
+    MovingTriangle triangle;
+    for (MovingPoint& corner : triangle.corners) {
+        corner.from = in_cube(random);
+        corner.to = corner.from + motion * in_cube(random);
+    }
+    return triangle;
+}
+
+// The reference is first_contact() of moving_triangle.h, which misses nothing.
+TEST(MovingSeparation, ProvesWhatIsApartAndNothingElse) {
+    RandomSequence random(17, 0, 0);
+    int apart = 0;
+    int proved = 0;
+    for (int k = 0; k < test::scaled(4000); ++k) {
+        const MovingTriangle triangle = random_triangle(random, k % 3 == 0 ? 0.1 : 1.0);
+        const MovingPoint point{in_cube(random), in_cube(random)};
+        const double radius = k % 2 == 0 ? 0.0 : 0.2 * random.uniform();
+        const bool is_proved = stay_apart(point, radius, triangle);
+        const auto contact = first_contact(point, radius, triangle);
+        const bool meet = contact && contact->distance < 1e-9;
+        EXPECT_FALSE(meet && is_proved) << k;
+        apart += contact ? 0 : 1;
+        proved += is_proved && !contact ? 1 : 0;
+    }
+    EXPECT_GT(apart, 0);
+    EXPECT_GE(proved, apart - apart / 100);  // what passes at rounding's distance is not proved
+}
+
+// A point, or a sphere, that rides on a triangle which turns and grows: no one direction separates them for longer than
+// the gap over the speed of the corners.
+TEST(MovingSeparation, ProvesWhatRidesOnATriangleThatTurns) {
+    RandomSequence random(23, 0, 0);
+    for (int k = 0; k < test::scaled(500); ++k) {
+        const MovingTriangle triangle = random_triangle(random, 0.4);
+        const auto& [a, b, c] = triangle.corners;
+        Vec3 weights{0.1 + random.uniform(), 0.1 + random.uniform(), 0.1 + random.uniform()};
+        weights = weights / (weights.x + weights.y + weights.z);
+        const double radius = k % 2 == 0 ? 0.0 : 0.05;
+        const Vec3 first = unit_normal(a.from, b.from, c.from);
+        if (dot(first, unit_normal(a.to, b.to, c.to)) < 0.7) continue;  // chords of its normal lead through it
+        MovingPoint point;
+        for (const double end : {0.0, 1.0}) {
+            const Vec3 foot = weights.x * a.at(end) + weights.y * b.at(end) + weights.z * c.at(end);
+            const Vec3 normal = unit_normal(a.at(end), b.at(end), c.at(end));
+            (end == 0.0 ? point.from : point.to) = foot + (radius + 1e-13) * normal;
+        }
+        // Chords of the turning normal come nearer than its ends: a sphere of less is judged.
+        const double least = radius == 0.0 ? 0.0 : 0.5 * radius;
+        EXPECT_TRUE(stay_apart(point, least, triangle)) << k;
+    }
+}
+
+TEST(MovingSeparation, FindsTheTimeOfAMeetingInClosedForm) {
+    // A plate that comes up at 1 m/s, and a point that falls from 2 m: 2 - g t^2 / 2 = t.
+    const MovingTriangle plate{{{{{-5, -5, 0}, {-5, -5, 1}}, {{5, -5, 0}, {5, -5, 1}}, {{0, 5, 0}, {0, 5, 1}}}}};
+    constexpr double kG = 9.81;
+    for (const double radius : {0.0, 0.25}) {
+        const Path path = parabola_path({0.1, 0.2, 2.0}, {}, {0, 0, -kG}, 1.0);
+        const auto meeting = first_meeting(path, radius, plate, 0.0, [](const Meeting&) { return true; });
+        ASSERT_TRUE(meeting.has_value());
+        const double height = 2.0 - radius;
+        EXPECT_NEAR(meeting->part, (-1.0 + std::sqrt(1.0 + 2.0 * kG * height)) / kG, 1e-15);
+        EXPECT_EQ(meeting->side, 1);
+    }
+    const Path aside = parabola_path({9.0, 0.2, 2.0}, {}, {0, 0, -kG}, 1.0);
+    EXPECT_FALSE(first_meeting(aside, 0.0, plate, 0.0, [](const Meeting&) { return true; }).has_value());
+}
+
+// What does not count is passed over, and the next one is found.
+TEST(MovingSeparation, GoesOnAfterAMeetingThatDoesNotCount) {
+    const MovingTriangle plate{{{{{-5, -5, 0}, {-5, -5, 0}}, {{5, -5, 0}, {5, -5, 0}}, {{0, 5, 0}, {0, 5, 0}}}}};
+    const Path path = parabola_path({0, 0, 1.0}, {0, 0, -4.5}, {0, 0, 9.0}, 1.0);  // below from 1/3 to 2/3
+    std::optional<Meeting> last;
+    (void)first_meeting(path, 0.0, plate, 0.0, [&](const Meeting& meeting) {
+        last = meeting;
+        return meeting.side < 0;
+    });
+    ASSERT_TRUE(last.has_value());
+    EXPECT_NEAR(last->part, 2.0 / 3.0, 1e-14);
+}
+
+}  // namespace
+}  // namespace ricochet

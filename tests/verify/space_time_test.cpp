@@ -1,0 +1,51 @@
+// The verifier's own test of a moving point and a moving triangle, against the library's, which shares nothing with it.
+#include "ricochet/verify/space_time.h"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/core/random.h"
+#include "ricochet/geometry/sweep/moving_triangle.h"
+#include "support/counts.h"
+
+namespace ricochet::verify {
+namespace {
+
+Vec3 in_cube(RandomSequence& random) {
+    return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
+}
+
+TEST(SpaceTime, AgreesWithAMethodOfItsOwn) {
+    RandomSequence random(29, 0, 0);
+    int apart = 0;
+    const int count = test::scaled(400);
+    for (int k = 0; k < count; ++k) {
+        const MovingPoint point{in_cube(random), in_cube(random)};
+        MovingTriangle triangle;
+        for (MovingPoint& corner : triangle.corners) corner = {in_cube(random), in_cube(random)};
+        const auto& [a, b, c] = triangle.corners;
+        const auto contact = first_contact(point, 0.0, triangle);
+        if (contact && contact->distance > 1e-12) continue;
+        const bool is_apart = are_apart({point.from, point.to}, {{a.from, b.from, c.from}, {a.to, b.to, c.to}});
+        EXPECT_EQ(is_apart, !contact.has_value()) << k;
+        apart += is_apart ? 1 : 0;
+    }
+    EXPECT_GT(apart, count / 4);
+    EXPECT_LT(apart, count);
+}
+
+// A touch at one end, in the middle, and a miss by the last place.
+TEST(SpaceTime, CountsATouchAsMeeting) {
+    const Corners flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const Corners risen{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    const MovingCorners rising{flat, risen};
+    EXPECT_FALSE(are_apart({{0.2, 0.2, 0.5}, {0.2, 0.2, 0.5}}, rising));
+    EXPECT_FALSE(are_apart({{0.2, 0.2, 1.0}, {0.2, 0.2, 1.0}}, rising));
+    EXPECT_TRUE(are_apart({{0.2, 0.2, 1.0 + 0x1p-52}, {0.2, 0.2, 1.0 + 0x1p-52}}, rising));
+    EXPECT_FALSE(are_apart({{0.2, 0.2, 0.0}, {0.2, 0.2, 2.0}}, rising));
+    EXPECT_TRUE(are_apart({{0.2, 0.2, 0x1p-60}, {0.2, 0.2, 2.0}}, rising));
+    EXPECT_TRUE(are_apart({{0.6, 0.6, 0.5}, {0.6, 0.6, 0.5}}, rising));
+    EXPECT_FALSE(are_apart({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, rising));  // on the rim
+}
+
+}  // namespace
+}  // namespace ricochet::verify

@@ -157,7 +157,7 @@ std::optional<double> MovingColliders::next_jump(BodyId body, double from, doubl
 }
 
 Vec3 MovingColliders::turning_beside_path(BodyId body, double time) const {
-    if (body == kAtRest || !bodies_[body].angular_momentum) return {};
+    if (body >= bodies_.size() || !bodies_[body].angular_momentum) return {};
     const MovingPose at = pose(body, time);
     return bodies_[body].mobility->seen_by(at.world_from_frame).of_inertia * *bodies_[body].angular_momentum -
            at.angular_velocity;

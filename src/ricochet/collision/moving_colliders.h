@@ -85,13 +85,13 @@ public:
     /// rad/s, by which the angular velocity of a free body differs at a time, s, from that of its path, which keeps the
     /// one of the path's middle: an impact would not keep the energy with that.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
-    [[nodiscard]] bool yields(BodyId body) const { return body != kAtRest && bodies_[body].mobility.has_value(); }
+    [[nodiscard]] bool yields(BodyId body) const { return body < bodies_.size() && bodies_[body].mobility.has_value(); }
     /// How it yields at a time, s, in the world; only of one that does.
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
         return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);
     }
     /// True when impulses have changed its velocity where this step, or this part of it, begins.
-    [[nodiscard]] bool has_jumped(BodyId body) const { return body != kAtRest && bodies_[body].has_jumped; }
+    [[nodiscard]] bool has_jumped(BodyId body) const { return body < bodies_.size() && bodies_[body].has_jumped; }
 
 private:
     struct Body {

@@ -33,7 +33,10 @@ void LoadBook::close() {
     last.couple += couple;
     last.moment += couple;
     const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(last.surface);
-    if (body != kAtRest) last.work += dot(couple, rules_.bodies->pose(body, last.time).angular_velocity);
+    if (body == kAtRest) return;
+    const bool deforms = rules_.bodies->is_deforming(body);
+    last.work += dot(couple, deforms ? rules_.bodies->deforming().motion_at(last.surface, last.place, last.time).turning
+                                     : rules_.bodies->pose(body, last.time).angular_velocity);
 }
 
 bool LoadBook::is_entered(SurfaceId surface) const {
@@ -70,7 +73,9 @@ Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Vec3& cen
     const double time = particle_.state.time;
     const MovingPose pose = rules_.bodies->pose(body, time);
     const Vec3 seen = body == kAtRest ? center : pose.image(center);
-    const Vec3 normal = rules_.bodies->world(body).nearest(surface, seen).normal;
+    const Vec3 normal = rules_.bodies->is_deforming(body)
+                            ? rules_.bodies->deforming().nearest(surface, seen, time).normal
+                            : rules_.bodies->world(body).nearest(surface, seen).normal;
     const Vec3 along = material.motion.at(seen - particle_.state.radius * normal, normal);
     return pose.world_from_frame.direction(along);
 }
@@ -91,9 +96,13 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.work = dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, load.place)) +
                 dot(load.moment, pose.angular_velocity);
     load.approach = approach_;
-    if (body != kAtRest && rules_.bodies->yields(body)) {
+    if (rules_.bodies != nullptr && rules_.bodies->yields(body)) {
         const Vec3 arm = load.place - rules_.bodies->mobility(body, time).center;
         load.work += dot(cross(arm, hit.impulse) + couple, rules_.bodies->turning_beside_path(body, time));
+    }
+    if (rules_.bodies != nullptr && rules_.bodies->is_deforming(body)) {
+        const DeformingColliders::Motion motion = rules_.bodies->deforming().motion_at(hit.surface, load.place, time);
+        load.work += dot(hit.impulse, motion.velocity) + dot(couple, motion.turning);
     }
     load.impact = hit.impact;
     scratch_.loads.push_back(load);

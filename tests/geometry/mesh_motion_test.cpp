@@ -84,8 +84,11 @@ TEST(MeshMotion, SaysWhatIsWrong) {
 }
 
 TEST(MeshMotion, IsSampledFromAFunctionAndMapped) {
-    const MeshMotion motion =
-        sampled_motion([](double time) { return std::vector<Vec3>{{time, time * time, 0}}; }, {0.0, 1.0, 2.0});
+    const MeshMotion motion = sampled_motion(
+        [](double time) {
+            return std::vector<Vec3>{{time, time * time, 0}};
+        },
+        {0.0, 1.0, 2.0});
     EXPECT_EQ(motion.at(1.5).position(0), Vec3(1.5, 2.5, 0));
     Placement placement;
     placement.position = {1, 0, 0};

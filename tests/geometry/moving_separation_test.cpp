@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "support/counts.h"
 
 namespace ricochet {

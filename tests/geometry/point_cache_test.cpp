@@ -49,8 +49,9 @@ TEST(PointCache, IsReadWithItsFrames) {
 }
 
 TEST(PointCache, SaysWhatIsWrong) {
-    EXPECT_EQ(refusal(""), "a.pc2: not a point cache, expected a file that begins with POINTCACHE2 and a header of 32 "
-                           "bytes");
+    EXPECT_EQ(refusal(""),
+              "a.pc2: not a point cache, expected a file that begins with POINTCACHE2 and a header of 32 "
+              "bytes");
     EXPECT_EQ(refusal(std::string(40, 'x')).substr(0, 25), "a.pc2: not a point cache,");
     EXPECT_EQ(refusal(cache_of(2, 0, 1, 3, 2)), "a.pc2: the point cache has the version 2, expected 1");
     EXPECT_EQ(refusal(cache_of(0, 0, 1, 3)), "a.pc2: found 0 points, expected at least 1");

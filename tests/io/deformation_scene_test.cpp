@@ -58,8 +58,7 @@ protected:
     std::shared_ptr<const MeshMotion> motion_of(const std::string& deformation) const {
         return std::get<MeshShape>(load(deformation).setup.colliders[0].shape).motion;
     }
-    Lines errors_of(const std::string& deformation, const std::string& more = "",
-                    const std::string& scene = "") const {
+    Lines errors_of(const std::string& deformation, const std::string& more = "", const std::string& scene = "") const {
         try {
             static_cast<void>(load(deformation, more, scene));
         } catch (const SceneError& error) {
@@ -89,8 +88,7 @@ TEST_F(DeformationScene, ReadsANumberedSeries) {
 }
 
 TEST_F(DeformationScene, ClosesARoundThatRepeats) {
-    const auto motion =
-        motion_of(R"({"type": "series", "files": "flag_*.obj", "frame_rate": 10, "ends": "repeat"})");
+    const auto motion = motion_of(R"({"type": "series", "files": "flag_*.obj", "frame_rate": 10, "ends": "repeat"})");
     ASSERT_NE(motion, nullptr);
     EXPECT_EQ(motion->key_count(), 4U);
     EXPECT_NEAR(motion->times()[3], 0.3, 1e-15);
@@ -134,9 +132,10 @@ TEST_F(DeformationScene, SaysWhatIsWrongWithASeries) {
 
 TEST_F(DeformationScene, SaysWhatIsWrongWithKeysAndCaches) {
     const std::string at = "colliders[0].deformation: ";
-    EXPECT_EQ(errors_of(
-                  R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, {"time": 1, "file": "flag_09.obj"}]})"),
-              (Lines{at + "mesh that deforms: the time of key 1 is not after the one before, expected ascending times"}));
+    EXPECT_EQ(
+        errors_of(
+            R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, {"time": 1, "file": "flag_09.obj"}]})"),
+        (Lines{at + "mesh that deforms: the time of key 1 is not after the one before, expected ascending times"}));
     EXPECT_EQ(errors_of(R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}]})"),
               (Lines{at + "mesh that deforms: found 1 keys, expected at least 2"}));
     static_cast<void>(folder_.write("flag.pc2", cache_of(4, 3)));
@@ -156,9 +155,9 @@ TEST_F(DeformationScene, RefusesWhatDoesNotGoTogether) {
                   (Lines{"colliders[0].deformation: the response \"" + response +
                          "\" knows no meshes that deform, expected none, or \"exact\""}));
     }
-    EXPECT_EQ(errors_of(series, R"(, "name": "flag")",
-                        R"(, "emitters": [{"type": "mesh", "collider": "flag", "burst": 1}])"),
-              (Lines{"emitters[0].collider: 'flag' is a mesh that deforms, expected one that keeps its shape"}));
+    EXPECT_EQ(
+        errors_of(series, R"(, "name": "flag")", R"(, "emitters": [{"type": "mesh", "collider": "flag", "burst": 1}])"),
+        (Lines{"emitters[0].collider: 'flag' is a mesh that deforms, expected one that keeps its shape"}));
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ struct MeshShape {
     /// Material of every triangle, as indices into the simulation's materials; empty: the collider's material
     /// everywhere.
     std::vector<std::uint32_t> triangle_materials = {};
-    /// Where its vertices are in time, before the placement, where it deforms: those of the mesh say nothing then. Null:
-    /// it keeps its shape.
+    /// Where its vertices are in time, before the placement, where it deforms: those of the mesh say nothing then.
+    /// Null: it keeps its shape.
     std::shared_ptr<const MeshMotion> motion = nullptr;
 };
 

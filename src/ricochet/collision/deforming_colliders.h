@@ -2,8 +2,8 @@
 /// The colliders of a scene that deform: meshes whose vertices move, each on straight lines between stored times.
 ///
 /// Such a mesh has no frame in which it stands still. What is proved is proved in space and time: from one stored
-/// position of a particle to the next, all moves in straight lines, the particle and the vertices from where they are at
-/// the one time to where they are at the other (MeshMoment::position()), and no key of the mesh lies between.
+/// position of a particle to the next, all moves in straight lines, the particle and the vertices from where they are
+/// at the one time to where they are at the other (MeshMoment::position()), and no key of the mesh lies between.
 #pragma once
 
 #include <array>
@@ -70,8 +70,8 @@ public:
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p, double time) const;
     /// How the nearest point of a triangle moves, and the triangle with it. At a key, to rounding, as after it.
     struct Motion {
-        Vec3 velocity;  ///< m/s, of that point
-        Vec3 turning;   ///< rad/s, of the triangle: of its normal, and about it
+        Vec3 velocity;      ///< m/s, of that point
+        Vec3 turning;       ///< rad/s, of the triangle: of its normal, and about it
         double size = 0.0;  ///< m, its longest edge
     };
     [[nodiscard]] Motion motion_at(SurfaceId surface, const Vec3& p, double time) const;
@@ -95,7 +95,7 @@ private:
         SurfaceId first_surface = 0;
         std::vector<Triangle> triangles;
         std::shared_ptr<const MeshMotion> motion;
-        BoxTree tree;          ///< of where each triangle comes in the step
+        BoxTree tree;         ///< of where each triangle comes in the step
         double offset = 0.0;  ///< m, see offset_of()
     };
 

@@ -33,12 +33,7 @@ double distance_at_start(const Path& path, const MovingTriangle& triangle) {
 
 DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times,
                                double radius, std::span<const SurfaceId> held, double beside)
-    : deforming_(deforming),
-      path_(path),
-      times_(times),
-      radius_(radius),
-      tolerance_(0.0),
-      held_(held) {
+    : deforming_(deforming), path_(path), times_(times), radius_(radius), tolerance_(0.0), held_(held) {
     for (const Vec3& point : path.control_points()) box_.include(point);
     box_.include(path.end);
     const double largest = std::max(max_abs(box_.lower), max_abs(box_.upper));

@@ -1,6 +1,6 @@
 /// \file
-/// Surfaces near a path that stand in other frames than it is given in, and meshes that deform: the certificate of links
-/// in their frames, and in space and time, and what is asked of them.
+/// Surfaces near a path that stand in other frames than it is given in, and meshes that deform: the certificate of
+/// links in their frames, and in space and time, and what is asked of them.
 #pragma once
 
 #include <optional>

@@ -337,8 +337,8 @@ void MovingSweep::meet_deforming(const MovingView& view, const WayPoint& start, 
     const DeformingColliders& deforming = view.bodies().deforming();
     const Path path = view.home() == kAtRest ? piece_ : path_in(kAtRest, view, start);
     const DeformingSweep sweep(deforming, path, {clock_.begin, clock_.end}, query_.radius, query_.held, beside);
-    std::optional<Contact> contact = sweep.first_contact(
-        deforming_, [&](const ForeignSurfaces::Deforming& triangle) { foreign_->add(triangle); });
+    std::optional<Contact> contact =
+        sweep.first_contact(deforming_, [&](const ForeignSurfaces::Deforming& triangle) { foreign_->add(triangle); });
     if (!contact) return;
     for (int k = 0; k < contact->count; ++k) {
         Vec3& normal = contact->surfaces[static_cast<std::size_t>(k)].normal;

@@ -7,8 +7,8 @@
 /// are swept as all paths are; the time of an impact is then found again on the true way. What is left of the
 /// approximation moves a graze; it lets nothing through, since every link is certified for stored positions.
 ///
-/// Meshes that deform are met in the world, where path and vertices are polynomials. Pieces end at their keys, whose times
-/// are those that positions are stored with: no link leads over one.
+/// Meshes that deform are met in the world, where path and vertices are polynomials. Pieces end at their keys, whose
+/// times are those that positions are stored with: no link leads over one.
 #pragma once
 
 #include <cstddef>

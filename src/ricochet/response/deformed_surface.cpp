@@ -66,8 +66,7 @@ std::vector<ContactSurface> touched_surfaces(const DeformingColliders& deforming
 }
 
 SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& particle, const ContactSurface& surface) {
-    const DeformingColliders::Motion motion =
-        deforming.motion_at(surface.surface, particle.position, particle.time);
+    const DeformingColliders::Motion motion = deforming.motion_at(surface.surface, particle.position, particle.time);
     const Vec3& n = surface.normal;
     const Vec3 slip = particle.velocity - motion.velocity;
     if (surface.flat) {

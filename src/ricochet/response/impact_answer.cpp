@@ -68,8 +68,8 @@ Vec3 ImpactAnswer::carried_velocity_of(const ContactSurface& surface, const Vec3
     if (bodies.yields(body)) velocity += home_.direction_in_frame(velocity_beside_path(body, foot.world), time);
     if (bodies.is_deforming(body)) {
         // In the axes of the frame; what that itself does there is in the velocity already.
-        velocity += home_.direction_in_frame(bodies.deforming().motion_at(surface.surface, foot.world, time).velocity,
-                                             time);
+        velocity +=
+            home_.direction_in_frame(bodies.deforming().motion_at(surface.surface, foot.world, time).velocity, time);
     }
     const Material& material = material_of(surface.surface);
     if (!material.drives()) return velocity;

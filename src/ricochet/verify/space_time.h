@@ -1,6 +1,6 @@
 /// \file
-/// Does a point that moves along a line, at constant speed, touch a triangle whose corners do so? With the verifier's own
-/// arithmetic.
+/// Does a point that moves along a line, at constant speed, touch a triangle whose corners do so? With the verifier's
+/// own arithmetic.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -20,8 +20,8 @@ struct MovingCorners {
     Corners to;
 };
 
-/// True only when they have no point in common at any time; proved with doubles where their error bound leaves no doubt,
-/// with a hundred digits otherwise. What touches, or comes nearer than that can tell, is not apart.
+/// True only when they have no point in common at any time; proved with doubles where their error bound leaves no
+/// doubt, with a hundred digits otherwise. What touches, or comes nearer than that can tell, is not apart.
 [[nodiscard]] bool are_apart(const Way& point, const MovingCorners& triangle);
 
 }  // namespace ricochet::verify

@@ -115,7 +115,8 @@ MeshMotion MeshMotion::mapped(const AffineMap& map) const {
 }
 
 std::size_t MeshMotion::memory_bytes() const {
-    return times_.capacity() * sizeof(double) + key_count() * (sizeof(std::vector<Vec3>) + vertex_count() * sizeof(Vec3));
+    return times_.capacity() * sizeof(double) +
+           key_count() * (sizeof(std::vector<Vec3>) + vertex_count() * sizeof(Vec3));
 }
 
 MeshMotion sampled_motion(const std::function<std::vector<Vec3>(double time)>& positions_at, std::vector<double> times,

@@ -44,8 +44,8 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
     require(std::isfinite(first) && std::isfinite(step) && step > 0.0F,
             fmt::format("the first frame is {} and samples are {} frames apart, expected a number, and one above 0",
                         first, step));
-    const std::uint64_t expected = kHeader + kPoint * static_cast<std::uint64_t>(points) *
-                                                 static_cast<std::uint64_t>(samples);
+    const std::uint64_t expected =
+        kHeader + kPoint * static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples);
     require(bytes.size() == expected,
             fmt::format("{} samples of {} points are {} bytes, found {}", samples, points, expected, bytes.size()));
     PointCache cache;

@@ -1,6 +1,6 @@
 /// \file
-/// Point caches in the PC2 format of Autodesk 3ds Max, which Blender and others write: the vertices of a mesh, without its
-/// faces, in frame after frame.
+/// Point caches in the PC2 format of Autodesk 3ds Max, which Blender and others write: the vertices of a mesh, without
+/// its faces, in frame after frame.
 ///
 /// The format, little-endian: the 12 bytes "POINTCACHE2" and a zero; version (1), number of points, 32-bit integers;
 /// first frame and frames between two samples, floats; number of samples, a 32-bit integer; then for every sample x, y,

@@ -154,16 +154,21 @@ public:
     [[nodiscard]] bool is_free_of(TriangleFeature feature) {
         normal_ = cross(u_, v_);
         switch (feature) {
-            case TriangleFeature::kFace: return is_over_face();
-            case TriangleFeature::kEdgeAB: return is_beyond_ab() || is_over_face();
-            case TriangleFeature::kEdgeBC: return is_beyond_bc() || is_over_face();
-            case TriangleFeature::kEdgeCA: return is_beyond_ca() || is_over_face();
+            case TriangleFeature::kFace:
+                return is_over_face();
+            case TriangleFeature::kEdgeAB:
+                return is_beyond_ab() || is_over_face();
+            case TriangleFeature::kEdgeBC:
+                return is_beyond_bc() || is_over_face();
+            case TriangleFeature::kEdgeCA:
+                return is_beyond_ca() || is_over_face();
             case TriangleFeature::kVertexA:
                 return is_beyond_corner(w_, u_, v_) || is_beyond_ab() || is_beyond_ca() || is_over_face();
             case TriangleFeature::kVertexB:
                 return is_beyond_corner(difference(w_, u_), difference(v_, u_), negative(u_)) || is_beyond_ab() ||
                        is_beyond_bc() || is_over_face();
-            case TriangleFeature::kVertexC: break;
+            case TriangleFeature::kVertexC:
+                break;
         }
         return is_beyond_corner(difference(w_, v_), negative(v_), difference(u_, v_)) || is_beyond_bc() ||
                is_beyond_ca() || is_over_face();
@@ -232,8 +237,8 @@ public:
     }
 
 private:
-    /// To rounding: the sphere overlaps the triangle at an end or in the middle; the point is over its face at both ends,
-    /// on different sides. Searching on would not help.
+    /// To rounding: the sphere overlaps the triangle at an end or in the middle; the point is over its face at both
+    /// ends, on different sides. Searching on would not help.
     [[nodiscard]] bool meet_in(double s, double t) const {
         const auto& [a, b, c] = triangle_.corners;
         if (radius_ > 0.0) {

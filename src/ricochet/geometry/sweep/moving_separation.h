@@ -1,7 +1,7 @@
 /// \file
-/// Does a point or a sphere stay clear of a triangle whose corners move along straight lines at constant speed, and when
-/// does it meet it first? Also beside triangles that turn, at gaps of rounding's size, where no one direction separates
-/// them for long (moving_triangle.h).
+/// Does a point or a sphere stay clear of a triangle whose corners move along straight lines at constant speed, and
+/// when does it meet it first? Also beside triangles that turn, at gaps of rounding's size, where no one direction
+/// separates them for long (moving_triangle.h).
 ///
 /// Method: over a piece of the time, the height above the triangle's plane, the distance from the line of an edge with
 /// the side of that edge, and the distance from a corner with the sides of both its edges are polynomials. One whose

@@ -150,13 +150,13 @@ private:
 
     static void require_series(const std::vector<NumberedFile>& files, const fs::path& pattern) {
         if (files.size() < 2) {
-            throw InputError(fmt::format("{}: found {} numbered files, expected at least 2", pattern.string(),
-                                         files.size()));
+            throw InputError(
+                fmt::format("{}: found {} numbered files, expected at least 2", pattern.string(), files.size()));
         }
         for (std::size_t k = 1; k < files.size(); ++k) {
             if (files[k].number == files[k - 1].number + 1) continue;
-            throw InputError(fmt::format("{}: number {} follows {}, expected consecutive numbers",
-                                         pattern.string(), files[k].number, files[k - 1].number));
+            throw InputError(fmt::format("{}: number {} follows {}, expected consecutive numbers", pattern.string(),
+                                         files[k].number, files[k - 1].number));
         }
     }
 
@@ -176,9 +176,10 @@ private:
         asked_for_memory_ = true;
         ImportedMesh mesh = read_mesh(path);
         if (mesh.weld || base().weld) {
-            throw InputError(fmt::format("{}: found an STL file, which has no numbered vertices; expected OBJ, PLY or "
-                                         "OFF",
-                                         (mesh.weld ? path : base_).string()));
+            throw InputError(
+                fmt::format("{}: found an STL file, which has no numbered vertices; expected OBJ, PLY or "
+                            "OFF",
+                            (mesh.weld ? path : base_).string()));
         }
         if (mesh.mesh.vertices.size() != base().mesh.vertices.size()) {
             throw InputError(fmt::format("{}: found {} vertices, expected the {} of {}", path.string(),
@@ -186,9 +187,10 @@ private:
         }
         if (mesh.polygons.face_offsets != base().polygons.face_offsets ||
             mesh.polygons.corners != base().polygons.corners) {
-            throw InputError(fmt::format("{}: its faces are not those of {}, expected the same corners in the same "
-                                         "order",
-                                         path.string(), base_.string()));
+            throw InputError(
+                fmt::format("{}: its faces are not those of {}, expected the same corners in the same "
+                            "order",
+                            path.string(), base_.string()));
         }
         return std::move(mesh.mesh.vertices);
     }
@@ -213,7 +215,8 @@ const ObjectSpec& deformation_spec() {
     };
     static const ObjectSpec spec = object<DeformationKeys>(
         "deformation",
-        "Where the vertices of a mesh are in time: at keys, and between two of them each on a straight line at constant "
+        "Where the vertices of a mesh are in time: at keys, and between two of them each on a straight line at "
+        "constant "
         "speed. The collider's position, rotation and scale hold for all of them.",
         {{"ends", &DeformationKeys::ends, "What holds before the first and after the last key.",
           Choices{choice(MeshEnds::hold, "hold", "that key's vertices, at rest"),

@@ -53,7 +53,7 @@ protected:
                           const std::string& scene = "") const {
         const std::string text = R"({"ricochet": 1, "colliders": [{"type": "mesh", "file": "flag_08.obj")" + more +
                                  R"(, "deformation": )" + deformation + "}]" + scene + "}";
-        return load_scene(folder_.write("s.json", text));
+        return read_scene(folder_.write("s.json", text));
     }
     std::shared_ptr<const MeshMotion> motion_of(const std::string& deformation) const {
         return std::get<MeshShape>(load(deformation).setup.colliders[0].shape).motion;

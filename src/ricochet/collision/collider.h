@@ -94,4 +94,13 @@ struct ColliderDescription {
     return mesh != nullptr && mesh->motion != nullptr;
 }
 
+/// Calls visit(material) for the materials of a collider and of the groups of its triangles, some more than once.
+template <class Visit>
+void visit_materials(const ColliderDescription& collider, const Visit& visit) {
+    visit(collider.material);
+    const auto* mesh = std::get_if<MeshShape>(&collider.shape);
+    if (mesh == nullptr) return;
+    for (const std::uint32_t material : mesh->triangle_materials) visit(material);
+}
+
 }  // namespace ricochet

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <utility>
-#include <variant>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/io/frames.h"
@@ -33,10 +31,9 @@ double per_second(double duration) { return duration > 0.0 ? 1.0 / duration : 0.
 
 bool has_loads(const Simulation& simulation, std::size_t i) {
     const ColliderDescription& collider = simulation.colliders()[i];
-    const auto drives = [&](std::uint32_t material) { return simulation.materials()[material].drives(); };
-    const auto* mesh = std::get_if<MeshShape>(&collider.shape);
-    return is_moving(collider) || drives(collider.material) ||
-           (mesh != nullptr && std::any_of(mesh->triangle_materials.begin(), mesh->triangle_materials.end(), drives));
+    bool has = is_moving(collider);
+    visit_materials(collider, [&](std::uint32_t k) { has = has || simulation.materials()[k].drives(); });
+    return has;
 }
 
 void LoadTables::add(const Simulation& simulation) {
@@ -48,8 +45,7 @@ void LoadTables::add(const Simulation& simulation) {
         if (!has_loads(simulation, i)) continue;
         const ColliderTotals& before = rows_.totals[i];
         const ColliderTotals& after = totals[i];
-        fmt::format_to(std::back_inserter(rows_.colliders), "{:.17g},{}", now,
-                       field(simulation.colliders()[i].name));
+        fmt::format_to(std::back_inserter(rows_.colliders), "{:.17g},{}", now, field(simulation.colliders()[i].name));
         append(rows_.colliders, after.impulse - before.impulse);
         append(rows_.colliders, rate * (after.moment - before.moment));
         fmt::format_to(std::back_inserter(rows_.colliders), ",{:.17g},{}\n", rate * (after.work - before.work),
@@ -68,8 +64,7 @@ void LoadTables::add(const Simulation& simulation) {
 void LoadTables::write(const Simulation& simulation) const {
     if (!simulation.collider_totals().empty()) {
         write_file(folder_ / kColliderTableFile,
-                   "time,name,impulse_x,impulse_y,impulse_z,torque_x,torque_y,torque_z,power,hits\n" +
-                       rows_.colliders);
+                   "time,name,impulse_x,impulse_y,impulse_z,torque_x,torque_y,torque_z,power,hits\n" + rows_.colliders);
     }
     if (!simulation.bodies().empty()) {
         write_file(folder_ / kBodyTableFile,

@@ -40,9 +40,7 @@ double least_restitution(const SimulationSetup& setup) {
         if (material < setup.materials.size()) least = std::min(least, setup.materials[material].restitution);
     };
     for (const ColliderDescription& collider : setup.colliders) {
-        use(collider.material);
-        const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
-        if (mesh != nullptr) std::for_each(mesh->triangle_materials.begin(), mesh->triangle_materials.end(), use);
+        visit_materials(collider, use);
     }
     return least;
 }

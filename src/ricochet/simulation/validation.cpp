@@ -339,9 +339,11 @@ void validate_bodies(const SimulationSetup& setup) {
             subject.refuse("frame", name, "the name of a driven frame of the setup");
         }
         for (const ColliderDescription& collider : setup.colliders) {
-            if (collider.frame != name || !setup.materials[collider.material].is_random()) continue;
-            subject.refuse("material", setup.materials[collider.material].name,
-                           "one that neither absorbs nor reflects diffusely");
+            if (collider.frame != name) continue;
+            visit_materials(collider, [&](std::uint32_t k) {
+                if (!setup.materials[k].is_random()) return;
+                subject.refuse("material", setup.materials[k].name, "one that neither absorbs nor reflects diffusely");
+            });
         }
         const auto is_on_it = [&](const EmitterDescription& emitter) {
             return emitter.frames &&

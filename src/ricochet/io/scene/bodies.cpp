@@ -176,11 +176,14 @@ void refuse_company(const SceneContext& context, const SimulationSetup& setup, c
     }
     for (const ColliderDescription& collider : setup.colliders) {
         if (collider.frame != frame) continue;
-        const Material& material = setup.materials[collider.material];
-        if (!material.is_random()) continue;
+        const Material* random = nullptr;
+        visit_materials(collider, [&](std::uint32_t k) {
+            if (setup.materials[k].is_random()) random = &setup.materials[k];
+        });
+        if (random == nullptr) continue;
         context.error(view, fmt::format("the material \"{}\" of the collider \"{}\" absorbs or reflects diffusely, "
                                         "expected none that does on a body that impulses move",
-                                        material.name, collider.name));
+                                        random->name, collider.name));
     }
 }
 

@@ -292,9 +292,9 @@ inline constexpr double kTautRope = 1e-9;
 inline constexpr double kFoldedRope = 1e-9;
 
 /// Parts of an impact's change of a particle's velocity by which all impacts of a part of a step before it may change
-/// the velocity of the body that it hits, and of the energy that they take off by which their being answered at once may
-/// change it. Larger: light bodies are hit as if they had not been moved yet, from 1 on energy grows. Smaller: more parts
-/// of steps.
+/// the velocity of the body that it hits, and of the energy that they take off by which their being answered at once
+/// may change it. Larger: light bodies are hit as if they had not been moved yet, from 1 on energy grows. Smaller: more
+/// parts of steps.
 inline constexpr double kMostBodyChange = 0.1;
 
 /// Parts of the time to the next impact, or to the step's end, after which a part of a step ends: bodies take impulses
@@ -302,8 +302,8 @@ inline constexpr double kMostBodyChange = 0.1;
 /// rounding falls into the next part, where it is as good.
 inline constexpr double kPartAfterImpact = 1e-3;
 
-/// Parts of the time step that a part of a step lasts at least. Smaller: bodies between many impacts take longer. Larger:
-/// more impacts are answered as if they came at once, and may put energy in.
+/// Parts of the time step that a part of a step lasts at least. Smaller: bodies between many impacts take longer.
+/// Larger: more impacts are answered as if they came at once, and may put energy in.
 inline constexpr double kShortestPart = 1e-4;
 
 /// Relative to the energies that are exchanged: more than the rounding of their sums. Smaller: parts of steps end at

@@ -340,9 +340,10 @@ void validate_bodies(const SimulationSetup& setup) {
         }
         for (const ColliderDescription& collider : setup.colliders) {
             if (collider.frame != name) continue;
-            visit_materials(collider, [&](std::uint32_t k) {
-                if (!setup.materials[k].is_random()) return;
-                subject.refuse("material", setup.materials[k].name, "one that neither absorbs nor reflects diffusely");
+            visit_materials(collider, [&](std::uint32_t number) {
+                const Material& material = setup.materials[number];
+                if (!material.is_random()) return;
+                subject.refuse("material", material.name, "one that neither absorbs nor reflects diffusely");
             });
         }
         const auto is_on_it = [&](const EmitterDescription& emitter) {

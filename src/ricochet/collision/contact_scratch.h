@@ -105,6 +105,14 @@ struct ContactScratch {
     std::vector<WayPoint> chain;  ///< ends of certified segments, see CertifiedPath
     /// Of queries in the frames of other bodies, one each.
     std::vector<std::unique_ptr<ContactScratch>> foreign;
+    /// Of a path among colliders that move, see MovingSweep, which has them while it is there.
+    struct Sweep {
+        std::vector<BodyId> near;
+        std::vector<double> tolerances;
+        std::vector<double> cuts;
+        std::vector<double> keys;
+    };
+    Sweep sweep;
     TrianglePlaneCache plane_cache;
 
     /// Empties the lists of a query.

@@ -34,6 +34,14 @@ public:
     /// numbers.
     ForeignSurfaces(const MovingView& view, const WayPoint& start) : view_(view), start_(start) {}
 
+    /// The same for another path; without bodies.
+    void restart(const MovingView& view, const WayPoint& start) {
+        view_ = view;
+        start_ = start;
+        bodies_.clear();
+        deforming_.clear();
+    }
+
     void add(Body body) { bodies_.push_back(std::move(body)); }
     void add(const Deforming& triangle) { deforming_.push_back(triangle); }
 

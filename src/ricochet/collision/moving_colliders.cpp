@@ -1,11 +1,16 @@
 #include "ricochet/collision/moving_colliders.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -16,6 +21,29 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 bool meet(const Box3& a, const Box3& b) {
     return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
            a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
+/// Bodies of which the motion over a step is bounded by one thread.
+constexpr std::size_t kBodiesInBlock = 32;
+
+/// A pose that this thread has asked for; the same few are asked again and again.
+struct RememberedPose {
+    std::uint64_t step = 0;  ///< of all steps of all scenes; 0: none
+    BodyId body = kAtRest;
+    double time = 0.0;
+    MovingPose pose;
+};
+
+RememberedPose& slot_of(BodyId body, double time) {
+    constexpr std::size_t kSlots = 16;
+    thread_local std::array<RememberedPose, kSlots> remembered;
+    const std::uint64_t key = (std::bit_cast<std::uint64_t>(time) ^ body) * 0x9E3779B97F4A7C15ULL;
+    return remembered[key >> 60];
+}
+
+std::uint64_t next_step_of_any() {
+    static std::atomic<std::uint64_t> count{0};
+    return ++count;
 }
 
 Box3 everywhere() {
@@ -65,7 +93,11 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
 
 MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
                                  std::shared_ptr<const FrameTree> frames, double chord_margin)
-    : at_rest_(at_rest), colliders_(colliders), frames_(std::move(frames)), deforming_(colliders) {
+    : at_rest_(at_rest),
+      colliders_(colliders),
+      frames_(std::move(frames)),
+      deforming_(colliders),
+      step_(next_step_of_any()) {
     for (const ColliderDescription& collider : colliders->all()) {
         if (collider.frame.empty()) {
             body_of_collider_.push_back(kAtRest);
@@ -81,6 +113,7 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::share
         if (known != bodies_.end()) continue;
         bodies_.push_back(
             {std::make_unique<CollisionWorld>(colliders, collider.frame, chord_margin), *frame, {}, {}, {}, {}});
+        bodies_.back().is_driven = frames_->description(*frame).is_driven;
     }
     for (std::size_t mesh = 0; mesh < deforming_.size(); ++mesh) {
         body_of_collider_[deforming_.collider_of(mesh)] = static_cast<BodyId>(bodies_.size() + mesh);
@@ -100,13 +133,31 @@ MovingPose MovingColliders::pose(BodyId body, double time) const {
     const Body& moving = bodies_[body];
     if (time == begin_ && begin_ < end_) return moving.at_begin;
     if (time == end_ && begin_ < end_) return moving.at_end;
-    return frames_->at(moving.frame, time);
+    if (moving.is_driven) return frames_->at(moving.frame, time);  // its path changes
+    RememberedPose& slot = slot_of(body, time);
+    if (slot.step != step_ || slot.body != body || slot.time != time) {
+        slot = {step_, body, time, frames_->at(moving.frame, time)};
+    }
+    return slot.pose;
 }
 
 void MovingColliders::begin_step(double begin, double end) {
     begin_ = begin;
     end_ = end;
-    for (Body& body : bodies_) sweep(body);
+    step_ = next_step_of_any();
+    parallel_for_blocks(bodies_.size(), kBodiesInBlock, [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) sweep(bodies_[k]);
+    });
+    bounded_.clear();
+    unbounded_.clear();
+    std::vector<Box3> boxes;
+    for (BodyId body = 0; body < bodies_.size(); ++body) {
+        const Box3& swept = bodies_[body].swept;
+        const bool is_bounded = !swept.empty() && is_finite(swept.lower) && is_finite(swept.upper);
+        (is_bounded ? bounded_ : unbounded_).push_back(body);
+        if (is_bounded) boxes.push_back(swept);
+    }
+    swept_.fit(boxes);
     deforming_.begin_step(begin, end);
 }
 
@@ -125,9 +176,14 @@ bool MovingColliders::stays_out(BodyId body, const Box3& box) const {
 
 void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& out) const {
     if (except != kAtRest && !stays_out(kAtRest, box)) out.push_back(kAtRest);
-    for (BodyId body = 0; body < bodies_.size(); ++body) {
+    const auto before = static_cast<std::ptrdiff_t>(out.size());
+    for (const BodyId body : unbounded_) {
         if (body != except && meet(bodies_[body].swept, box)) out.push_back(body);
     }
+    swept_.near(box, [&](std::uint32_t k) {
+        if (bounded_[k] != except) out.push_back(bounded_[k]);
+    });
+    std::sort(out.begin() + before, out.end());
 }
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {

@@ -17,6 +17,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/mobility.h"
+#include "ricochet/geometry/acceleration/box_tree.h"
 
 namespace ricochet {
 
@@ -104,6 +105,7 @@ private:
         std::optional<Mobility> mobility{};
         std::optional<Vec3> angular_momentum{};
         bool has_jumped = false;
+        bool is_driven = false;
     };
 
     void sweep(Body& body) const;
@@ -114,6 +116,10 @@ private:
     std::vector<Body> bodies_;
     std::vector<BodyId> body_of_collider_;
     DeformingColliders deforming_;
+    BoxTree swept_;                  ///< of the bodies in bounded_, in this step
+    std::vector<BodyId> bounded_;    ///< what does not reach everywhere
+    std::vector<BodyId> unbounded_;  ///< the others, looked at one by one
+    std::uint64_t step_ = 0;  ///< a number that no other step has, of no other scene: of poses that are remembered
     double begin_ = 0.0;
     double end_ = 0.0;
 };

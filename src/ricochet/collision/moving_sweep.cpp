@@ -57,7 +57,12 @@ DerivativeBounds bounds_of(const Path& path) {
 
 MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
                          const WayPoint& start, ContactScratch& scratch)
-    : view_(view), geometry_(geometry), query_(query), start_(start), scratch_(scratch) {
+    : view_(view),
+      geometry_(geometry),
+      query_(query),
+      start_(start),
+      scratch_(scratch),
+      lists_(std::exchange(scratch.sweep, {})) {
     find_near();
     cut();
 }
@@ -79,7 +84,10 @@ void MovingSweep::find_near() {
         box.include(start_.world - by);
         box.include(start_.world + by);
     }
-    bodies.near(box, view_.home(), near_);
+    lists_.near.clear();
+    lists_.tolerances.clear();
+    bodies.near(box, view_.home(), lists_.near);
+    for (const BodyId body : lists_.near) lists_.tolerances.push_back(tolerance_in(body));
     if (!bodies.deforming().empty()) find_deforming(box);
 }
 
@@ -89,7 +97,7 @@ void MovingSweep::find_deforming(const Box3& box) {
     if (deforming.stay_out(box)) return;
     deforming.near(box, deforming_);
     double by = rounding() + query_.beside;
-    for (const BodyId body : near_) by += 8.0 * tolerance_of(body);
+    for (const BodyId body : lists_.near) by += 8.0 * tolerance_of(body);
     deforming_.clear();
     deforming.near(grown(box, 8.0 * by), deforming_);
 }
@@ -112,7 +120,7 @@ double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world
 }
 
 /// m, by which a body may see a piece of the path beside where it is.
-double MovingSweep::tolerance_of(BodyId body) const {
+double MovingSweep::tolerance_in(BodyId body) const {
     const CollisionWorld& world = view_.bodies().world(body);
     const Vec3 at = view_.image(body, start_.world, 0.0);
     const double size = std::max(max_abs(at), query_.radius);
@@ -122,6 +130,13 @@ double MovingSweep::tolerance_of(BodyId body) const {
         tolerance = std::min(tolerance, (bvh.margin() - query_.radius) / 64.0);
     }
     return std::max(tolerance, kSmallestContactOffset);
+}
+
+/// The same, known already of one that is near.
+double MovingSweep::tolerance_of(BodyId body) const {
+    const auto found = std::find(lists_.near.begin(), lists_.near.end(), body);
+    if (found == lists_.near.end()) return tolerance_in(body);
+    return lists_.tolerances[static_cast<std::size_t>(found - lists_.near.begin())];
 }
 
 /// m, by which the images of stored positions may lie beside the path in a frame, and safe positions further: by the
@@ -136,7 +151,7 @@ double MovingSweep::rounding() const {
         largest += Vec3{way, way, way};
     };
     include(view_.home());
-    for (const BodyId body : near_) include(body);
+    for (const BodyId body : lists_.near) include(body);
     double offset = contact_offset(largest);
     for (const SurfaceId surface : deforming_) {
         offset = std::max(offset, view_.bodies().deforming().offset_of(surface));
@@ -148,7 +163,8 @@ double MovingSweep::rounding() const {
 void MovingSweep::cut() {
     const double duration = query_.path.duration;
     const PathClock& clock = view_.clock();
-    std::vector<double> keys{0.0};
+    std::vector<double>& keys = lists_.keys;
+    keys.assign(1, 0.0);
     const auto add_keys = [&](BodyId body) {
         double key = view_.bodies().next_key(body, clock.begin);
         for (int count = 0; count < kMostKeysInStep && key < clock.end;
@@ -158,28 +174,29 @@ void MovingSweep::cut() {
         }
     };
     add_keys(view_.home());
-    for (const BodyId body : near_) add_keys(body);
+    for (const BodyId body : lists_.near) add_keys(body);
     for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
     std::sort(keys.begin(), keys.end());
     double rate = 0.0;  // pieces a second
-    const DerivativeBounds world = world_bounds();
-    for (const BodyId body : near_) {
+    const bool is_alone = lists_.near.empty() && deforming_.empty();
+    const DerivativeBounds world = is_alone ? DerivativeBounds{} : world_bounds();
+    for (const BodyId body : lists_.near) {
         rate = std::max(rate, std::sqrt(std::sqrt(fourth_derivative(body, world) / (384.0 * tolerance_of(body)))));
     }
     if (view_.home() != kAtRest && !deforming_.empty()) {
         const double derivative = fourth_derivative(kAtRest, world);
         rate = std::max(rate, std::sqrt(std::sqrt(derivative / (384.0 * tolerance_of(kAtRest)))));
     }
-    cuts_.assign(1, 0.0);
+    lists_.cuts.assign(1, 0.0);
     for (std::size_t k = 1; k < keys.size(); ++k) {
         const double span = keys[k] - keys[k - 1];
         if (!(span > 0.0)) continue;
         const double count = std::clamp(std::ceil(span * rate), 1.0, kMostMovingPieces);
-        for (double i = 1.0; i < count; ++i) cuts_.push_back(keys[k - 1] + span * (i / count));
-        cuts_.push_back(keys[k]);
+        for (double i = 1.0; i < count; ++i) lists_.cuts.push_back(keys[k - 1] + span * (i / count));
+        lists_.cuts.push_back(keys[k]);
     }
-    if (cuts_.size() == 1) cuts_.push_back(duration);
+    if (lists_.cuts.size() == 1) lists_.cuts.push_back(duration);
     if (!deforming_.empty()) set_times();
 }
 
@@ -207,10 +224,10 @@ void MovingSweep::set_times() {
     const PathClock& clock = view_.clock();
     const std::vector<double> keys = deforming_keys();
     times_.clear();
-    for (const double cut : cuts_) times_.push_back(clock.at(cut));
+    for (const double cut : lists_.cuts) times_.push_back(clock.at(cut));
     times_.back() = clock.end;
     for (const double key : keys) {
-        const auto at = std::find(cuts_.begin(), cuts_.end(), path_time_of(key)) - cuts_.begin();
+        const auto at = std::find(lists_.cuts.begin(), lists_.cuts.end(), path_time_of(key)) - lists_.cuts.begin();
         for (std::ptrdiff_t k = 0; k < std::ssize(times_); ++k) {
             double& time = times_[static_cast<std::size_t>(k)];
             time = k < at ? std::min(time, key) : (k > at ? std::max(time, key) : key);
@@ -295,8 +312,8 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView
 }
 
 ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) {
-    const double from = cuts_[piece];
-    const double to = cuts_[piece + 1];
+    const double from = lists_.cuts[piece];
+    const double to = lists_.cuts[piece + 1];
     piece_ = piece_of(query_.path, from, to, start.position);
     clock_ = view_.clock().piece(from, to);
     if (!times_.empty()) {
@@ -305,28 +322,30 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
     }
     const MovingView view(view_.bodies(), view_.home(), clock_);
     const WayPoint first_point{start.position, 0.0, start.world};
-    foreign_.emplace(view, first_point);
-    std::optional<Contact> first;
+    if (foreign_) {
+        foreign_->restart(view, first_point);
+    } else {
+        foreign_.emplace(view, first_point);
+    }
     double tolerance = 0.0;
-    for (const BodyId body : near_) tolerance = std::max(tolerance, tolerance_of(body));
+    for (const double one : lists_.tolerances) tolerance = std::max(tolerance, one);
     // What lies beside the path here lies further beside the cubic that a body sees.
     const double beside = query_.beside + 4.0 * tolerance + rounding();
     const double beside_there = 2.0 * beside;
     ContactQueryResult own =
         find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
-    if (own.contact) take(*own.contact, view.home(), view, first);
-    while (scratch_.foreign.size() < near_.size()) scratch_.foreign.push_back(std::make_unique<ContactScratch>());
-    for (std::size_t k = 0; k < near_.size(); ++k) {
+    std::optional<Contact>& first = own.contact;  // what is copied here is large
+    while (scratch_.foreign.size() < lists_.near.size()) scratch_.foreign.push_back(std::make_unique<ContactScratch>());
+    for (std::size_t k = 0; k < lists_.near.size(); ++k) {
         ContactScratch& scratch = *scratch_.foreign[k];
-        const SurfaceGeometry geometry(view.bodies().world(near_[k]), scratch.plane_cache);
-        const Path path = path_in(near_[k], view, first_point);
+        const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
+        const Path path = path_in(lists_.near[k], view, first_point);
         const ContactQueryResult found =
             find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside_there}, scratch);
-        if (found.contact) take(*found.contact, near_[k], view, first);
-        foreign_->add({near_[k], path, found.near});
+        if (found.contact) take(*found.contact, lists_.near[k], view, first);
+        foreign_->add({lists_.near[k], path, found.near});
     }
     if (!deforming_.empty()) meet_deforming(view, first_point, beside_there, first);
-    own.contact = first;
     own.near.join(*foreign_);
     return own;
 }
@@ -350,10 +369,10 @@ void MovingSweep::meet_deforming(const MovingView& view, const WayPoint& start, 
 std::optional<Contact> MovingSweep::first_contact() {
     for (std::size_t k = 0; k < pieces(); ++k) {
         const MovingView view(view_.bodies(), view_.home(), view_.clock());
-        const WayPoint start = k == 0 ? start_ : view.point_at(query_.path.position(cuts_[k]), cuts_[k]);
+        const WayPoint start = k == 0 ? start_ : view.point_at(query_.path.position(lists_.cuts[k]), lists_.cuts[k]);
         std::optional<Contact> contact = sweep(k, start).contact;
         if (!contact) continue;
-        contact->time += cuts_[k];
+        contact->time += lists_.cuts[k];
         return contact;
     }
     return std::nullopt;

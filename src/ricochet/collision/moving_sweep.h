@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
@@ -27,11 +28,14 @@ public:
     /// query: of a path in the frame of view.home(); geometry: of the colliders there. start: of the path, stored.
     MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
                 const WayPoint& start, ContactScratch& scratch);
+    ~MovingSweep() { scratch_.sweep = std::move(lists_); }
+    MovingSweep(const MovingSweep&) = delete;
+    MovingSweep& operator=(const MovingSweep&) = delete;
 
     /// How many pieces there are; each is swept by itself.
-    [[nodiscard]] std::size_t pieces() const { return cuts_.size() - 1; }
+    [[nodiscard]] std::size_t pieces() const { return lists_.cuts.size() - 1; }
     /// When a piece begins, s along the path; of the number after the last: its duration.
-    [[nodiscard]] double begin_of(std::size_t piece) const { return cuts_[piece]; }
+    [[nodiscard]] double begin_of(std::size_t piece) const { return lists_.cuts[piece]; }
 
     /// Sweeps a piece. start: where it begins, stored. The result is in times of the piece, and is valid until the next
     /// call; path() is then the piece in the frame of the query.
@@ -50,6 +54,7 @@ private:
     [[nodiscard]] std::vector<double> deforming_keys() const;
     [[nodiscard]] double path_time_of(double key) const;
     [[nodiscard]] double fourth_derivative(BodyId body, const DerivativeBounds& world) const;
+    [[nodiscard]] double tolerance_in(BodyId body) const;
     [[nodiscard]] double tolerance_of(BodyId body) const;
     [[nodiscard]] double rounding() const;
     [[nodiscard]] DerivativeBounds world_bounds() const;
@@ -64,10 +69,9 @@ private:
     const ContactQuery& query_;
     WayPoint start_;
     ContactScratch& scratch_;
-    std::vector<BodyId> near_;
+    ContactScratch::Sweep lists_;
     std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
-    std::vector<double> cuts_;
-    std::vector<double> times_;  // s, simulation times of the cuts; only where something that deforms is near
+    std::vector<double> times_;         // s, simulation times of the cuts; only where something that deforms is near
     std::optional<ForeignSurfaces> foreign_;
     Path piece_;
     PathClock clock_;

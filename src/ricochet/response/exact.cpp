@@ -111,7 +111,8 @@ bool ParticleMover::has_room() {
 /// that deform, until those of one are left.
 std::optional<Contact> ParticleMover::resume() {
     if (rides_ == nullptr) return contact_phase_.resume();
-    return step_.catch_up() ? resume_among_bodies() : std::nullopt;
+    if (!step_.catch_up() || particle_.contact.count == 0) return std::nullopt;
+    return resume_among_bodies();
 }
 
 std::optional<Contact> ParticleMover::resume_among_bodies() {

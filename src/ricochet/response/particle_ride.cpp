@@ -36,6 +36,7 @@ std::optional<Contact> ParticleStep::follow_among_bodies(const Flight& flight, c
     const Travel travelled = travel_among_bodies({flight.path, state().radius, nullptr, {}});
     state().velocity = velocity_at(integrator, rules_->forces, flight, travelled.elapsed);
     record_flown(flight.path, travelled.elapsed, departure, true);
+    if (!travelled.contact) return std::nullopt;  // what is copied here is large
     return travelled.contact;
 }
 
@@ -48,7 +49,7 @@ ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query
         const WayPoint start{view.stored(stored_.position, sweep.begin_of(k))};
         ContactQueryResult found = sweep.sweep(k, start);
         const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
-        travel.contact = found.contact;
+        if (found.contact) travel.contact = found.contact;
         const bool has_gone = elapsed >= sweep.path().duration;
         travel.elapsed = has_gone ? sweep.begin_of(k + 1) : sweep.begin_of(k) + elapsed;
         if (travel.contact) travel.contact->time = travel.elapsed;

@@ -1,0 +1,122 @@
+// Which bodies are near, and where they are, as looking at each of them says it.
+#include "ricochet/collision/moving_colliders.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/random.h"
+
+namespace ricochet {
+namespace {
+
+/// Balls that go round and to and fro, one a frame, a plane that moves, and a ball at rest.
+struct ManyBodies {
+    std::shared_ptr<const FrameTree> frames;
+    std::shared_ptr<ColliderList> list;
+    std::unique_ptr<CollisionWorld> at_rest;
+    std::unique_ptr<MovingColliders> bodies;
+
+    ManyBodies(std::size_t count, std::uint64_t seed) {
+        RandomSequence random(seed, 0, 0);
+        std::vector<FrameDescription> descriptions;
+        std::vector<ColliderDescription> colliders{{"still", BallShape{0.5, {{1, 2, 3}}}, 0}};
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::string name = "frame " + std::to_string(k);
+            const Vec3 place = 6.0 * random.unit_vector();
+            const Vec3 axis = random.unit_vector();
+            const Vec3 shake = random.uniform() * random.unit_vector();
+            descriptions.push_back({name,
+                                    "",
+                                    place,
+                                    {0, 0, 1},
+                                    0.0,
+                                    {Spin{axis, 300.0 * random.uniform()}, Oscillation{shake, random.uniform(), 0.0}}});
+            const Vec3 center = random.unit_vector();
+            colliders.push_back({name, BallShape{0.1 + 0.4 * random.uniform(), {center}}, 0, name});
+        }
+        colliders.push_back({"lift", PlaneShape{{0, 0, -50}, {0, 0, 1}}, 0, "frame 0"});
+        frames = std::make_shared<const FrameTree>(descriptions);
+        list = std::make_shared<ColliderList>(std::move(colliders));
+        at_rest = std::make_unique<CollisionWorld>(list, "");
+        bodies = std::make_unique<MovingColliders>(*at_rest, list, frames, kChordMargin);
+    }
+};
+
+TEST(MovingColliders, NearABoxAreAllThatDoNotStayOutOfItInTheirOrder) {
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        SCOPED_TRACE(seed);
+        ManyBodies many(1 + 12 * seed, seed);
+        RandomSequence random(seed, 1, 0);
+        for (int step = 0; step < 3; ++step) {
+            many.bodies->begin_step(0.1 * step, 0.1 * (step + 1));
+            for (int query = 0; query < 50; ++query) {
+                const Vec3 center = 7.0 * random.uniform() * random.unit_vector();
+                const double half = 2.0 * random.uniform() * random.uniform();
+                const Box3 box{center - Vec3{half, half, half}, center + Vec3{half, half, half}};
+                const BodyId except = query % 3 == 0
+                                          ? kAtRest
+                                          : static_cast<BodyId>(static_cast<std::size_t>(query) % many.bodies->size());
+                std::vector<BodyId> expected{kAtRest};  // what is there already stays
+                if (except != kAtRest && !many.bodies->stays_out(kAtRest, box)) expected.push_back(kAtRest);
+                for (BodyId body = 0; body < many.bodies->size(); ++body) {
+                    if (body != except && !many.bodies->stays_out(body, box)) expected.push_back(body);
+                }
+                std::vector<BodyId> near{kAtRest};
+                many.bodies->near(box, except, near);
+                EXPECT_EQ(near, expected);
+            }
+        }
+    }
+}
+
+// Poses are remembered: those of other times, bodies, steps and scenes are never mixed up.
+TEST(MovingColliders, AreWhereTheirFramesAreWhateverWasAskedBefore) {
+    ManyBodies a(7, 1);
+    ManyBodies b(7, 2);
+    RandomSequence random(3, 0, 0);
+    for (int step = 0; step < 4; ++step) {
+        a.bodies->begin_step(0.1 * step, 0.1 * (step + 1));
+        b.bodies->begin_step(0.1 * step, 0.1 * (step + 1));
+        for (int query = 0; query < 300; ++query) {
+            ManyBodies& many = random.uniform() < 0.5 ? a : b;
+            const auto body = static_cast<BodyId>(7.0 * random.uniform());
+            const double time = 0.1 * (step + static_cast<double>(static_cast<int>(5.0 * random.uniform())) / 4.0);
+            const MovingPose pose = many.bodies->pose(body, time);
+            const MovingPose other = many.frames->at(body, time);
+            EXPECT_EQ(pose.image({1, 2, 3}), other.image({1, 2, 3}));
+            EXPECT_EQ(pose.velocity_of({1, 2, 3}), other.velocity_of({1, 2, 3}));
+            EXPECT_EQ(pose.acceleration, other.acceleration);
+        }
+    }
+}
+
+// Wherever a body is within a step, it is in its box.
+TEST(SweptBoxes, HoldABodyAllTheTime) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const ManyBodies many(5, seed);
+        RandomSequence random(seed, 2, 0);
+        for (std::size_t frame = 0; frame < 5; ++frame) {
+            const Box3 box{{-0.5, -0.2, -1.0}, {0.7, 0.3, 0.4}};
+            const double begin = 3.0 * random.uniform();
+            const double end = begin + random.uniform();
+            const Box3 swept = swept_box(*many.frames, frame, box, begin, end);
+            for (int k = 0; k <= 50; ++k) {
+                const MovingPose pose = many.frames->at(frame, begin + (end - begin) * k / 50.0);
+                for (int corner = 0; corner < 8; ++corner) {
+                    const Vec3 p{corner & 1 ? box.lower.x : box.upper.x, corner & 2 ? box.lower.y : box.upper.y,
+                                 corner & 4 ? box.lower.z : box.upper.z};
+                    EXPECT_TRUE(swept.contains(pose.point(p)));
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

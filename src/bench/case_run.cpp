@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "bench/moving_case.h"
 #include "bench/timing.h"
 #include "generators/build_near.h"
 #include "generators/primitives.h"
@@ -81,6 +82,8 @@ TriangleMesh make_ground(Ground ground, double edge) {
             return meshes::make_terrain({}, edge);
         case Ground::wedge:
             return meshes::make_wedge({.length = 1.0, .opening = 0.01, .width = 1.0}, edge);
+        case Ground::rocks:
+            break;  // many, each by itself
     }
     throw InputError("a benchmark case names a ground that does not exist");
 }
@@ -116,6 +119,7 @@ std::optional<Vec3> heart_of(Ground ground) {
 }
 
 std::shared_ptr<const TriangleMesh> make_mesh(const Case& c) {
+    if (c.ground == Ground::rocks) return std::make_shared<const TriangleMesh>(make_rocks(c.triangles));
     const double edge = c.ground == Ground::terrain ? kCoarseTerrainEdge : kCoarseEdge;
     return std::make_shared<const TriangleMesh>(
         meshes::build_near(c.triangles, edge, [&](double length) { return make_ground(c.ground, length); }));
@@ -149,7 +153,9 @@ SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMe
     setup.options.response = c.response;
     if (c.gravity != 0.0) setup.forces.push_back(make_gravity({0.0, 0.0, -c.gravity}));
     setup.materials.push_back({.name = "ground", .restitution = c.restitution, .friction = c.friction});
-    setup.colliders.push_back({"ground", MeshShape{mesh, {}, ""}, 0});
+    setup.acceleration.look_ahead = c.looks_ahead;
+    setup.colliders = colliders_of(c, mesh);
+    setup.frames = frames_of(c);
     return setup;
 }
 
@@ -180,7 +186,9 @@ MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh
         static_cast<double>(sizeof(Vec3) * mesh->vertices.capacity() + sizeof(Triangle) * mesh->triangles.capacity());
     MemoryUse use;
     // Counted, not asked of the allocator: Embree maps large blocks past it.
-    const CollisionWorld world(make_setup(c, mesh).colliders);
+    std::vector<ColliderDescription> colliders = colliders_of(c, mesh);
+    for (ColliderDescription& collider : colliders) collider.frame.clear();
+    const CollisionWorld world(std::move(colliders));
     use.bytes_per_triangle =
         (mesh_bytes + static_cast<double>(world.memory_bytes())) / static_cast<double>(mesh->triangles.size());
     use.bytes_per_particle = std::max(0.0, held(particles) - held({})) / static_cast<double>(particles.size());
@@ -199,6 +207,14 @@ std::vector<Flight> flights_of(const Particles& particles) {
 }
 
 /// True before the steps whose segments the references get.
+/// As the ground's frame sees them at a time, s.
+std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time) {
+    if (c.moves == Moves::nothing) return flights;
+    const MovingPose pose = ground_pose(c, time);
+    for (Flight& flight : flights) flight = {pose.image(flight.position), pose.direction_image(flight.velocity)};
+    return flights;
+}
+
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;
@@ -227,9 +243,12 @@ bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& 
         simulation.step();
     }
     const SimulationStatistics before = simulation.statistics();
+    if (case_.moves != Moves::nothing) naive_start_ = flights_of(simulation.particles());
     for (std::uint64_t step = 0; step < case_.steps; ++step) {
         if (!announce("first run", step + 1)) return false;
-        if (is_snapshot(step, case_)) states.push_back(flights_of(simulation.particles()));
+        if (is_snapshot(step, case_)) {
+            states.push_back(seen_from_ground(case_, flights_of(simulation.particles()), simulation.time()));
+        }
         simulation.step();
     }
     course_.particle_steps = simulation.statistics().particle_steps - before.particle_steps;
@@ -248,7 +267,25 @@ bool CaseRun::prepare(const Announce& announce) {
     // Other responses let particles into the wall, and the references would begin there.
     const std::optional<Vec3> heart = heart_of(case_.ground);
     if (heart && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *heart);
+    if (case_.moves == Moves::nothing) return true;
+    if (!announce("naive motion", 0)) return false;
+    naive_.emplace(colliders_of(case_, mesh_), frames_of(case_));
+    std::vector<Flight> flights = naive_start_;
+    (void)naive_->run(flights, naive_steps());
+    if (heart) naive_leaks_ = count_outside(seen_from_ground(case_, std::move(flights), end_of_steps()), *heart);
     return true;
+}
+
+NaiveMotion::Steps CaseRun::naive_steps() const {
+    return {static_cast<double>(case_.warm_up) * case_.time_step, case_.time_step, case_.steps, case_.restitution};
+}
+
+double CaseRun::end_of_steps() const { return static_cast<double>(case_.warm_up + case_.steps) * case_.time_step; }
+
+std::uint64_t CaseRun::count_outside(const std::vector<Flight>& flights, const Vec3& heart) const {
+    const Insides insides(*mesh_, heart);
+    return static_cast<std::uint64_t>(std::count_if(
+        flights.begin(), flights.end(), [&](const Flight& flight) { return !insides.contains(flight.position); }));
 }
 
 bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
@@ -286,6 +323,10 @@ bool CaseRun::time(CaseTimes& times, const Announce& announce) {
     times.sorted.push_back(time_of([&] { reference_->trace_sorted(); }));
     if (!announce("native bounces", 0)) return false;
     times.bounces.push_back(time_of([&] { reference_->bounce(); }));
+    if (!naive_) return true;
+    if (!announce("naive motion", 0)) return false;
+    std::vector<Flight> flights = naive_start_;
+    times.naive.push_back(time_of([&] { (void)naive_->run(flights, naive_steps()); }));
     return true;
 }
 

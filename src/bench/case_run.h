@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/cases.h"
+#include "bench/naive_motion.h"
 #include "bench/reference.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/particles.h"
@@ -81,6 +82,7 @@ struct CaseTimes {
     std::vector<double> raw;
     std::vector<double> sorted;
     std::vector<double> bounces;
+    std::vector<double> naive;  ///< of the measured steps in the usual way; empty where nothing moves
 };
 
 /// Told before every piece of work; step counts from 1, 0 where the work has no steps. False ends the measurement.
@@ -117,11 +119,16 @@ public:
     [[nodiscard]] const Course& course() const { return course_; }
     /// After prepare().
     [[nodiscard]] const Reference& reference() const { return *reference_; }
+    /// Particles that the usual way has brought outside a closed ground that moves; nothing for others.
+    [[nodiscard]] std::optional<std::uint64_t> naive_leaks() const { return naive_leaks_; }
 
 private:
     [[nodiscard]] Simulation make_simulation() const;
     [[nodiscard]] bool scout(const Announce& announce, std::vector<std::vector<Flight>>& states);
     [[nodiscard]] bool time_simulation(CaseTimes& times, const Announce& announce);
+    [[nodiscard]] NaiveMotion::Steps naive_steps() const;
+    [[nodiscard]] double end_of_steps() const;
+    [[nodiscard]] std::uint64_t count_outside(const std::vector<Flight>& flights, const Vec3& heart) const;
 
     Case case_;
     std::shared_ptr<const TriangleMesh> mesh_;
@@ -130,6 +137,9 @@ private:
     MemoryUse memory_;
     Course course_;
     std::optional<Reference> reference_;
+    std::optional<NaiveMotion> naive_;  ///< where something moves
+    std::vector<Flight> naive_start_;
+    std::optional<std::uint64_t> naive_leaks_;
 };
 
 }  // namespace ricochet::bench

@@ -140,6 +140,17 @@ Case answered_by(ResponseKind response) {
     return c;
 }
 
+// The same where nothing moves, without looking ahead, and where something does: a group.
+std::vector<Case> beside_rest(Case c, std::string_view at_rest, std::string_view moving, Moves moves) {
+    c.against = Against::at_rest;
+    c.base = c.name = at_rest;
+    c.looks_ahead = false;
+    Case other = c;
+    other.name = moving;
+    other.moves = moves;
+    return {c, other};
+}
+
 Case with_steps(Case c, std::uint64_t warm_up, std::uint64_t steps) {
     c.warm_up = warm_up;
     c.steps = steps;
@@ -198,6 +209,27 @@ Cases response_cases() {
     return cases;
 }
 
+// A flight of 0.7 m a step, so that some half of the particle-steps hit; a gas; and a gas among rocks.
+Cases moving_cases() {
+    constexpr std::size_t kTriangles = 100'000;
+    constexpr std::size_t kParticles = 50'000;
+    constexpr double kStepOnTheseMeshes = 0.0074;
+    Case hits = gas("moving", "", kTriangles, kParticles, 0.7);
+    hits.steps = 8;
+    hits.warm_up = 1;
+    const Case inside = with_steps(gas("moving", "", kTriangles, kParticles, kStepOnTheseMeshes), 4, 30);
+    Case rocks = with_steps(gas("moving", "", 1'000'000, kParticles, 0.02), 4, 30);
+    rocks.ground = Ground::rocks;
+    rocks.start = Start::box;
+    rocks.box = {{-11, -11, -11}, {11, 11, 11}};
+    Cases cases;
+    append(cases, beside_rest(hits, "hits-rest", "hits-shaken", Moves::shaken));
+    append(cases, beside_rest(inside, "inside-rest", "inside-spinning", Moves::spinning));
+    append(cases, beside_rest(inside, "far-rest", "far-moving", Moves::bystander));
+    append(cases, beside_rest(rocks, "rocks-rest", "rocks-spinning", Moves::spinning));
+    return cases;
+}
+
 Cases make_all_cases() {
     Cases cases = {
         gas("gas", "gas-20k", 20'000, 1'000'000, kGasStep),
@@ -215,6 +247,7 @@ Cases make_all_cases() {
                    settle("threads", "settle", 1'300'000, 200'000), pinball("threads", "pinball", 1'300'000, 200'000)});
     append(cases, radius_cases());
     append(cases, response_cases());
+    append(cases, moving_cases());
     append(cases, {gas("quick", "gas", 20'000, 100'000, kGasStep), hail("quick", "hail", 50'000, 50'000),
                    pinball("quick", "pinball", 20'000, 20'000)});
     return cases;

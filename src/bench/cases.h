@@ -22,6 +22,15 @@ enum class Ground {
     rough_bowl,  ///< the lower half of the cavity, open at the top
     terrain,     ///< open sheet of 120 m by 90 m
     wedge,       ///< closed, two planes of 1 m that meet at a hundredth of a radian; particles inside
+    rocks,       ///< rocks of half a metre and a thousand triangles each on a lattice of 2 m, a collider each
+};
+
+/// What moves in the time that is measured.
+enum class Moves {
+    nothing,
+    shaken,     ///< the ground, to and fro by a decimetre in 5 s
+    spinning,   ///< the ground by a degree a step; of rocks each about itself
+    bystander,  ///< a rock far from the ground and all particles, by a degree a step
 };
 
 /// Where particles start.
@@ -34,8 +43,9 @@ enum class Start {
 /// What a case's cost is divided by: a case of its suite on the same mesh, measured in turns with it.
 enum class Against {
     nothing,
-    points,  ///< the same particles without size
-    exact,   ///< the same particles with the exact response
+    points,   ///< the same particles without size
+    exact,    ///< the same particles with the exact response
+    at_rest,  ///< the same particles where nothing moves
 };
 
 /// One case. Particles start at random positions with random directions, so their order in memory is arbitrary.
@@ -59,6 +69,8 @@ struct Case {
     ResponseKind response = ResponseKind::exact;
     double least_radius = 0.0;  ///< m; the logarithms of the radii are spread evenly from the least to the largest
     double largest_radius = 0.0;
+    Moves moves = Moves::nothing;
+    bool looks_ahead = true;  ///< particles that certainly hit nothing are not queried
     Against against = Against::nothing;
     std::string_view base = {};  ///< name of the case that the cost is divided by (its own for that one), if any
 };

@@ -114,6 +114,8 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
         row.ratio_native_bounces = ratio_of(course.contacts, times.simulation, reference.bounces(), times.bounces);
     }
     row.leaks = reference.leaks();
+    if (!times.naive.empty()) row.ratio_naive = median_ratio(times.naive, times.simulation);
+    row.naive_leaks = run.naive_leaks();
     row.state_hash = course.state_hash;
     row.bytes_per_particle = run.memory().bytes_per_particle;
     row.bytes_per_triangle = run.memory().bytes_per_triangle;
@@ -147,6 +149,7 @@ std::vector<Row> Measurer::rows() const {
                                          run.course().particle_steps, times[k].simulation);
             if (run.description().against == Against::points) row.ratio_points = cost;
             if (run.description().against == Against::exact) row.ratio_exact = cost;
+            if (run.description().against == Against::at_rest) row.ratio_rest = cost;
             rows.push_back(row);
         }
     }

@@ -44,8 +44,13 @@ struct Row {
     double bytes_per_triangle = 0.0;
     std::optional<double> ratio_points;  ///< time of a particle-step over that of points; nothing without such a case
     std::optional<double> ratio_exact;   ///< the same over the exact response
-    std::optional<double> speedup;       ///< time with one thread over time; nothing where that was not measured
-    std::optional<double> speedup_raw;   ///< the same of the raw rays
+    std::optional<double> ratio_rest;    ///< the same over the same where nothing moves
+    /// Time of the same steps in the usual way, see NaiveMotion, over that of the simulation; nothing where nothing
+    /// moves.
+    std::optional<double> ratio_naive;
+    std::optional<std::uint64_t> naive_leaks;  ///< particles that it brings outside a closed ground
+    std::optional<double> speedup;             ///< time with one thread over time; nothing where that was not measured
+    std::optional<double> speedup_raw;         ///< the same of the raw rays
 };
 
 /// How cases are measured.

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "bench/native_ray.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/acceleration/embree.h"
 
 namespace ricochet::bench {
 namespace {
@@ -14,32 +14,8 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kPacket = 16;
 
-// How far from the surface the next ray starts, of the mesh's largest coordinate: some ten roundings of a float, as
-// renderers choose it. Less and rays hit the triangle that they leave, more and they start behind the next wall.
-constexpr double kOffset = 1e-6;
-
 // As many as the simulation allows by default.
 constexpr int kMostBounces = 1000;
-
-RTCRayHit ray_of(const RaySegment& segment) {
-    RTCRayHit ray{};
-    ray.ray.org_x = segment.from[0];
-    ray.ray.org_y = segment.from[1];
-    ray.ray.org_z = segment.from[2];
-    ray.ray.dir_x = segment.along[0];
-    ray.ray.dir_y = segment.along[1];
-    ray.ray.dir_z = segment.along[2];
-    ray.ray.tnear = 0.0F;
-    ray.ray.tfar = 1.0F;
-    ray.ray.mask = 0xFFFFFFFFU;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray.hit.primID = kNoTriangle;
-    return ray;
-}
-
-std::array<float, 3> to_floats(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 
 /// Sixteen rays and which of them are there.
 struct Packet {
@@ -94,7 +70,7 @@ NativeRays::Impl::Impl(const TriangleMesh& mesh)
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::array<float, 3> corner = to_floats(vertices[i]);
         std::copy(corner.begin(), corner.end(), corners + 3 * i);
-        offset = std::max(offset, kOffset * max_abs(vertices[i]));
+        offset = std::max(offset, kRayOffset * max_abs(vertices[i]));
     }
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         std::copy(triangles[i].begin(), triangles[i].end(), indices + 3 * i);

@@ -169,6 +169,9 @@ Record record_of(const Row& row) {
              ratio_of(static_cast<double>(row.contacts), static_cast<double>(row.particle_steps))},
             {"ratio_points", cell_of(row.ratio_points)},
             {"ratio_exact", cell_of(row.ratio_exact)},
+            {"ratio_rest", cell_of(row.ratio_rest)},
+            {"ratio_naive", cell_of(row.ratio_naive)},
+            {"naive_leaks", cell_of(row.naive_leaks)},
             {"speedup", cell_of(row.speedup)},
             {"speedup_raw", cell_of(row.speedup_raw)}};
 }
@@ -246,14 +249,20 @@ std::vector<std::string> cells_of(const Row& row) {
 /// A column that only some suites have.
 struct ExtraColumn {
     const char* header;
-    std::optional<double> Row::*value;
+    std::optional<double> (*value)(const Row&);
 };
 
 constexpr ExtraColumn kExtraColumns[] = {
-    {"cost/points", &Row::ratio_points},
-    {"cost/exact", &Row::ratio_exact},
-    {"speedup", &Row::speedup},
-    {"raw speedup", &Row::speedup_raw},
+    {"cost/points", [](const Row& row) { return row.ratio_points; }},
+    {"cost/exact", [](const Row& row) { return row.ratio_exact; }},
+    {"cost/rest", [](const Row& row) { return row.ratio_rest; }},
+    {"/naive", [](const Row& row) { return row.ratio_naive; }},
+    {"naive leaks",
+     [](const Row& row) {
+         return row.naive_leaks ? std::optional(static_cast<double>(*row.naive_leaks)) : std::nullopt;
+     }},
+    {"speedup", [](const Row& row) { return row.speedup; }},
+    {"raw speedup", [](const Row& row) { return row.speedup_raw; }},
 };
 
 }  // namespace
@@ -263,10 +272,10 @@ Table to_table(std::span<const Row> rows) {
                  "leaks", "hits/step", "state", "B/particle", "B/triangle"}};
     for (const Row& row : rows) table.push_back(cells_of(row));
     for (const ExtraColumn& column : kExtraColumns) {
-        const auto has_it = [&](const Row& row) { return (row.*column.value).has_value(); };
+        const auto has_it = [&](const Row& row) { return column.value(row).has_value(); };
         if (std::none_of(rows.begin(), rows.end(), has_it)) continue;
         table.front().emplace_back(column.header);
-        for (std::size_t i = 0; i < rows.size(); ++i) table[i + 1].push_back(short_ratio(rows[i].*column.value));
+        for (std::size_t i = 0; i < rows.size(); ++i) table[i + 1].push_back(short_ratio(column.value(rows[i])));
     }
     return table;
 }

@@ -231,6 +231,10 @@ std::string plot_script(std::string_view suite, std::span<const Row> all_rows) {
         return bars<Row>(suite, rows, "What the responses cost", "cost of a particle-step over the exact response",
                          {{"cost over exact", [](const Row& row) { return or_nothing(row.ratio_exact); }}}, true);
     }
+    if (suite == "moving") {
+        return bars<Row>(suite, rows, "What colliders that move cost", "cost of a particle-step over that at rest",
+                         {{"cost over rest", [](const Row& row) { return or_nothing(row.ratio_rest); }}}, true);
+    }
     return ratios_plot(suite, rows);
 }
 

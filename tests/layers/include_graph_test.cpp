@@ -116,7 +116,7 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
         {"src/cli/main.cpp", "bench/cases.h"},
         {"src/bench/cases.cpp", "generators/rock.h"},
         {"src/bench/measurement.cpp", "ricochet/simulation.h"},
-        {"src/bench/native_rays.cpp", "ricochet/geometry/acceleration/embree.h"},
+        {"src/bench/native_ray.h", "ricochet/geometry/acceleration/embree.h"},
         {"tests/core/vec3_test.cpp", "support/counts.h"},
         {"tests/core/vec3_test.cpp", "ricochet/simulation.h"},
     };

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <functional>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
@@ -283,6 +287,51 @@ TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
         EXPECT_EQ(simulation.statistics().squeezed, 0U);
         EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
         expect_sound(simulation);
+    }
+}
+
+SimulationSetup lung_setup() {
+    SimulationSetup setup = setup_of(0.01, 0.4, {"", 0.4, 0.3});
+    setup.options.record_contacts = false;
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    setup.colliders = {{"lung", deforming(sphere_mesh({}, 1.0, 1), breathing, evenly(0.0, 2.0 * kPi / 7.0, 23)), 0}};
+    EmitterDescription emitter;
+    emitter.shape = SphereShape{{}, 0.6, false};
+    emitter.burst = 50;
+    emitter.speed = {3.0, 1.0};
+    emitter.radius = {0.02, 0.02};
+    setup.emitters.push_back(std::move(emitter));
+    return setup;
+}
+
+TEST(MeshesThatDeform, GoOnToTheSameBitsFromASavedState) {
+    Simulation whole(lung_setup());
+    while (whole.step_index() < 20) whole.step();
+    std::vector<std::byte> bytes;
+    whole.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    while (!whole.finished()) whole.step();
+    const auto restored = [&](SimulationSetup setup) {
+        auto simulation = std::make_unique<Simulation>(std::move(setup));
+        std::size_t at = 0;
+        simulation->restore([&](std::span<std::byte> part) {
+            std::memcpy(part.data(), bytes.data() + at, part.size());
+            at += part.size();
+        });
+        while (!simulation->finished()) simulation->step();
+        return simulation->state_hash();
+    };
+    EXPECT_EQ(restored(lung_setup()), whole.state_hash());
+    // Another motion of the same mesh is another setup.
+    SimulationSetup other = lung_setup();
+    other.colliders[0].shape = deforming(sphere_mesh({}, 1.0, 1), breathing, evenly(0.0, 2.0 * kPi / 7.0, 22));
+    EXPECT_THROW(static_cast<void>(restored(std::move(other))), InputError);
+}
+
+TEST(MeshesThatDeform, AreKnownToTheExactResponseOnly) {
+    for (const ResponseKind kind : {ResponseKind::rollback, ResponseKind::project, ResponseKind::penalty}) {
+        SimulationSetup setup = lung_setup();
+        setup.options.response = kind;
+        EXPECT_THROW(Simulation{std::move(setup)}, InputError);
     }
 }
 

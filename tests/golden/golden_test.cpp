@@ -66,6 +66,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"mixer", "1"},
     {"shaker", "0.6"},
     {"sweeper", "1.5"},
+    {"turbine", "1.2"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -111,8 +111,9 @@ bool is_run_file(std::string_view name) {
     if (is_comparison_file(finished)) return true;
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
-           finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile || step_of_frame_file(finished) || step_of_contact_file(finished) ||
-           step_of_moving_file(finished) || index_of_collider_file(finished);
+           finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile ||
+           step_of_frame_file(finished) || step_of_contact_file(finished) || step_of_moving_file(finished) ||
+           index_of_collider_file(finished);
 }
 
 // The folder while a run writes.

@@ -114,9 +114,8 @@ RunInfo read_run_info(const std::filesystem::path& path) {
 namespace {
 
 Json json_of(const ColliderSummary& collider) {
-    Json json = {{"name", collider.name}, {"type", collider.type},
-                 {"file", collider.file}, {"triangles", collider.triangles},
-                 {"hits", collider.hits}, {"impulse", json_of(collider.impulse)}};
+    Json json = {{"name", collider.name},           {"type", collider.type}, {"file", collider.file},
+                 {"triangles", collider.triangles}, {"hits", collider.hits}, {"impulse", json_of(collider.impulse)}};
     if (!collider.loads) return json;
     json["angular_impulse"] = json_of(collider.loads->moment);
     json["work"] = collider.loads->work;

@@ -15,10 +15,22 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// All of its leading minors are above 0 (Sylvester), and no moment is above the sum of the others.
+/// Whether all principal minors are at least `least` times the trace's power (Sylvester).
+bool is_definite(const SymmetricMatrix& a, double least) {
+    const double size = a.trace();
+    const auto is_good = [&](double minor, int power) { return minor >= least * std::pow(size, power); };
+    return is_good(a.xx, 1) && is_good(a.yy, 1) && is_good(a.zz, 1) && is_good(a.xx * a.yy - a.xy * a.xy, 2) &&
+           is_good(a.xx * a.zz - a.xz * a.xz, 2) && is_good(a.yy * a.zz - a.yz * a.yz, 2) &&
+           is_good(a.determinant(), 3);
+}
+
+/// That of some matter: its moments are above 0, and so is what is left of half their sum (of x x^T over the mass), or
+/// 0 for what is flat.
 bool is_inertia(const SymmetricMatrix& a) {
-    const bool is_positive = a.xx > 0.0 && a.xx * a.yy - a.xy * a.xy > 0.0 && a.determinant() > 0.0;
-    return is_positive && std::isfinite(a.trace()) && std::isfinite(a.determinant());
+    constexpr double kRounding = 1e-12;
+    const SymmetricMatrix spread = diagonal_matrix(0.5 * a.trace()) + (-1.0) * a;
+    return std::isfinite(a.determinant()) && std::isnormal(a.determinant()) && is_definite(a, 0.0) &&
+           a.determinant() > 0.0 && is_definite(spread, -kRounding);
 }
 
 void check(const BodyDescription& body) {
@@ -41,7 +53,9 @@ void check(const BodyDescription& body) {
         detail::require_finite(value, of_body(what), "");
     }
     if (!is_inertia(body.inertia)) {
-        throw InputError(of_body("the inertia is not positive definite, expected that of a body with a volume"));
+        throw InputError(
+            of_body("the inertia is that of no body with a volume (moments above 0, none above the sum of "
+                    "the others, products that go with them)"));
     }
 }
 
@@ -69,40 +83,46 @@ DrivenBody::DrivenBody(BodyDescription description, const AffineMap& world_from_
     }
 }
 
-BodyPath DrivenBody::plan(const ForceField& forces, double begin, double end) const {
-    return description_.joint == JointKind::free ? plan_free(forces, begin, end) : plan_joint(forces, begin, end);
+BodyPath DrivenBody::plan(const ForceField& forces, const Wrench& load, double begin, double end) const {
+    return description_.joint == JointKind::free ? plan_free(forces, load, begin, end)
+                                                 : plan_joint(forces, load, begin, end);
 }
 
-BodyPath DrivenBody::plan_free(const ForceField& forces, double begin, double end) const {
+BodyPath DrivenBody::plan_free(const ForceField& forces, const Wrench& load, double begin, double end) const {
     const double h = end - begin;
-    const Vec3 first = acceleration_at(forces, center_, velocity_, begin);
+    const Vec3 by_load = load.impulse / description_.mass;
+    const Vec3 first = acceleration_at(forces, center_, velocity_, begin) + by_load;
     const Vec3 reached = center_ + h * (velocity_ + (0.5 * h) * first);
-    const Vec3 last = acceleration_at(forces, reached, velocity_ + h * first, end);
+    const Vec3 last = acceleration_at(forces, reached, velocity_ + h * first, end) + by_load;
     BodyPath path{begin, end, map_, description_.center};
     path.way = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
     const Vec3 now = inverse_inertia(map_) * angular_momentum_;
-    if (now == Vec3{}) return path;
     // The middle's angular velocity, by half a turn with that of the start.
     const auto turned = [&](const Vec3& spin, double duration) {
         BodyPath turning{0.0, duration, map_, {}};
+        if (spin == Vec3{}) return turning;
         turning.axis = map_.direction_back(spin / length(spin));
         turning.turns[0] = length(spin) * kDegrees;
         return turning;
     };
     const AffineMap middle = turned(now, 0.5 * h).at(0.5 * h).world_from_frame;
-    const Vec3 spin = inverse_inertia(middle) * angular_momentum_;
+    const Vec3 spin = inverse_inertia(middle) * (angular_momentum_ + (0.5 * h) * load.moment);
     const BodyPath turning = turned(spin, h);
     path.axis = turning.axis;
     path.turns = turning.turns;
     return path;
 }
 
-BodyPath DrivenBody::plan_joint(const ForceField& forces, double begin, double end) const {
+BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, double begin, double end) const {
     const double h = end - begin;
-    const double first = joint_acceleration(forces, coordinate_, rate_, begin);
-    const double reached = coordinate_ + h * (rate_ + 0.5 * h * first);
-    const double last = joint_acceleration(forces, reached, rate_ + h * first, end);
-    const double held = h > 0.0 ? held_change(rate_ + 0.5 * h * (first + last), h) / h : 0.0;
+    const double by_load = along_joint(load) / inertia_;
+    const double first = joint_acceleration(forces, coordinate_, rate_, begin) + by_load;
+    // What friction and motor will do is part of the prediction: damping sees the rate with it.
+    const auto held_at = [&](double rate) { return h > 0.0 ? held_change(rate, h) / h : 0.0; };
+    const double predicted = first + held_at(rate_ + h * first);
+    const double reached = coordinate_ + h * (rate_ + 0.5 * h * predicted);
+    const double last = joint_acceleration(forces, reached, rate_ + h * predicted, end) + by_load;
+    const double held = held_at(rate_ + 0.5 * h * (first + last));
     const std::array<double, 3> way{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
     BodyPath path{begin, end, map_, {}};
     path.axis = description_.axis;
@@ -114,6 +134,11 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, double begin, double e
     path.degrees = degrees_;
     for (std::size_t k = 0; k < way.size(); ++k) path.turns[k] = kDegrees * way[k];
     return path;
+}
+
+/// What of a wrench a joint lets through.
+double DrivenBody::along_joint(const Wrench& wrench) const {
+    return dot(axis_, description_.joint == JointKind::hinge ? wrench.moment : wrench.impulse);
 }
 
 /// rad/s^2 or m/s^2, by all that is no friction and no motor.
@@ -128,13 +153,17 @@ double DrivenBody::joint_acceleration(const ForceField& forces, double coordinat
     return (of_forces + of_joint) / inertia_;
 }
 
-/// By how much motor and dry friction change the rate that there would be without them.
+/// By how much motor and dry friction change the rate that there would be without them: the motor aims at its rate
+/// against friction, which opposes the motion that is left, or holds.
 double DrivenBody::held_change(double rate, double duration) const {
     const JointSettings& joint = description_.settings;
     const double motor = joint.motor_most * duration / inertia_;
-    const double driven = rate + std::clamp(joint.motor_rate - rate, -motor, motor);
     const double friction = joint.friction * duration / inertia_;
-    return driven - std::clamp(driven, -friction, friction) - rate;
+    const auto driven = [&](double slowed) { return slowed + std::clamp(joint.motor_rate - slowed, -motor, motor); };
+    const double forwards = driven(rate - friction);
+    if (forwards > 0.0) return forwards - rate;
+    const double backwards = driven(rate + friction);
+    return backwards < 0.0 ? backwards - rate : -rate;
 }
 
 Vec3 DrivenBody::acceleration_at(const ForceField& forces, const Vec3& center, const Vec3& velocity,
@@ -159,17 +188,20 @@ Vec3 DrivenBody::center_at(double coordinate) const {
 
 SymmetricMatrix DrivenBody::inverse_inertia(const AffineMap& map) const { return congruent(map, inverse_inertia_); }
 
-void DrivenBody::follow(const BodyPath& path, const Wrench& wrench) {
+void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& wrench) {
     const double h = path.end - path.begin;
     const auto moved = [h](const auto& c) { return h * (c[0] + h * (c[1] + h * c[2])); };
     const auto rate = [h](const auto& c) { return c[0] + h * (2.0 * c[1] + (3.0 * h) * c[2]); };
+    // What the path has taken already.
+    const Wrench rest{wrench.impulse - h * load.impulse, wrench.moment - h * load.moment};
     const Vec3 before = center_;
     map_ = path.at(path.end).world_from_frame;
     center_ = map_.point(description_.center);
     if (description_.joint == JointKind::free) {
         velocity_ = rate(path.way);
-        // Moments were taken about where the centre was.
-        take({wrench.impulse, wrench.moment - cross(center_ - before, wrench.impulse)});
+        // Moments were taken about where the centre was, and the load's impulse is in the velocity, not in them.
+        angular_momentum_ += h * load.moment - cross(center_ - before, h * load.impulse);
+        take({rest.impulse, rest.moment - cross(center_ - before, rest.impulse)});
         return;
     }
     if (description_.joint == JointKind::slider) {
@@ -180,7 +212,7 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& wrench) {
         coordinate_ = degrees_ / kDegrees;
         rate_ = rate(path.turns) / kDegrees;
     }
-    take(wrench);
+    take(rest);
 }
 
 void DrivenBody::take(const Wrench& wrench) {
@@ -190,10 +222,8 @@ void DrivenBody::take(const Wrench& wrench) {
             angular_momentum_ += wrench.moment;
             break;
         case JointKind::slider:
-            rate_ += dot(axis_, wrench.impulse) / inertia_;
-            break;
         case JointKind::hinge:
-            rate_ += dot(axis_, wrench.moment) / inertia_;
+            rate_ += along_joint(wrench) / inertia_;
             break;
     }
 }

@@ -61,11 +61,13 @@ public:
 
     [[nodiscard]] const BodyDescription& description() const { return description_; }
 
-    /// The path over [begin, end], s, under what acts on it but impulses.
-    [[nodiscard]] BodyPath plan(const ForceField& forces, double begin, double end) const;
-    /// Goes along a path to its end, and takes the impulses of that time there. wrench: with the moment about
-    /// moment_center(); the particles' own arms are from the places of their hits.
-    void follow(const BodyPath& path, const Wrench& wrench);
+    /// The path over [begin, end], s, under what acts on it but impulses, and under a steady load: a force, N, and its
+    /// moment about moment_center(), N m.
+    [[nodiscard]] BodyPath plan(const ForceField& forces, const Wrench& load, double begin, double end) const;
+    /// Goes along a path that was planned with a load to its end, and takes the impulses of that time there. wrench:
+    /// all of them, with those of the load, about moment_center(); the particles' own arms are from the places of their
+    /// hits.
+    void follow(const BodyPath& path, const Wrench& load, const Wrench& wrench);
     /// Takes impulses where it is.
     void take(const Wrench& wrench);
     /// The point that moments of impulses are about, m, in the world.
@@ -96,10 +98,11 @@ public:
     }
 
 private:
-    [[nodiscard]] BodyPath plan_free(const ForceField& forces, double begin, double end) const;
-    [[nodiscard]] BodyPath plan_joint(const ForceField& forces, double begin, double end) const;
+    [[nodiscard]] BodyPath plan_free(const ForceField& forces, const Wrench& load, double begin, double end) const;
+    [[nodiscard]] BodyPath plan_joint(const ForceField& forces, const Wrench& load, double begin, double end) const;
     [[nodiscard]] double joint_acceleration(const ForceField& forces, double coordinate, double rate,
                                             double time) const;
+    [[nodiscard]] double along_joint(const Wrench& wrench) const;
     [[nodiscard]] double held_change(double rate, double duration) const;
     [[nodiscard]] Vec3 acceleration_at(const ForceField& forces, const Vec3& center, const Vec3& velocity,
                                        double time) const;

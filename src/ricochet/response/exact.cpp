@@ -48,11 +48,12 @@ private:
     }
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
+    [[nodiscard]] bool is_let_go_by_jump() const;
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_shared();
-    [[nodiscard]] std::optional<Contact> wait_for_body();
+    [[nodiscard]] std::optional<Contact> wait_for_body(const Contact& contact);
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
@@ -115,17 +116,28 @@ std::optional<Contact> ParticleMover::resume() {
     return resume_among_bodies();
 }
 
+/// True where a body that holds it goes on with another velocity, and it with its own. What rests is taken along by a
+/// small jump.
+bool ParticleMover::is_let_go_by_jump() const {
+    const std::span<const SurfaceId> held(particle_.contact.surfaces.data(), particle_.contact.count);
+    const auto has_jumped = [&](SurfaceId surface) {
+        return rules_.bodies->has_jumped(rules_.bodies->body_of(surface));
+    };
+    if (std::none_of(held.begin(), held.end(), has_jumped)) return false;
+    if (!particle_.ridden) return true;
+    const RecordedMotion motion{particle_.state.position, particle_.state.velocity, particle_.spin};
+    HomeFrame frame(rules_.bodies);
+    frame.set(rules_.bodies->body_of(held[0]));
+    return length(frame.in_frame(motion, particle_.state.time).velocity) > rules_.settings.resting_speed;
+}
+
 std::optional<Contact> ParticleMover::resume_among_bodies() {
     constexpr int kMostTurns = 4;
     std::optional<Contact> next;
     for (int turn = 0; turn < kMostTurns && particle_.contact.count > 0 && !next && step_.remaining() > 0.0; ++turn) {
         const KeptContact& kept = particle_.contact;
         const BodyId body = rules_.bodies->body_of(kept.surfaces[0]);
-        const bool has_jumped =
-            std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
-                        [&](SurfaceId surface) { return rules_.bodies->has_jumped(rules_.bodies->body_of(surface)); });
-        if (has_jumped) {
-            // The body goes on with another velocity, and the particle with its own.
+        if (is_let_go_by_jump()) {
             particle_.contact = {};
             particle_.ridden.reset();
             break;
@@ -149,6 +161,10 @@ std::optional<Contact> ParticleMover::ride(BodyId body, Contact* contact, const 
     step_.enter(body, rides_->rules_of(body), contact);
     // What rests there does so to the last bit.
     if (const auto ridden = std::exchange(particle_.ridden, std::nullopt)) {
+        // What a body's jump has done to what rests on it.
+        if (rules_.bodies->has_jumped(body)) {
+            step_.impact().push(particle_.contact.surfaces[0], -particle_.state.velocity, false);
+        }
         particle_.state.position = ridden->position;
         particle_.state.velocity = {};
         particle_.spin = ridden->spin;
@@ -242,22 +258,35 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
     if (rides_ != nullptr && has_moving(contact)) step_.impact().note_driven();
+    // A slow one cuts no step short: it begins contact.
+    const bool is_fast = rides_ != nullptr && step_.impact().approach(contact.all()) > rules_.settings.resting_speed;
     step_.impact().reflect(contact.all());
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
-    if (step_.impact().waits_for(contact.all())) return wait_for_body();
+    if (is_fast && step_.impact().waits_for(contact.all())) return wait_for_body(contact);
     return begin_contact(flight, contact, arriving);
 }
 
-/// The body that it has hit goes away from the next move on: until then it stays where it is.
-std::optional<Contact> ParticleMover::wait_for_body() {
+/// The body that it has hit goes away from the next move on. Until then it goes along with where that still is.
+std::optional<Contact> ParticleMover::wait_for_body(const Contact& contact) {
+    const auto yielding = std::find_if(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));
+    });
+    const Motion own{particle_.state.velocity, particle_.spin};
+    Contact seen = contact;
     step_.log().note_impact();
-    const auto contact = step_.wait(step_.remaining());
+    const auto next = ride(rules_.bodies->body_of(yielding->surface), &seen, [&](ContactPhase&) {
+        particle_.state.velocity = {};
+        auto met = step_.wait(step_.remaining());
+        step_.log().note_contact({}, false);
+        return met;
+    });
+    particle_.state.velocity = own.velocity;
+    particle_.spin = own.spin;
     step_.impact().note_driven();
-    step_.log().note_contact({}, false);
-    flies_anew_ = true;
-    return contact;
+    step_.log().note_impact();
+    return next;
 }
 
 /// The horizon of the last flight of a step: as far as its path is known, which it is where the acceleration is

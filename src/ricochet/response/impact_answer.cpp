@@ -193,7 +193,6 @@ std::span<const ContactSurface> ImpactAnswer::foremost(std::span<const ContactSu
     return kept;
 }
 
-/// The largest speed towards one of the surfaces, m/s.
 double ImpactAnswer::approach(std::span<const ContactSurface> surfaces) const {
     double largest = 0.0;
     for (const ContactSurface& surface : surfaces) {

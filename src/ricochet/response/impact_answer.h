@@ -83,6 +83,8 @@ public:
     /// The surface as one on which the particle lands without a rebound.
     [[nodiscard]] ImpactSurface landing_on(const ContactSurface& surface) const;
 
+    /// The largest speed towards one of the surfaces, m/s.
+    [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
     /// True where it goes on towards a surface whose body has been pushed away, but is still there.
     [[nodiscard]] bool waits_for(std::span<const ContactSurface> surfaces) const;
 
@@ -105,7 +107,6 @@ private:
     [[nodiscard]] std::span<const ContactSurface> foremost(std::span<const ContactSurface> surfaces,
                                                            Foremost& kept) const;
     void answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound);
-    [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
     void stop_approach(std::span<const ContactSurface> surfaces);
     void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
     void bounce_off_body(const ContactSurface& surface, const Material& material, double restitution);

@@ -84,6 +84,22 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
         if (collider_of_.back() != kAtRest) colliders_->set_mobility(id, bodies_.back().mobility());
     }
     paths_.resize(bodies_.size());
+    loads_.resize(bodies_.size());
+    lying_.resize(bodies_.size());
+}
+
+void DrivenMotion::begin_step() {
+    for (std::size_t k = 0; k < bodies_.size() && lying_for_ > 0.0; ++k) {
+        const Wrench& lain = lying_[k];
+        loads_[k] = {lain.impulse / lying_for_, lain.moment / lying_for_};
+        lying_[k] = {};
+    }
+    lying_for_ = 0.0;
+}
+
+double DrivenMotion::yielded(const ColliderLoad& load) const {
+    const auto body = body_of(load);
+    return body ? bodies_[*body].quadratic_energy(Tally(bodies_[*body]).wrench_of(load)) : 0.0;
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
@@ -93,7 +109,7 @@ void DrivenMotion::plan(double begin, double end, double oldest) {
         const auto first_needed =
             std::find_if(paths.begin(), paths.end(), [&](const BodyPath& path) { return path.end >= oldest; });
         paths.erase(paths.begin(), first_needed);
-        paths.push_back(bodies_[k].plan(forces_, begin, end));
+        paths.push_back(bodies_[k].plan(forces_, loads_[k], begin, end));
         const BodyPath& next = paths.back();
         const double size = max_abs(next.at(end).world_from_frame.translation);
         if (!(size <= kLargestCoordinate) || !(next.bounds(begin, end).origin[1] < kMaxSpeed)) {
@@ -166,7 +182,12 @@ std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> load
 
 void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
     const std::vector<Wrench> wrenches = wrenches_of(loads);
-    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].follow(paths_[k].back(), wrenches[k]);
+    for (const ColliderLoad& load : loads) {
+        const auto body = load.impact ? std::nullopt : body_of(load);
+        if (body) lying_[*body] += Tally(bodies_[*body]).wrench_of(load);
+    }
+    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].follow(paths_[k].back(), loads_[k], wrenches[k]);
+    if (!bodies_.empty()) lying_for_ += paths_.front().back().end - paths_.front().back().begin;
     is_planned_ = false;
 }
 

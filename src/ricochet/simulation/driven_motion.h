@@ -38,6 +38,10 @@ public:
     void follow(std::span<const ColliderLoad> loads);
     /// They take loads of an earlier part of the step.
     void take(std::span<const ColliderLoad> loads);
+    /// To be called at the begin of a step: what has lain on the bodies in the last one lies on them in this one, too.
+    void begin_step();
+    /// J, that a body takes from a load besides ColliderLoad::work: by what it yields meanwhile.
+    [[nodiscard]] double yielded(const ColliderLoad& load) const;
     /// For what is moved through this step once more: the part that begins at a time. Returns when it ends, s.
     double begin_part_again(double time);
 
@@ -48,6 +52,8 @@ public:
         for (auto& paths : paths_) {
             archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
         }
+        for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
+        a(lying_for_);
     }
     /// After it was restored.
     void show();
@@ -66,7 +72,10 @@ private:
     double slow_;                               // m/s, of impacts that end bounces
     double shortest_part_;                      // s
     std::vector<std::vector<BodyPath>> paths_;  // of each body, as far back as may be asked for; the last is planned
-    bool is_planned_ = false;                   // the last of them has not been followed
+    std::vector<Wrench> loads_;                 // of each body, N and N m: what lies on it
+    std::vector<Wrench> lying_;  // of each body, N s and N m s, of contact that lasted in this step so far
+    double lying_for_ = 0.0;     // s, of this step so far
+    bool is_planned_ = false;    // the last of them has not been followed
 };
 
 }  // namespace ricochet

@@ -59,6 +59,7 @@ TimeSpan Simulation::Impl::begin_step() {
     recorder.begin_step();
     schedule.begin_step(recorder.statistics().steps);
     const TimeSpan step = clock.span_of(recorder.statistics().steps);
+    if (driven.is_active()) driven.begin_step();
     if (driven.is_active()) driven.plan(step.begin, step.end, oldest_position());
     if (bodies) bodies->begin_step(step.begin, step.end);
     return step;
@@ -116,8 +117,13 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
     recorder.record(blocks);
     std::vector<ColliderLoad> loads;
     for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
-    recorder.add_loads(loads, *colliders);
-    if (!driven.is_active()) return;
+    if (!driven.is_active()) {
+        recorder.add_loads(loads, *colliders);
+        return;
+    }
+    std::vector<ColliderLoad> with_yielding = loads;
+    for (ColliderLoad& load : with_yielding) load.work += driven.yielded(load);
+    recorder.add_loads(with_yielding, *colliders);
     if (batch.begin == 0) {
         driven.follow(loads);
     } else {

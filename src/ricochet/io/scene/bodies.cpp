@@ -213,9 +213,9 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
                           "bodies that impulses move and springs do not go together yet, expected "
                           "a scene without the one or the other");
         }
-        if (keys.mass.has_value() == keys.density.has_value()) {
-            context.error(view, keys.mass ? "found both \"mass\" and \"density\", expected one of them"
-                                          : "found neither \"mass\" nor \"density\", expected one of them");
+        if (view.has("mass") == view.has("density")) {
+            context.error(view, view.has("mass") ? "found both \"mass\" and \"density\", expected one of them"
+                                                 : "found neither \"mass\" nor \"density\", expected one of them");
         }
         refuse_other_joints_keys(context, view, keys.body.joint);
         refuse_company(context, setup, view, frames, named.name);

@@ -336,7 +336,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     scene.output = output;
     scene.setup.options.record_contacts = output.contacts;
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"));
-    if (scene.setup.particles.empty() && scene.setup.emitters.empty()) {
+    if (scene.setup.particles.empty() && scene.setup.emitters.empty() && scene.setup.bodies.empty()) {
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");
     }
     scene.files = context.files();

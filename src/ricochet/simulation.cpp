@@ -88,6 +88,8 @@ std::size_t Simulation::degenerate_triangles() const {
 }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
+bool Simulation::spawns_children() const { return impl().offspring != nullptr; }
+const std::vector<BirthRecord>& Simulation::birth_records() const { return impl().birth_records; }
 SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
     require_index(record.surface, impl().world.surface_count(), "surface");
     const std::uint32_t collider = impl().world.name_of(record.surface).collider;

@@ -121,6 +121,12 @@ struct BodyState {
 
 class CollisionWorld;
 
+/// A particle that was born, by its id, and where it comes from.
+struct BirthRecord {
+    std::uint64_t particle = 0;
+    Origin origin{};
+};
+
 /// Is given the contact records of a step.
 using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
@@ -221,6 +227,11 @@ public:
     /// options.record_contacts and on_contact(). An impact on one surface is one record; one in a corner has a record
     /// for every reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
+    /// True where particles spawn others.
+    [[nodiscard]] bool spawns_children() const;
+    /// Where particles spawn others: those that were born in the last step, also where they are gone by its end, in the
+    /// order of their ids. Ids depend on the time step then; Origin::lineage does not.
+    [[nodiscard]] const std::vector<BirthRecord>& birth_records() const;
     /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
     [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;

@@ -91,5 +91,25 @@ TEST(Reference, LastPositionsAreComparedOfThoseAliveInBoth) {
     EXPECT_EQ(errors.position.median, 2.5);
 }
 
+TEST(Reference, WhereParticlesSpawnOthersTheyAreMatchedByTheirLineage) {
+    RunTrace reference = energies({0}, {1}, {1});
+    RunTrace run = reference;
+    reference.keys = {{0, 11}, {1, 21}, {0, 12}, {1, 22}};
+    reference.first_impact = {1.0, 2.0, 3.0, 4.0};
+    reference.alive = {1, 1, 1, 1};
+    reference.end_position = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+    run.keys = {{0, 11}, {0, 12}, {1, 21}, {2, 22}};  // the last is another emitter's
+    run.first_impact = {1.0, 3.0, kNoNumber, 9.0};
+    run.alive = {1, 1, 1, 1};
+    run.end_position = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0.25}, {8, 8, 8}};
+    const ReferenceErrors errors = errors_against(run, reference);
+    EXPECT_EQ(errors.position.count, 3U);
+    EXPECT_EQ(errors.position.largest, 0.25);
+    EXPECT_EQ(errors.impact.count, 2U);
+    EXPECT_EQ(errors.impact.largest, 0.0);
+    EXPECT_EQ(errors.impacts_missed, 2U);  // of {1, 21}, and of {1, 22}, which was never born here
+    EXPECT_EQ(errors.impacts_extra, 1U);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -54,19 +54,16 @@ SetupCopies::SetupCopies(SimulationSetup setup) : setup_(std::move(setup)) {
     setup_.forces.clear();
 }
 
+// By all of its members, in their order: one more does not compile until it is copied here.
 SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
-    SimulationSetup copy;
-    copy.options = options;
-    for (const auto& force : forces_) copy.forces.push_back(std::make_unique<SharedForce>(force));
-    copy.materials = setup_.materials;
-    copy.colliders = setup_.colliders;
-    copy.frames = setup_.frames;
-    copy.emitters = setup_.emitters;
-    copy.particles = setup_.particles;
-    copy.bounds = setup_.bounds;
-    copy.attributes = setup_.attributes;
-    copy.reference_camera = setup_.reference_camera;
-    return copy;
+    const auto& [own_options, acceleration, no_forces, materials, colliders, frames, emitters, particles, springs,
+                 spring_faces, solver, bounds, attributes, reference_camera] = setup_;
+    (void)own_options;
+    (void)no_forces;
+    std::vector<std::unique_ptr<Force>> forces;
+    for (const auto& force : forces_) forces.push_back(std::make_unique<SharedForce>(force));
+    return {options,   acceleration, std::move(forces), materials, colliders, frames,     emitters,
+            particles, springs,      spring_faces,      solver,    bounds,    attributes, reference_camera};
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -94,6 +95,7 @@ public:
         : normals_(simulation),
           judge_(collider_kinds(simulation), [this](const Violation& crossing) { return normals_.at(crossing); }) {
         note_energy(simulation);
+        if (simulation.spawns_children()) note_births(simulation);
     }
     Measurement(const Measurement&) = delete;  // the judge asks the normals of this one
     Measurement& operator=(const Measurement&) = delete;
@@ -101,6 +103,7 @@ public:
 
     void note_step(const Simulation& simulation) {
         judge_.add_step(simulation.last_violations());
+        if (simulation.spawns_children()) note_births(simulation);
         note_impacts(simulation);
         note_penetrating(simulation);
         note_energy(simulation);
@@ -127,6 +130,18 @@ private:
         const std::optional<double> potential = simulation.potential_energy();
         trace_.has_potential = potential.has_value();
         if (potential) trace_.total.push_back(kinetic + *potential);
+    }
+
+    // Those that are there from the start have no emitter.
+    void note_births(const Simulation& simulation) {
+        for (const BirthRecord& birth : simulation.birth_records()) {
+            while (trace_.keys.size() < birth.particle) trace_.keys.push_back({kNoEmitter, trace_.keys.size()});
+            const bool is_emitted = birth.origin.emitter != kNoEmitter;
+            trace_.keys.push_back({birth.origin.emitter, is_emitted ? birth.origin.lineage : birth.particle});
+        }
+        while (trace_.keys.size() < simulation.statistics().emitted) {
+            trace_.keys.push_back({kNoEmitter, trace_.keys.size()});
+        }
     }
 
     void note_impacts(const Simulation& simulation) {
@@ -265,28 +280,60 @@ void add_energy_errors(const RunTrace& run, const RunTrace& reference, Reference
     }
 }
 
-void add_impact_errors(const RunTrace& run, const RunTrace& reference, ReferenceErrors& errors) {
-    const std::size_t count = std::max(run.first_impact.size(), reference.first_impact.size());
+constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
+
+std::size_t born(const RunTrace& trace) {
+    return std::max({trace.first_impact.size(), trace.alive.size(), trace.keys.size()});
+}
+
+/// The reference's id of every particle of the run; kNobody where it was not born there.
+std::vector<std::size_t> partners(const RunTrace& run, const RunTrace& reference) {
+    std::vector<std::size_t> result(born(run), kNobody);
+    const std::size_t known = born(reference);
+    if (run.keys.empty() && reference.keys.empty()) {
+        for (std::size_t id = 0; id < std::min(result.size(), known); ++id) result[id] = id;
+        return result;
+    }
+    std::vector<std::pair<ParticleKey, std::size_t>> by_key;
+    for (std::size_t id = 0; id < reference.keys.size(); ++id) by_key.emplace_back(reference.keys[id], id);
+    std::sort(by_key.begin(), by_key.end());
+    for (std::size_t id = 0; id < run.keys.size(); ++id) {
+        const auto found = std::lower_bound(by_key.begin(), by_key.end(), std::pair(run.keys[id], std::size_t{0}));
+        if (found != by_key.end() && found->first == run.keys[id]) result[id] = found->second;
+    }
+    return result;
+}
+
+void add_impact_errors(const RunTrace& run, const RunTrace& reference, std::span<const std::size_t> partner,
+                       ReferenceErrors& errors) {
     const auto first = [](const RunTrace& trace, std::size_t id) {
         return id < trace.first_impact.size() ? trace.first_impact[id] : kNoNumber;
     };
     std::vector<double> differences;
-    for (std::size_t id = 0; id < count; ++id) {
+    std::uint64_t matched = 0;
+    for (std::size_t id = 0; id < partner.size(); ++id) {
         const double here = first(run, id);
-        const double there = first(reference, id);
+        const double there = partner[id] == kNobody ? kNoNumber : first(reference, partner[id]);
+        matched += std::isnan(there) ? 0 : 1;
         if (std::isnan(here) && !std::isnan(there)) ++errors.impacts_missed;
         if (!std::isnan(here) && std::isnan(there)) ++errors.impacts_extra;
         if (!std::isnan(here) && !std::isnan(there)) differences.push_back(std::fabs(here - there));
     }
+    const auto all = std::count_if(reference.first_impact.begin(), reference.first_impact.end(),
+                                   [](double time) { return !std::isnan(time); });
+    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // of those that were never born here
     errors.impact = spread_of(differences);
 }
 
-void add_position_errors(const RunTrace& run, const RunTrace& reference, ReferenceErrors& errors) {
-    const std::size_t count = std::min(run.alive.size(), reference.alive.size());
+void add_position_errors(const RunTrace& run, const RunTrace& reference, std::span<const std::size_t> partner,
+                         ReferenceErrors& errors) {
+    const auto lives = [](const RunTrace& trace, std::size_t id) {
+        return id < trace.alive.size() && trace.alive[id] != 0;
+    };
     std::vector<double> distances;
-    for (std::size_t id = 0; id < count; ++id) {
-        if (run.alive[id] == 0 || reference.alive[id] == 0) continue;
-        const double distance = length(run.end_position[id] - reference.end_position[id]);
+    for (std::size_t id = 0; id < partner.size(); ++id) {
+        if (!lives(run, id) || partner[id] == kNobody || !lives(reference, partner[id])) continue;
+        const double distance = length(run.end_position[id] - reference.end_position[partner[id]]);
         if (std::isfinite(distance)) distances.push_back(distance);
     }
     errors.position = spread_of(distances);
@@ -312,8 +359,9 @@ double energy_scale(const RunTrace& reference) {
 ReferenceErrors errors_against(const RunTrace& run, const RunTrace& reference) {
     ReferenceErrors errors;
     add_energy_errors(run, reference, errors);
-    add_impact_errors(run, reference, errors);
-    add_position_errors(run, reference, errors);
+    const std::vector<std::size_t> partner = partners(run, reference);
+    add_impact_errors(run, reference, partner, errors);
+    add_position_errors(run, reference, partner, errors);
     return errors;
 }
 

@@ -2,6 +2,7 @@
 /// One run with all checks on: its figures, and what is needed to hold it against the reference.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,6 +16,14 @@
 
 namespace ricochet {
 
+/// Names a particle in every run of a scene: by the lineage of those that emitters make, by the id of the others.
+struct ParticleKey {
+    std::uint32_t emitter = kNoEmitter;
+    std::uint64_t number = 0;
+
+    friend auto operator<=>(const ParticleKey&, const ParticleKey&) = default;
+};
+
 /// What is kept of a run until it has been compared. Lists by particle have one entry an id; no histories.
 struct RunTrace {
     std::vector<double> times;         ///< s, ascending: 0 and the end of every step
@@ -24,6 +33,8 @@ struct RunTrace {
     std::vector<double> first_impact;  ///< s; kNoNumber without one
     std::vector<std::uint8_t> alive;   ///< at the end
     std::vector<Vec3> end_position;    ///< m; of those alive
+    /// Where particles spawn others: who each is, whatever its id, which depends on the time step then. Else empty.
+    std::vector<ParticleKey> keys;
 
     /// What the energy of this run is: total where there is a potential, else kinetic.
     [[nodiscard]] const std::vector<double>& energy() const { return has_potential ? total : kinetic; }
@@ -73,7 +84,8 @@ void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
 /// kinetic energy where that is larger.
 [[nodiscard]] double energy_scale(const RunTrace& reference);
 
-/// A particle is the same one where the ids are: the schedule of births does not depend on the time step.
+/// A particle is the same one where the keys are; without keys where the ids are, since the schedule of births does not
+/// depend on the time step.
 [[nodiscard]] ReferenceErrors errors_against(const RunTrace& run, const RunTrace& reference);
 
 }  // namespace ricochet

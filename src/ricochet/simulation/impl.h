@@ -110,6 +110,7 @@ struct Simulation::Impl {
     QuerySchedule schedule;
     std::unique_ptr<RunCheck> check;  ///< with options.verify
     RunRecorder recorder;
+    std::vector<BirthRecord> birth_records;  ///< of the step, where there is offspring
     FreeFlights free_flights;
     ActiveMover mover;
     Retirement retirement;

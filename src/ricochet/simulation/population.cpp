@@ -111,6 +111,7 @@ void Simulation::Impl::add(Particle&& particle) {
     free_flights.append();
     store.append(std::move(particle));
     const std::size_t i = store.size() - 1;
+    if (offspring && inside_step) birth_records.push_back({particles().id[i], particles().origin[i]});
     if (!response->keeps_sides()) {
         if (overlap) store.set_core(i, core_radius(*overlap, particles().position[i], particles().radius[i]));
         if (!overlap && options.response == ResponseKind::exact && !options.flow) hold_what_touches(i);

@@ -57,6 +57,7 @@ TimeSpan Simulation::Impl::begin_step() {
     }
     inside_step = true;
     recorder.begin_step();
+    birth_records.clear();
     schedule.begin_step(recorder.statistics().steps);
     const TimeSpan step = clock.span_of(recorder.statistics().steps);
     if (driven.is_active()) driven.begin_step();

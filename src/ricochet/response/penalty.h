@@ -90,6 +90,7 @@ public:
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     [[nodiscard]] bool keeps_sides() const override { return true; }
     void first_sides(const Vec3& position, std::span<SideMemory> sides) const override;
+    void inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const override;
 
 private:
     SignedDistance distance_;

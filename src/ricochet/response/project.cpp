@@ -139,4 +139,8 @@ void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> si
     set_first_sides(distance_, position, sides);
 }
 
+void ProjectResponse::inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const {
+    settle_child_sides(distance_, place, sides);
+}
+
 }  // namespace ricochet

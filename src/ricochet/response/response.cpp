@@ -108,6 +108,8 @@ void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides
     std::fill(sides.begin(), sides.end(), SideMemory{});
 }
 
+void Response::inherit_sides(const ChildPlace& /*place*/, std::span<SideMemory> /*sides*/) const {}
+
 Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
                     const Integrator& integrator) {
     const ForceInput& state = particle.state;

@@ -149,6 +149,14 @@ inline constexpr std::uint32_t kImpactStream = 0xFFFFFFFFU;
 
 class FrameForces;
 
+/// Where a particle spawned by another begins.
+struct ChildPlace {
+    Vec3 parent_start;     ///< m, where the parent's move began
+    Vec3 position;         ///< m
+    double radius = 0.0;   ///< m
+    bool goes_on = false;  ///< it is in contact already with what it touches, as a fragment; else contact begins
+};
+
 /// What a response works with. World, forces and materials must outlive it.
 struct ResponseRules {
     const CollisionWorld& world;
@@ -188,6 +196,8 @@ public:
     [[nodiscard]] virtual bool keeps_sides() const { return false; }
     /// The sides of all colliders that a new particle is on. sides.size() == number of colliders.
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
+    /// The same of a particle that another spawns. sides: in, those of the parent where its move began.
+    virtual void inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const;
 
     [[nodiscard]] const ResponseRules& rules() const { return rules_; }
 

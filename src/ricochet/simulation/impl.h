@@ -60,6 +60,7 @@ struct Simulation::Impl {
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
     /// Of its frame; of a mesh that deforms, which is in none, that of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
+    void inherit_sides(std::size_t i, const Child& child);
     void prepare_radius(double radius);
     void hold_what_touches(std::size_t i);
     bool hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position);

@@ -38,7 +38,8 @@ struct Offspring::Trajectory {
         Vec3 before;  ///< velocity with which it arrives
         Vec3 after;
     };
-    Particle particle;  ///< with the last state
+    Particle particle;      ///< with the last state
+    std::size_t entry = 0;  ///< from first_ on
     std::vector<Knot> knots;
     std::span<const ContactRecord> records;
     bool shattered = false;
@@ -115,17 +116,19 @@ double Offspring::shatter_impulse(const Particles& particles, std::size_t i) con
     return std::numeric_limits<double>::infinity();
 }
 
-void Offspring::before_move(const Particles& particles, std::size_t first) {
+void Offspring::before_move(const Particles& particles, std::size_t first, std::span<const SideMemory> sides) {
     first_ = first;
     const auto begin = static_cast<std::ptrdiff_t>(first);
     positions_.assign(particles.position.begin() + begin, particles.position.end());
     velocities_.assign(particles.velocity.begin() + begin, particles.velocity.end());
+    sides_.assign(sides.begin(), sides.end());
 }
 
 Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::size_t i, double from, double to,
                                                std::span<const ContactRecord> records) const {
     Trajectory trajectory;
     trajectory.particle = particles.at(i);
+    trajectory.entry = i - first_;
     trajectory.records = records;
     const double begin = std::max(from, trajectory.particle.birth_time);
     const double death = trajectory.particle.birth_time + trajectory.particle.lifetime;
@@ -151,13 +154,13 @@ void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, co
     thread_local ContactScratch scratch;
     const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
     for (const LifeBirth& birth : births.first) {
-        batches.push_back(
-            {birth.time, emitter.number(), birth.ordinal, 1, false, trajectory.at(birth.time, world, scratch)});
+        batches.push_back({birth.time, emitter.number(), birth.ordinal, 1, false,
+                           trajectory.at(birth.time, world, scratch), trajectory.entry});
     }
     if (births.more == 0) return;
     const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
-    batches.push_back(
-        {time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false, trajectory.particle});
+    batches.push_back({time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false,
+                       trajectory.particle, trajectory.entry});
 }
 
 void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
@@ -175,7 +178,8 @@ void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory
         Particle parent = trajectory.particle;
         parent.position = record.position;
         parent.velocity = record.velocity_after;
-        batches.push_back({record.time, emitter.number(), origin.impact_children, count, rule.share, parent});
+        batches.push_back(
+            {record.time, emitter.number(), origin.impact_children, count, rule.share, parent, trajectory.entry});
         origin.impact_children += count;
     }
 }
@@ -187,14 +191,15 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
     std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
     if (rule.share) count = std::max(count, 1U);
     const Trajectory::Knot& last = trajectory.knots.back();
-    // What an absorbing surface has stopped spawns with the velocity of arrival.
+    // What an absorbing surface has stopped spawns with the velocity of arrival. Only what is shared out has none any
+    // more: its momentum has gone into the surface, and would go there again.
     const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
-    batches.push_back(
-        {last.time, emitter.number(), 0, count, rule.share, trajectory.at(last, absorbed ? last.before : last.after)});
+    batches.push_back({last.time, emitter.number(), 0, count, rule.share,
+                       trajectory.at(last, absorbed && !rule.share ? last.before : last.after), trajectory.entry});
 }
 
-std::vector<Particle> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
-                                            std::vector<ContactRecord> records, OffspringCounts& counts) const {
+std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
+                                         std::vector<ContactRecord> records, OffspringCounts& counts) const {
     std::stable_sort(records.begin(), records.end(),
                      [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
     const auto records_of = [&](std::uint64_t id) {
@@ -246,13 +251,20 @@ std::uint64_t Offspring::count_of(const std::vector<SpawnBatch>& batches) {
     return count;
 }
 
-std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
-                                       OffspringCounts& counts) const {
+Child Offspring::child_of(const SpawnBatch& batch, Particle&& particle) const {
+    const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
+    const auto sides = std::span(sides_).subspan(batch.entry * colliders, colliders);
+    const bool is_fragment = batch.share && emitters_[batch.emitter].description().parent->on == BirthEvent::impact;
+    return {std::move(particle), positions_[batch.entry], sides, is_fragment};
+}
+
+std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+                                    OffspringCounts& counts) const {
     std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
         return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
     });
-    std::vector<Particle> children;
+    std::vector<Child> children;
     children.reserve(std::min({count_of(batches), room_below(limits_.most_particles, living) + batches.size(),
                                room_below(most_that_fit_, living)}));
     for (const SpawnBatch& batch : batches) {
@@ -268,11 +280,13 @@ std::vector<Particle> Offspring::spawn(std::vector<SpawnBatch>& batches, std::si
         if (allowed > room_below(most_that_fit_, living)) refuse_to_grow(living, bytes_each_);
         const Emitter& emitter = emitters_[batch.emitter];
         if (batch.share) {
-            const auto fragments = make_fragments(emitter, batch.parent, allowed, batch.first_ordinal, batch.time);
-            children.insert(children.end(), fragments.begin(), fragments.end());
+            for (Particle& fragment : make_fragments(emitter, batch.parent, allowed, batch.first_ordinal, batch.time)) {
+                children.push_back(child_of(batch, std::move(fragment)));
+            }
         } else {
             for (std::uint32_t k = 0; k < allowed; ++k) {
-                children.push_back(make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time));
+                children.push_back(
+                    child_of(batch, make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time)));
             }
         }
         living += allowed;

@@ -32,6 +32,14 @@ struct OffspringLimits {
     std::uint64_t most_particles = kDefaultMostParticles;  ///< living at a time
 };
 
+/// A particle spawned by another.
+struct Child {
+    Particle particle;
+    Vec3 parent_start;                         ///< m, where the parent's move began
+    std::span<const SideMemory> parent_sides;  ///< its sides there; valid until the next before_move()
+    bool goes_on = false;                      ///< a fragment: what its parent touches it is in contact with already
+};
+
 /// What a pass has spawned and refused.
 struct OffspringCounts {
     std::uint64_t children = 0;
@@ -56,13 +64,14 @@ public:
     /// N s: the impact that ends particle i; infinity when none does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
 
-    /// Keeps the states of the entries from `first` on, which are about to be moved.
-    void before_move(const Particles& particles, std::size_t first);
+    /// Keeps the states of the entries from `first` on, which are about to be moved. sides: theirs, where there are
+    /// any.
+    void before_move(const Particles& particles, std::size_t first, std::span<const SideMemory> sides);
     /// The children that the entries kept have spawned in [from, to), in the order of (time, parent, ordinal). records:
     /// of the impacts of these entries, those of one particle in the order of time.
-    [[nodiscard]] std::vector<Particle> after_move(const CollisionWorld& world, Particles& particles, double from,
-                                                   double to, std::vector<ContactRecord> records,
-                                                   OffspringCounts& counts) const;
+    [[nodiscard]] std::vector<Child> after_move(const CollisionWorld& world, Particles& particles, double from,
+                                                double to, std::vector<ContactRecord> records,
+                                                OffspringCounts& counts) const;
 
 private:
     /// Children of one event, or one child of a life.
@@ -72,7 +81,8 @@ private:
         std::uint32_t first_ordinal = 0;
         std::uint32_t count = 0;
         bool share = false;
-        Particle parent;  ///< as it is at the birth
+        Particle parent;        ///< as it is at the birth
+        std::size_t entry = 0;  ///< of the parent, from first_ on
     };
     struct Trajectory;
 
@@ -84,8 +94,9 @@ private:
                      std::vector<SpawnBatch>& batches) const;
     void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
     [[nodiscard]] static std::uint64_t count_of(const std::vector<SpawnBatch>& batches);
-    [[nodiscard]] std::vector<Particle> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
-                                              OffspringCounts& counts) const;
+    [[nodiscard]] Child child_of(const SpawnBatch& batch, Particle&& particle) const;
+    [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+                                           OffspringCounts& counts) const;
 
     const std::vector<Emitter>& emitters_;
     OffspringLimits limits_;
@@ -96,6 +107,7 @@ private:
     std::size_t first_ = 0;
     std::vector<Vec3> positions_;
     std::vector<Vec3> velocities_;
+    std::vector<SideMemory> sides_;
 };
 
 }  // namespace ricochet

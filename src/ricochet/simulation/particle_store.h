@@ -46,6 +46,10 @@ public:
 
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
     [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
+    /// Of all particles from `first` on, one after the other.
+    [[nodiscard]] std::span<const SideMemory> sides_from(std::size_t first) const {
+        return std::span(sides_).subspan(first * colliders_);
+    }
     /// Nothing moves it, or an earlier part of the step has removed it.
     [[nodiscard]] bool is_fixed(std::size_t i) const {
         return particles_.frozen[i] != 0 || particles_.pinned[i] != 0 || particles_.absorbed[i] != 0;

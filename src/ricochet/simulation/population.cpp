@@ -53,9 +53,10 @@ ParticleRange Simulation::Impl::spawn_children(const TimeSpan& step) {
     const ParticleRange none{store.size(), store.size()};
     if (!offspring) return none;
     OffspringCounts counts;
-    for (Particle& child :
+    for (Child& child :
          offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(), counts)) {
-        add(std::move(child));
+        add(std::move(child.particle));
+        if (response->keeps_sides()) inherit_sides(store.size() - 1, child);
     }
     SimulationStatistics& statistics = recorder.statistics();
     statistics.children += counts.children;
@@ -65,6 +66,14 @@ ParticleRange Simulation::Impl::spawn_children(const TimeSpan& step) {
     if (!children.empty() && coupled.is_active()) coupled.bind(particles());
     if (check) check->watch_spawned(particles());
     return children;
+}
+
+/// A child belongs to the sides that its parent belongs to, on whichever it begins.
+void Simulation::Impl::inherit_sides(std::size_t i, const Child& child) {
+    if (!is_finite(particles().position[i])) return;
+    std::copy(child.parent_sides.begin(), child.parent_sides.end(), store.sides_of(i).begin());
+    response->inherit_sides({child.parent_start, particles().position[i], particles().radius[i], child.goes_on},
+                            store.sides_of(i));
 }
 
 void Simulation::Impl::reserve(std::size_t more) {

@@ -70,7 +70,7 @@ TimeSpan Simulation::Impl::begin_step() {
 // stays in the order of time.
 void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& step) {
     recorder.begin_batch();
-    if (offspring) offspring->before_move(particles(), batch.begin);
+    if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});
         std::vector<BlockRecord> blocks;

@@ -12,6 +12,7 @@
 #include "response/flow_scene.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "support/counts.h"
+#include "support/random_draws.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 
@@ -91,6 +92,40 @@ TEST(ConstrainedFlow, LeavesTheWallOfAGrooveWhereItEnds) {
         } else {
             EXPECT_LT(simulation.particles().position[0].y, radius);  // round the edge
         }
+    }
+}
+
+// A steady flow presses a particle into a groove of any angle between 1 and 179 degrees, any way round, and takes it
+// along.
+TEST(ConstrainedFlow, SlidesInAnyGrooveForAFewContactsAndAllOfTheTime) {
+    RandomSequence random(26, 0, 0);
+    for (int round = 0; round < test::scaled(120); ++round) {
+        SCOPED_TRACE(round);
+        const Vec3 along = random.unit_vector();
+        const Vec3 up = normalized(cross(along, random.unit_vector()));
+        const Vec3 aside = cross(up, along);
+        const double tilt = (0.5 + 89.0 * random.uniform()) * 3.14159265358979 / 180.0;  // of a wall to the bottom
+        const Vec3 foot = testing::random_vector(random, 3.0);
+        const double radius = round % 2 == 0 ? 0.0 : 0.02;
+        const Vec3 rise = std::cos(tilt) * aside + std::sin(tilt) * up;
+        const Vec3 mirrored = -std::cos(tilt) * aside + std::sin(tilt) * up;
+        std::vector<ColliderDescription> walls{plane_collider(foot, normalized(cross(along, rise))),
+                                               plane_collider(foot, normalized(cross(mirrored, along)))};
+        if (round % 4 >= 2) {
+            const Vec3 back = foot - 4.0 * along;
+            const Vec3 front = foot + 4.0 * along;
+            walls = {mesh_collider(testing::merged(quad(back, front, front + 9.0 * rise, back + 9.0 * rise),
+                                                   quad(front, back, back + 9.0 * mirrored, front + 9.0 * mirrored)))};
+        }
+        const Vec3 wind = along - (0.5 + random.uniform()) * up + random.uniform_around(0, 0.2) * aside;
+        const double height = (radius + 0.05) / std::cos(tilt);
+        SimulationSetup setup = carried(make_wind(wind), walls, {at(foot + height * up, radius)});
+        setup.options.time_step = 0.02;
+        Simulation simulation(std::move(setup));
+        run(simulation);
+        EXPECT_LT(simulation.statistics().contacts, 120U);
+        const Vec3 moved = simulation.particles().position[0] - foot;
+        EXPECT_NEAR(dot(moved, along), dot(wind, along), 1e-9);
     }
 }
 

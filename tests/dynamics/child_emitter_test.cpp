@@ -160,6 +160,36 @@ TEST(ChildEmitter, FragmentsShareTheMassExactlyInAnyOrder) {
     }
 }
 
+TEST(ChildEmitter, FragmentsOfNextToNothingAreNeverLighterThanTheSmallestMass) {
+    EmitterDescription description;
+    description.mass = {1.0, 0.999};
+    description.speed = {2.0, 1.0};
+    ParentRule sharing;
+    sharing.on = BirthEvent::death;
+    sharing.share = true;
+    const Emitter emitter = child_emitter(sharing, description);
+    for (const double units : {1.0, 1.5, 3.0, 10.0, 1234.5, 1e7, 1e17}) {
+        Particle parent = parent_of(3);
+        parent.mass = units * 1e-300;
+        ASSERT_EQ(most_fragments(parent.mass), static_cast<std::uint32_t>(std::min(units, 1e9)));
+        for (const std::uint32_t wanted : {1U, 2U, 9U, 40U}) {
+            const std::uint32_t count = std::min(wanted, most_fragments(parent.mass));
+            const std::vector<Particle> fragments = make_fragments(emitter, parent, count, 0, 1.0);
+            ASSERT_EQ(fragments.size(), count);
+            double sum = 0.0;
+            Vec3 momentum;
+            for (const Particle& fragment : fragments) {
+                EXPECT_GE(fragment.mass, 1e-300) << units << " in " << count;
+                EXPECT_TRUE(is_finite(fragment.velocity) && std::isfinite(fragment.radius));
+                sum += fragment.mass;
+                momentum += fragment.mass / parent.mass * fragment.velocity;
+            }
+            EXPECT_EQ(sum, parent.mass) << units << " in " << count;
+            EXPECT_LT(length(momentum - parent.velocity), 1e-12) << units << " in " << count;
+        }
+    }
+}
+
 TEST(ChildEmitter, TheKineticEnergyGrowsByTheLaunchesSeenFromTheirCentreOfMass) {
     EmitterDescription description;
     description.speed = {3.0, 0.0};

@@ -179,7 +179,9 @@ TEST(EmitterScene, FramesAndTablesCarryTheAttributes) {
     write_state_csv(csv, simulation.particles(), shown, simulation.time());
     std::ifstream text(csv);
     const std::string state{std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
-    EXPECT_NE(state.find(",unsimulated_time,temperature,tint_x,tint_y,tint_z,plain,color_x"), std::string::npos);
+    EXPECT_NE(
+        state.find(",unsimulated_time,spin_x,spin_y,spin_z,lifetime,temperature,tint_x,tint_y,tint_z,plain,color_x"),
+        std::string::npos);
     std::vector<AttributeDescription> declared(shown.columns().begin(), shown.columns().begin() + 3);
     const detail::ParticleTable table = detail::parse_particle_table(state, "state.csv", declared);
     EXPECT_TRUE(table.errors.empty()) << table.errors[0];

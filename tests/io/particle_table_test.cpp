@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "ricochet/core/error.h"
+#include "ricochet/io/run_report.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::detail {
@@ -37,13 +40,41 @@ TEST(ParticleTable, ReadsTheFinalStateOfARunAndSaysWhatItDoesNotUse) {
     EXPECT_EQ(table.unused_columns, (Lines{"id", "age", "contacts", "resting", "unsimulated_time"}));
 }
 
+TEST(ParticleTable, BringsBackSpinAndLifetimeOfAFinalState) {
+    const test::TemporaryFolder folder;
+    Particle ball;
+    ball.position = {1, 2, 3};
+    ball.radius = 0.5;
+    ball.spin = {0.1, -7, 1e-9};
+    ball.birth_time = 0.25;
+    ball.lifetime = 2.0;
+    Particles particles;
+    particles.append(ball);
+    particles.append(Particle{});
+    write_state_csv(folder.path("state.csv"), particles, 1.0);
+    const ParticleTable table = read_particle_table(folder.path("state.csv"), {});
+    EXPECT_EQ(table.errors, Lines{});
+    ASSERT_EQ(table.particles.size(), 2U);
+    EXPECT_EQ(table.particles[0].spin, (Vec3{0.1, -7, 1e-9}));
+    EXPECT_EQ(table.particles[0].lifetime, 1.25);
+    EXPECT_EQ(table.particles[1].spin, Vec3{});
+    EXPECT_TRUE(std::isinf(table.particles[1].lifetime));
+}
+
+TEST(ParticleTable, RefusesASpinOfAPointAndALifetimeBelowZero) {
+    EXPECT_NE(parse_particle_table("x,y,z,spin_x\n1,2,3,4\n", "t.csv").errors.at(0).find("\"radius\""),
+              std::string::npos);
+    EXPECT_EQ(parse_particle_table("x,y,z,lifetime\n1,2,3,-1\n", "t.csv").errors,
+              (Lines{"t.csv:2: found \"-1\" in column \"lifetime\", expected a number >= 0 (s)"}));
+}
+
 TEST(ParticleTable, NamesFileLineAndColumnOfEveryError) {
     const auto errors = [](std::string_view text) { return parse_particle_table(text, "t.csv").errors; };
     EXPECT_EQ(errors("x,y,z\n1,2,3\n1,two,3\n1,2,nan\n"),
               (Lines{"t.csv:3: found \"two\" in column \"y\", expected a number (m)",
                      "t.csv:4: found \"nan\" in column \"z\", expected a number (m)"}));
     EXPECT_EQ(errors("x,y,z,mass\n1,2,3,0\n"),
-              (Lines{"t.csv:2: found \"0\" in column \"mass\", expected a number > 0 (kg)"}));
+              (Lines{"t.csv:2: found \"0\" in column \"mass\", expected a number >= 1e-300 (kg)"}));
     EXPECT_EQ(errors("x,y,z\n1,2\n"), (Lines{"t.csv:2: found 2 values, expected 3 as in the header line"}));
     EXPECT_EQ(errors("x,y\n1,2\n"), (Lines{"t.csv:1: there is no column \"z\", expected x, y and z"}));
     EXPECT_EQ(errors("x,y,z,x\n"), (Lines{"t.csv:1: the column \"x\" appears twice"}));

@@ -305,10 +305,11 @@ const std::vector<Spoiled> kSpoiled = {
     {R"("emitters": [{"type": "point", "burst": 1, "particle_radius": [1, 1e300]}])",
      "s.json:1:79: emitters[0].particle_radius: found the spread 1e+300, expected a smaller one"},
     {R"("particles": [{"position": [0, 0, 0], "mass": 0}])",
-     "s.json:1:63: particles[0].mass: found 0, expected a number > 0 (kg)"},
+     "s.json:1:63: particles[0].mass: found 0, expected a number >= 1e-300 (kg)"},
     {R"("emitters": [{"type": "point", "burst": 1, "mass": [1, 1]}])",
-     "s.json:1:68: emitters[0].mass: found [1, 1], so down to 0; expected a number > 0 (kg) or [mean, spread] with "
-     "spread >= 0 and mean - spread > 0"},
+     "s.json:1:68: emitters[0].mass: found [1, 1], so down to 0; expected a number >= 1e-300 (kg) or [mean, spread] "
+     "with "
+     "spread >= 0 and mean - spread >= 1e-300"},
     {R"("emitters": [{"type": "point", "burst": 1, "start": 2, "stop": 1}], "simulation": {"duration": 9})",
      "s.json:1:80: emitters[0].stop: found 1 s, expected a time after start (2 s)"},
     {R"("emitters": [{"type": "point", "rate": 1e10}])",

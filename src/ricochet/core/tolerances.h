@@ -283,6 +283,12 @@ inline constexpr double kMaxSpeed = 299792458.0;
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;
 
+/// Least mass of a particle, kg, fragments included. Reason: inertia (0.4 m r^2), momentum and kinetic energy of what
+/// is slow and small have to stay normal numbers, and a share of a mass is a whole multiple of its last bit, which must
+/// not be 0. Smaller (from 1e-308 on): masses of fragments become 0 or not a number. Larger: nothing that weighs
+/// anything.
+inline constexpr double kSmallestMass = 1e-300;
+
 /// Part of a rope's length by which it must exceed the distance of its ends to be laid out as a catenary, not straight.
 /// Smaller (below some 1e-14): the catenary's parameter is rounding. Larger: nearly taut ropes start shortened.
 inline constexpr double kTautRope = 1e-9;

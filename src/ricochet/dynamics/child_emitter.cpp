@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/core/portable_math.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
@@ -35,16 +36,21 @@ void inherit_attributes(const Emitter& emitter, const Particle& parent, Particle
 }
 
 // Shares in the proportion of the weights, as whole multiples of a unit of which the mass is one too: sums are exact.
+// The mass must suffice for as many of the smallest.
 std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     int exponent = 0;
     (void)std::frexp(mass, &exponent);
     const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
+    const double least = std::max(1.0, std::ceil(kSmallestMass / unit));  // units
+    // Where that is more than rounding every share is so much, and only the rest goes by the weights.
+    const double kept = least > 1.0 ? least : 0.0;
+    const double shared = mass / unit - kept * static_cast<double>(weights.size());
     double sum = 0.0;
     for (const double weight : weights) sum += weight;
     std::vector<double> shares;
     double left = mass;
     for (const double weight : weights) {
-        const double share = std::max(1.0, std::floor(mass / unit * (weight / sum))) * unit;
+        const double share = std::max(least, kept + std::floor(shared * (weight / sum))) * unit;
         shares.push_back(share);
         left -= share;
     }
@@ -101,6 +107,10 @@ Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_
     child.origin = {emitter.number(), parent.origin.generation + 1, lineage, 0, 0};
     inherit_attributes(emitter, parent, child);
     return child;
+}
+
+std::uint32_t most_fragments(double mass) {
+    return static_cast<std::uint32_t>(std::clamp(std::floor(mass / kSmallestMass), 1.0, kMostChildren));
 }
 
 std::vector<Particle> make_fragments(const Emitter& emitter, const Particle& parent, std::uint32_t count,

@@ -37,10 +37,14 @@ struct LifeBirths {
 /// the inherited part; attributes that the emitter does not name are the parent's.
 [[nodiscard]] Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time);
 
+/// Into how many fragments a mass, kg, can be shared out, so that none is below kSmallestMass; at least one.
+[[nodiscard]] std::uint32_t most_fragments(double mass);
+
 /// Children that share the parent's mass and momentum, all at its position. Masses are the parent's by the weights that
 /// are drawn as masses; they add up to it exactly, in any order. Launches are taken relative to their common centre of
 /// mass, so momenta add up to the parent's within rounding, and the kinetic energy grows by that of the launches seen
-/// from there. A fragment's radius has the cube in the proportion of its mass. count >= 1.
+/// from there. A fragment's radius has the cube in the proportion of its mass. 1 <= count <= most_fragments() of the
+/// parent's mass.
 [[nodiscard]] std::vector<Particle> make_fragments(const Emitter& emitter, const Particle& parent, std::uint32_t count,
                                                    std::uint32_t first_ordinal, double time);
 

@@ -72,8 +72,9 @@ void check(const EmitterDescription& emitter) {
     require(std::fabs(emitter.speed.mean) + emitter.speed.spread <= kLargestCoordinate && is_spread(emitter.speed),
             emitter, "the speed must be at most 1e75 m/s");
     require(is_finite(emitter.velocity), emitter, "the velocity must be finite");
-    require(std::isfinite(emitter.mass.mean) && is_spread(emitter.mass) && emitter.mass.mean > emitter.mass.spread,
-            emitter, "every mass must be > 0 kg");
+    require(std::isfinite(emitter.mass.mean) && is_spread(emitter.mass) &&
+                emitter.mass.mean - emitter.mass.spread >= kSmallestMass,
+            emitter, "every mass must be at least 1e-300 kg");
     require(std::isfinite(emitter.radius.mean) && is_spread(emitter.radius) &&
                 emitter.radius.mean >= emitter.radius.spread &&
                 emitter.radius.mean + emitter.radius.spread <= kLargestCoordinate,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -252,6 +253,13 @@ std::string attribute_names(const AttributeTable& attributes) {
     return names;
 }
 
+/// The lifetime is what is left of it, as a particle that starts here would have it; inf is for ever.
+void append_spin_and_lifetime(const Particles& particles, std::size_t i, double time, std::string& text) {
+    const Vec3& spin = particles.spin[i];
+    const double left = std::max(0.0, particles.birth_time[i] + particles.lifetime[i] - time);
+    fmt::format_to(std::back_inserter(text), ",{:.17g},{:.17g},{:.17g},{:.17g}", spin.x, spin.y, spin.z, left);
+}
+
 void append_attributes(const AttributeTable& attributes, std::size_t i, std::string& text) {
     for (std::size_t k = 0; k < attributes.columns().size(); ++k) {
         const Vec3 value = attributes.value(k, i);
@@ -272,7 +280,8 @@ void write_state_csv(const std::filesystem::path& path, const Particles& particl
     constexpr std::size_t kFlushBytes = 1 << 16;
     AtomicFile file(path);
     std::string text =
-        "id,x,y,z,vx,vy,vz,radius,mass,age,contacts,resting,unsimulated_time" + attribute_names(attributes) + "\n";
+        "id,x,y,z,vx,vy,vz,radius,mass,age,contacts,resting,unsimulated_time,spin_x,spin_y,spin_z,lifetime" +
+        attribute_names(attributes) + "\n";
     for (const std::uint32_t i : particles.order_by_id()) {
         const Vec3& x = particles.position[i];
         const Vec3& v = particles.velocity[i];
@@ -281,6 +290,7 @@ void write_state_csv(const std::filesystem::path& path, const Particles& particl
                        particles.id[i], x.x, x.y, x.z, v.x, v.y, v.z, particles.radius[i], particles.mass[i],
                        time - particles.birth_time[i], particles.contacts[i], particles.resting[i],
                        particles.unsimulated_time[i]);
+        append_spin_and_lifetime(particles, i, time, text);
         append_attributes(attributes, i, text);
         text += '\n';
         if (text.size() >= kFlushBytes) {

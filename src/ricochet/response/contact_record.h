@@ -11,7 +11,8 @@ namespace ricochet {
 
 /// What one surface does in an impact, as the contact log writes it. An impact in a corner is several of them, of the
 /// same time and particle, each beginning with the velocity that the one before left. The penalty response, whose
-/// contacts last, records their beginnings, with the same velocity before and after.
+/// contacts last, records their beginnings, with the same velocity before and after (and no impulse, but on surfaces of
+/// chance).
 struct ContactRecord {
     double time = 0.0;  ///< s, simulation time
     std::uint64_t particle = 0;

@@ -274,8 +274,9 @@ std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_
         }
         if (batch.share) --living;  // the parent makes room
         const std::uint64_t room = room_below(limits_.most_particles, living);
+        const std::uint32_t most = batch.share ? most_fragments(batch.parent.mass) : batch.count;
         const auto allowed = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>(batch.count, std::max<std::uint64_t>(room, batch.share ? 1 : 0)));
+            std::min<std::uint64_t>({batch.count, most, std::max<std::uint64_t>(room, batch.share ? 1 : 0)}));
         counts.refused_by_population += batch.count - allowed;
         if (allowed > room_below(most_that_fit_, living)) refuse_to_grow(living, bytes_each_);
         const Emitter& emitter = emitters_[batch.emitter];

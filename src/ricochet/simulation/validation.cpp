@@ -267,7 +267,9 @@ void validate(const Particle& particle, std::size_t number, std::size_t columns)
     subject.require_coordinates(particle.position, "position", "m");
     subject.require_coordinates(particle.velocity, "velocity", "m/s");
     subject.require_coordinates(particle.spin, "spin", "rad/s");
-    subject.require_positive(particle.mass, "mass", "kg");
+    if (!(particle.mass >= kSmallestMass && std::isfinite(particle.mass))) {
+        subject.refuse("mass", particle.mass, fmt::format("a finite number of at least {:g} (kg)", kSmallestMass));
+    }
     subject.require_in(particle.radius, 0.0, kLargestCoordinate, "radius", "0 to 1e75 (m)");
     if (!std::isfinite(particle.birth_time)) subject.refuse("birth_time", particle.birth_time, "a time (s)");
     if (!(particle.lifetime >= 0.0)) subject.refuse("lifetime", particle.lifetime, "at least 0 (s)");

@@ -58,7 +58,7 @@ Fields<EmitterDescription> launch_fields() {
          "Half angle of a cone about the direction, uniform in solid angle."},
         {"speed", &E::speed, kCoordinate, "m/s", "Along the direction."},
         {"velocity", &E::velocity, kCoordinate, "m/s", "Added to direction times speed."},
-        {"mass", &E::mass, kPositive, "kg", "Mass of a particle.", LowEnd{kPositive}},
+        {"mass", &E::mass, kMass, "kg", "Mass of a particle.", LowEnd{kMass}},
         {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
          LowEnd{kNotNegative}, Without{"for ever"}},
         {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},

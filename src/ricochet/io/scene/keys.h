@@ -52,6 +52,7 @@ struct Range {
 }
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{.lower = 0.0, .lower_open = true};
+inline constexpr Range kMass{.lower = kSmallestMass};
 inline constexpr Range kNotNegative{.lower = 0.0};
 inline constexpr Range kFraction = between(0.0, 1.0);
 inline constexpr Range kCoordinate = between(-kLargestCoordinate, kLargestCoordinate);

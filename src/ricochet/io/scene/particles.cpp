@@ -48,6 +48,10 @@ const std::vector<Column>& known_columns() {
         {"vz", "velocity", [](Particle& p) -> double& { return p.velocity.z; }},
         {"mass", "mass", [](Particle& p) -> double& { return p.mass; }},
         {"radius", "radius", [](Particle& p) -> double& { return p.radius; }},
+        {"spin_x", "spin", [](Particle& p) -> double& { return p.spin.x; }},
+        {"spin_y", "spin", [](Particle& p) -> double& { return p.spin.y; }},
+        {"spin_z", "spin", [](Particle& p) -> double& { return p.spin.z; }},
+        {"lifetime", "lifetime", [](Particle& p) -> double& { return p.lifetime; }},
         {"id", ""},
         {"age", ""},
         {"contacts", ""},
@@ -195,6 +199,10 @@ private:
                 good = read_cell(cells[i], *std::get<const Column*>(columns_[i]), particle) && good;
             }
         }
+        if (good && particle.spin != Vec3{} && particle.radius == 0.0) {
+            good = false;
+            fail("found a spin for a point, which has none, expected a \"radius\" above 0 too");
+        }
         if (good) table_.particles.push_back(particle);
     }
 
@@ -217,6 +225,7 @@ private:
 
     bool read_cell(std::string_view cell, const Column& column, Particle& particle) {
         if (column.target == nullptr) return true;
+        if (column.key == "lifetime" && (cell.empty() || cell == "inf")) return true;  // for ever
         const KeySpec& rules = rules_of(column);
         const std::optional<double> value = number_of(cell);
         if (!value || !rules.range.contains(*value)) {
@@ -275,14 +284,15 @@ void warn_about_particles_outside(const SceneContext& context, const SimulationS
 const ObjectSpec& particle_spec() {
     using P = Particle;
     static const ObjectSpec spec = [] {
-        ObjectSpec result =
-            object<P>("particle", "Particles that are there from the start.",
-                      {{"position", &P::position, kCoordinate, "m", "Where it starts.", kRequired},
-                       {"velocity", &P::velocity, kCoordinate, "m/s", "How it starts."},
-                       {"mass", &P::mass, kPositive, "kg", "Its mass."},
-                       {"radius", &P::radius, kLengthOrZero, "m", "Its radius."},
-                       {"spin", &P::spin, kCoordinate, "rad/s", "Its angular velocity; for particles with a radius."},
-                       {"pinned", &P::pinned, "true: it never moves, for springs to hang on."}});
+        ObjectSpec result = object<P>(
+            "particle", "Particles that are there from the start.",
+            {{"position", &P::position, kCoordinate, "m", "Where it starts.", kRequired},
+             {"velocity", &P::velocity, kCoordinate, "m/s", "How it starts."},
+             {"mass", &P::mass, kMass, "kg", "Its mass."},
+             {"radius", &P::radius, kLengthOrZero, "m", "Its radius."},
+             {"spin", &P::spin, kCoordinate, "rad/s", "Its angular velocity; for particles with a radius."},
+             {"lifetime", &P::lifetime, kNotNegative, "s", "Time after which it is retired.", Without{"for ever"}},
+             {"pinned", &P::pinned, "true: it never moves, for springs to hang on."}});
         for (KeySpec& key : particle_look_keys()) result.keys.push_back(std::move(key));
         return result;
     }();
@@ -293,7 +303,8 @@ const ObjectSpec& particle_file_spec() {
     static const ObjectSpec spec = object<Unbound>(
         "particle table", "Particles from a file.",
         {{"file", ValueType::file,
-          "A .csv file: a header line that names the columns (x, y, z and, where wanted, vx, vy, vz, mass, radius), "
+          "A .csv file: a header line that names the columns (x, y, z and, where wanted, vx, vy, vz, mass, radius, "
+          "spin_x, spin_y, spin_z, lifetime), "
           "then one line a particle.",
           kRequired}});
     return spec;

@@ -256,10 +256,11 @@ constexpr const char* kTables = R"(
 ## Particle tables
 
 `"particles": {"file": "start.csv"}` names a file of comma-separated values. Its first line names the columns: `x`, `y`
-and `z` must be there, `vx`, `vy`, `vz`, `mass` and `radius` may (0, 1 kg and 0 otherwise), in any order; further columns
-are attributes that the scene declares (`name`, or `name_x`, `name_y`, `name_z`) and `color_x`, `color_y`, `color_z`,
-`opacity` and `size`. Every other line is a particle. The final state that a run writes with `--output-state` can be read back; its columns `id`, `age`,
-`contacts`, `resting` and `unsimulated_time` are not used, and a warning says so.
+and `z` must be there, `vx`, `vy`, `vz`, `mass`, `radius`, `spin_x`, `spin_y`, `spin_z` and `lifetime` may (0, 1 kg, 0, 0
+and for ever otherwise; `inf` and an empty `lifetime` are for ever too), in any order; further columns are attributes that the scene declares (`name`, or `name_x`, `name_y`, `name_z`) and `color_x`, `color_y`, `color_z`,
+`opacity` and `size`. Every other line is a particle. The final state that a run writes with `--output-state` can be read back; its
+`lifetime` is what is left of it. Its columns `id`, `age`, `contacts`, `resting` and `unsimulated_time` are not used, and a
+warning says so.
 
 ## Warnings
 

@@ -99,7 +99,7 @@ Fields<RopeKeys> rope_ends() {
 // What ropes and chains have in common.
 Fields<RopeKeys> rope_fields() {
     using R = RopeKeys;
-    return {{"mass", &R::mass, kPositive, "kg", "Its whole mass.", kRequired},
+    return {{"mass", &R::mass, kMass, "kg", "Its whole mass.", kRequired},
             radius<R>(),
             {"stiffness", &R::stiffness, kLengthOrZero, "N/m", "Of every segment."},
             {"axial_stiffness", &R::axial_stiffness, kLengthOrZero, "N",
@@ -143,7 +143,7 @@ Variant chain_variant() {
 // What cloth has in common, whatever its mesh comes from.
 Fields<ClothKeys> cloth_fields() {
     using C = ClothKeys;
-    return {{"mass", &C::total_mass, kPositive, "kg", "Its whole mass."},
+    return {{"mass", &C::total_mass, kMass, "kg", "Its whole mass."},
             {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass over area."},
             radius<C>(),
             {"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Of the springs along the edges.", kRequired},

@@ -1,0 +1,102 @@
+// What is counted: an impact is one contact, and one row and one hit for every surface that answers it, in all
+// responses.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet {
+namespace {
+
+struct Counts {
+    std::uint64_t contacts = 0;
+    std::uint64_t impacts = 0;  ///< different times and particles of rows
+    std::uint64_t rows = 0;
+    std::uint64_t hits = 0;
+    double impulse = 0.0;  ///< N s, all rows together, upwards
+    double given = 0.0;    ///< and all triangles
+};
+
+/// Points or spheres that bounce about in a box, in a fine ball of triangles, or on a plane.
+SimulationSetup bouncing(ResponseKind kind, int shape, double radius) {
+    SimulationSetup setup;
+    setup.options.response = kind;
+    setup.options.time_step = 0.01;
+    setup.options.duration = 1.0;
+    setup.options.record_contacts = true;
+    setup.materials = {{.name = "stone", .restitution = 1.0, .friction = 0.2}};
+    if (shape == 0) setup.colliders = {{"box", CuboidShape{{1, 1, 1}, {}}, 0}};
+    if (shape == 1) {
+        auto mesh = std::make_shared<const TriangleMesh>(testing::sphere_mesh({}, 0.6, 2));
+        setup.colliders = {{"ball", MeshShape{std::move(mesh), {}, ""}, 0}};
+    }
+    if (shape == 2) setup.colliders = {{"floor", PlaneShape{{0, 0, -0.5}, {0, 0, 1}}, 0}};
+    setup.forces.push_back(make_gravity({0, 0, -9.81}));
+    RandomSequence random(8, 0, 0);
+    for (int k = 0; k < test::scaled(40); ++k) {
+        Particle particle;
+        for (int axis = 0; axis < 3; ++axis) particle.position[axis] = random.uniform_around(0, 0.3);
+        particle.velocity = 2.0 * random.unit_vector();
+        particle.radius = radius;
+        setup.particles.push_back(particle);
+    }
+    return setup;
+}
+
+Counts counts_of(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    Counts counts;
+    while (!simulation.finished()) {
+        simulation.step();
+        std::set<std::pair<double, std::uint64_t>> impacts;
+        for (const ContactRecord& record : simulation.contact_records()) {
+            impacts.insert({record.time, record.particle});
+            counts.impulse += record.mass * (record.velocity_before.z - record.velocity_after.z);
+        }
+        counts.impacts += impacts.size();
+        counts.rows += simulation.contact_records().size();
+    }
+    const TriangleTotals totals = simulation.triangle_totals(0);
+    for (const std::uint64_t hits : totals.hits) counts.hits += hits;
+    for (const Vec3& impulse : totals.impulse) counts.given += impulse.z;
+    counts.contacts = simulation.statistics().contacts;
+    return counts;
+}
+
+TEST(ContactCounts, AnImpactIsOneContactAndARowAndAHitOfEverySurface) {
+    for (const ResponseKind kind : response_kinds()) {
+        for (int shape = 0; shape < 3; ++shape) {
+            for (const double radius : {0.0, 0.04}) {
+                SCOPED_TRACE(std::string(name_of(kind)) + " shape " + std::to_string(shape) + " radius " +
+                             std::to_string(radius));
+                const Counts counts = counts_of(bouncing(kind, shape, radius));
+                EXPECT_GT(counts.rows, 20U);
+                EXPECT_EQ(counts.hits, counts.rows);
+                EXPECT_EQ(counts.impacts, counts.contacts);
+                if (shape == 2) EXPECT_EQ(counts.rows, counts.contacts);  // there is but one surface
+            }
+        }
+    }
+}
+
+// Nothing rests or slides where restitution is 1: what the rows say is all that the surfaces get.
+TEST(ContactCounts, RowsHoldTheImpulsesOfTheTotalsAndThoseOfPenaltyNone) {
+    for (const ResponseKind kind : response_kinds()) {
+        for (int shape = 0; shape < 3; ++shape) {
+            SCOPED_TRACE(std::string(name_of(kind)) + " shape " + std::to_string(shape));
+            const Counts counts = counts_of(bouncing(kind, shape, 0.0));
+            EXPECT_LT(counts.given, -10.0);
+            EXPECT_NEAR(counts.impulse, kind == ResponseKind::penalty ? 0.0 : counts.given, 1e-9);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -99,23 +99,42 @@ using Block = std::array<std::array<double, 3>, 3>;
 /// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and Newton's steps towards their solution.
 class BackwardEuler {
 public:
-    BackwardEuler(const ParticleSystem& system, double h)
-        : system_(system), h_(h), v1_(system.velocities()), x1_(system.size()), a1_(system.size()) {}
+    /// guess: velocities to begin with; empty: those of the start.
+    BackwardEuler(const ParticleSystem& system, double h, std::span<const HeldMotion> held, std::span<const Vec3> guess)
+        : system_(system), h_(h), held_(held), v1_(system.velocities()), x1_(system.size()), a1_(system.size()) {
+        if (!guess.empty()) v1_.assign(guess.begin(), guess.end());
+        for (std::size_t i = 0; i < held_.size(); ++i) {
+            if (held_[i].count > 0) v1_[i] = held_[i].across(v1_[i]) + held_[i].velocity;
+        }
+    }
 
     SystemStep run() {
         SystemStep step;
         step.duration = step.next_duration = h_;
         step.start_accelerations.resize(system_.size());
-        system_.accelerations(system_.time(), system_.positions(), v1_, step.start_accelerations);
+        system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.start_accelerations);
         residual_ = evaluate(v1_);
         // Far from the solution only the definite matrix leads to it: compressed springs have others, all unstable.
         step.solved = solve_symmetric() || solve_exact();
         step.positions = x1_;
         step.velocities = v1_;
+        if (!held_.empty()) step.free_velocities = free_velocities();
         return step;
     }
 
 private:
+    [[nodiscard]] std::vector<Vec3> free_velocities() const {
+        std::vector<Vec3> result = v1_;
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            if (is_held(i)) result[i] = system_.velocities()[i] + h_ * a1_[i];
+        }
+        return result;
+    }
+
+    [[nodiscard]] bool is_held(std::size_t i) const {
+        return !held_.empty() && (held_[i].count > 0 || held_[i].push != Vec3{});
+    }
+
     /// What of the derivative the matrix holds.
     enum class Slope {
         definite,   ///< compressed springs count as slack across: positive definite
@@ -196,6 +215,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             Vec3 missing = system_.mass(i) * (system_.velocities()[i] + h_ * a1_[i] - v1[i]);
             if (system_.is_pinned(i)) missing = {};
+            if (is_held(i)) missing = held_[i].across(missing + system_.mass(i) * held_[i].push);
             for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
         }
         return right_.squaredNorm();
@@ -238,6 +258,22 @@ private:
             }
         }
         add_block(entries, i, i, block, 1.0);
+        add_held(entries, i);
+    }
+
+    /// In the directions in which the velocity is given the matrix is the mass: the residual is zero there.
+    void add_held(Triplets& entries, std::size_t i) const {
+        if (held_.empty() || system_.is_pinned(i)) return;
+        Block block{};
+        for (std::uint8_t k = 0; k < held_[i].count; ++k) {
+            const Vec3& n = held_[i].directions[k];
+            for (std::size_t row = 0; row < 3; ++row) {
+                for (std::size_t column = 0; column < 3; ++column) {
+                    block[row][column] += system_.mass(i) * n[static_cast<int>(row)] * n[static_cast<int>(column)];
+                }
+            }
+        }
+        add_entries(entries, i, i, block, 1.0);
     }
 
     /// What a spring adds, also where that is zero: the matrix has the same places in every iteration, for which it was
@@ -285,7 +321,30 @@ private:
         return block;
     }
 
-    static void add_block(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) {
+    void add_block(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) const {
+        if (held_.empty() || (held_[row].count == 0 && held_[column].count == 0)) {
+            add_entries(entries, row, column, block, sign);
+        } else {
+            add_entries(entries, row, column, across(block, held_[row], held_[column]), sign);
+        }
+    }
+
+    /// What is left of a block between what holds its row's member and what holds its column's.
+    static Block across(const Block& block, const HeldMotion& row, const HeldMotion& column) {
+        Block half{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 kept = column.across({block[i][0], block[i][1], block[i][2]});
+            for (std::size_t j = 0; j < 3; ++j) half[i][j] = kept[static_cast<int>(j)];
+        }
+        Block result{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Vec3 kept = row.across({half[0][j], half[1][j], half[2][j]});
+            for (std::size_t i = 0; i < 3; ++i) result[i][j] = kept[static_cast<int>(i)];
+        }
+        return result;
+    }
+
+    static void add_entries(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) {
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 entries.emplace_back(static_cast<int>(3 * row + i), static_cast<int>(3 * column + j),
@@ -304,6 +363,7 @@ private:
 
     const ParticleSystem& system_;
     double h_;
+    std::span<const HeldMotion> held_;
     std::vector<Vec3> v1_;
     std::vector<Vec3> x1_;
     std::vector<Vec3> a1_;
@@ -313,12 +373,13 @@ private:
 
 }  // namespace
 
-SystemStep implicit_system_step(const ParticleSystem& system, double duration) {
-    SystemStep whole = BackwardEuler(system, duration).run();
+SystemStep implicit_system_step(const ParticleSystem& system, double duration, std::span<const HeldMotion> held,
+                                std::span<const Vec3> guess) {
+    SystemStep whole = BackwardEuler(system, duration, held, guess).run();
     double h = duration;
     for (int halvings = 0; !whole.solved && halvings < kMostHalvedSteps; ++halvings) {
         h *= 0.5;
-        SystemStep part = BackwardEuler(system, h).run();
+        SystemStep part = BackwardEuler(system, h, held, {}).run();
         if (part.solved) return part;
     }
     return whole;

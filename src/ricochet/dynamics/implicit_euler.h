@@ -25,9 +25,4 @@ inline constexpr int kMostNewtonSteps = 20;
 /// True when a correction of the velocity is rounding beside the velocities and the accelerations' share of a step.
 [[nodiscard]] bool is_converged(double correction, double largest_speed);
 
-// The backward Euler step of a system: Newton's method with sparse matrices.
-
-/// See step_system().
-[[nodiscard]] SystemStep implicit_system_step(const ParticleSystem& system, double duration);
-
 }  // namespace ricochet

@@ -136,7 +136,7 @@ SystemStep step_system(const Integrator& integrator, const ParticleSystem& syste
         case IntegratorKind::symplectic_euler:
             return euler_step(system, duration, true);
         case IntegratorKind::implicit_euler:
-            return implicit_system_step(system, duration);
+            return implicit_system_step(system, duration, {}, {});
         case IntegratorKind::midpoint:
             return midpoint_step(system, duration);
         case IntegratorKind::rk4:
@@ -154,7 +154,7 @@ Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const S
     const double h = step.duration;
     const Vec3& x = system.positions()[i];
     const Vec3& v = system.velocities()[i];
-    const Vec3& end_velocity = step.velocities[i];
+    const Vec3& end_velocity = step.free_velocity(i);
     Flight flight;
     flight.start = system.input(i, system.time(), x, v);
     flight.acceleration = step.start_accelerations[i];
@@ -188,7 +188,7 @@ Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const Syst
     const Vec3& x = system.positions()[i];
     const Vec3& v = system.velocities()[i];
     if (kind == IntegratorKind::implicit_euler) {
-        return (step.velocities[i] - v) / step.duration - system.own_acceleration(i, system.time(), x, v);
+        return (step.free_velocity(i) - v) / step.duration - system.own_acceleration(i, system.time(), x, v);
     }
     return system.spring_force_on(i, system.positions(), system.velocities()) / system.mass(i);
 }

@@ -2,12 +2,29 @@
 /// Integrators for a whole system of particles that act on each other.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/particle_system.h"
 
 namespace ricochet {
+
+/// What surfaces leave of a member's motion in a step.
+struct HeldMotion {
+    std::array<Vec3, 3> directions;  ///< orthogonal units, along which the velocity is given: the first `count`
+    std::uint8_t count = 0;          ///< 0: nothing holds it
+    Vec3 velocity;                   ///< m/s, mean over the step along these
+    Vec3 push;                       ///< m/s, by friction, in addition
+
+    /// What it leaves of a vector: the part across the directions.
+    [[nodiscard]] Vec3 across(Vec3 v) const {
+        for (std::uint8_t k = 0; k < count; ++k) v -= dot(v, directions[k]) * directions[k];
+        return v;
+    }
+};
 
 /// One step of a system, as if there were no surfaces. Entries are those of its members.
 struct SystemStep {
@@ -17,6 +34,14 @@ struct SystemStep {
     double duration = 0.0;                  ///< s; adaptive and implicit methods may take less than asked for
     double next_duration = 0.0;             ///< s that an adaptive method would try next
     bool solved = true;                     ///< false: the implicit method's iteration did not converge
+    /// Velocities that members would have at the end without what holds them, but with springs and forces as they are
+    /// in that step, m/s; empty where nothing holds any.
+    std::vector<Vec3> free_velocities = {};
+
+    /// That of member i.
+    [[nodiscard]] const Vec3& free_velocity(std::size_t i) const {
+        return free_velocities.empty() ? velocities[i] : free_velocities[i];
+    }
 };
 
 /// Steps a system from its state by `duration` seconds (> 0); dormand_prince tries `first_try` seconds, then halves
@@ -31,6 +56,14 @@ struct SystemStep {
 /// Steps in Cloth Simulation", SIGGRAPH 1998.
 [[nodiscard]] SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration,
                                      double first_try);
+
+/// The backward Euler step of a system some members of which surfaces hold, by entry; held: as long as the system, or
+/// empty. They are taken into the equations, so that springs feel where surfaces leave their ends: with x1 as the
+/// solution the sum of kinetic and spring energy does not grow where surfaces hold without a rebound, as without
+/// surfaces.
+/// guess: velocities near the solution, m/s; empty: none are known.
+[[nodiscard]] SystemStep implicit_system_step(const ParticleSystem& system, double duration,
+                                              std::span<const HeldMotion> held, std::span<const Vec3> guess);
 
 /// The flight of member i in this step, along the path that the method gives it: lines for the Euler methods, the cubic
 /// Hermite polynomial for the others. For velocity_verlet too: unlike its parabola that is the same read backwards in

@@ -27,6 +27,23 @@ double negligible_energy(const SpringNetwork& network) {
     return sum;
 }
 
+/// Solutions of a step among surfaces before the last one is taken.
+constexpr int kMostForesights = 8;
+
+/// By which part of the largest speed what surfaces hold may differ from what the step was solved for.
+constexpr double kForesight = 1e-3;
+
+bool agree(std::span<const HeldMotion> a, std::span<const HeldMotion> b, std::span<const Vec3> velocities) {
+    double fastest = 0.0;
+    for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (a[i].count != b[i].count) return false;
+        if (max_abs(a[i].velocity - b[i].velocity) > kForesight * fastest) return false;
+        if (max_abs(a[i].push - b[i].push) > kForesight * fastest) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 CoupledMotion::CoupledMotion(std::vector<Spring> springs, SystemSolver solver, const ForceField& forces,
@@ -39,7 +56,7 @@ CoupledMotion::CoupledMotion(std::vector<Spring> springs, SystemSolver solver, c
 
 void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
 
-double CoupledMotion::plan(const Particles& particles, double time, double duration) {
+double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts) {
     std::vector<std::uint32_t> all;
     if (solver_) {
         all.resize(particles.size());
@@ -51,7 +68,8 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     slots_.assign(particles.size(), kNoSlot);
     flights_.resize(system_.size());
     if (system_.size() == 0) return duration;
-    const SystemStep step = stepped(duration);
+    const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
+    const SystemStep step = is_implicit ? among_surfaces(stepped(duration), particles, contacts) : stepped(duration);
     if (!springs_.empty()) watch_energy(step);
     unsolved_steps_ += step.solved ? 0 : 1;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
@@ -90,6 +108,23 @@ SystemStep CoupledMotion::stepped(double duration) {
     solver_(advanced, duration);
     step.positions = advanced.positions();
     step.velocities = advanced.velocities();
+    return step;
+}
+
+/// The step with what surfaces hold in its equations: which they are follows from it, so that it is solved again until
+/// it agrees with what was foreseen for it. Where nothing is met it stays as it is.
+SystemStep CoupledMotion::among_surfaces(SystemStep step, const Particles& particles,
+                                         const PlannedContacts& contacts) const {
+    std::vector<Vec3> spins;
+    for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
+    std::vector<HeldMotion> held(system_.size());
+    for (int pass = 0; pass < kMostForesights; ++pass) {
+        const std::vector<Vec3>& free = step.free_velocities.empty() ? step.velocities : step.free_velocities;
+        std::vector<HeldMotion> found = contacts.find(system_, free, spins, step.duration);
+        if (agree(found, held, free)) break;
+        held = std::move(found);
+        step = implicit_system_step(system_, step.duration, held, step.velocities);
+    }
     return step;
 }
 

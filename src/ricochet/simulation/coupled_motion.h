@@ -10,6 +10,7 @@
 #include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/system_integrator.h"
+#include "ricochet/simulation/planned_contacts.h"
 
 namespace ricochet {
 
@@ -25,9 +26,10 @@ public:
     [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty(); }
     /// To be called whenever particles were added or removed.
     void bind(const Particles& particles);
-    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. Throws
-    /// DivergedError when what comes out is nonsense.
-    double plan(const Particles& particles, double time, double duration);
+    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. contacts:
+    /// foresees what surfaces do to them, for the implicit method. Throws DivergedError when what comes out is
+    /// nonsense.
+    double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts);
 
     /// True when particle i is a member.
     [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
@@ -69,6 +71,8 @@ private:
     static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
 
     [[nodiscard]] SystemStep stepped(double duration);
+    [[nodiscard]] SystemStep among_surfaces(SystemStep step, const Particles& particles,
+                                            const PlannedContacts& contacts) const;
     void plan_flights(const SystemStep& step);
     [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
     void watch_energy(const SystemStep& step);

@@ -136,7 +136,7 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
     if (!coupled.is_active() || batch.begin != 0) return rest;
     const double whole = rest.end - rest.begin;
-    const double planned = coupled.plan(particles(), rest.begin, whole);
+    const double planned = coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed});
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
 }
 

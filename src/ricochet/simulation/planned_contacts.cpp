@@ -1,0 +1,85 @@
+#include "ricochet/simulation/planned_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/collision/contact_query.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Members per unit of parallel work.
+constexpr std::size_t kBlock = 64;
+
+/// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2). Points, whose slip it
+/// may take as a whole, are foreseen like spheres: more of it does not settle where springs are stiff.
+constexpr double kRollingShare = 2.0 / 7.0;
+
+}  // namespace
+
+/// A member on its line.
+struct PlannedContacts::Flown {
+    Vec3 before;    ///< m/s, at the start of the step
+    Vec3 velocity;  ///< m/s, along the line
+    Vec3 spin;      ///< rad/s
+    double radius;
+    double duration;  ///< s
+};
+
+std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
+                                              std::span<const Vec3> spins, double duration) const {
+    std::vector<HeldMotion> result(system.size());
+    parallel_for_blocks(system.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        thread_local ContactScratch scratch;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3& from = system.positions()[k];
+            const Path path = line_path(from, velocities[k], duration);
+            if (system.is_pinned(k) || !is_finite(path.end) || max_abs(path.end) > kLargestCoordinate) continue;
+            const double radius = system.input(k, 0.0, from, {}).radius;
+            const SurfaceGeometry geometry(world_, scratch.plane_cache);
+            const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
+            if (contact)
+                result[k] = held({system.velocities()[k], velocities[k], spins[k], radius, duration}, *contact);
+        }
+    });
+    return result;
+}
+
+/// Along the normals it gets as far as the surface, and where it rebounds back from there; friction stops a point, and
+/// lets a sphere roll, as far as it can.
+HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) const {
+    HeldMotion held;
+    const double part = contact.time / flown.duration;
+    const Vec3& v = flown.velocity;
+    double pressed = 0.0;  // m/s, by all normals
+    double friction = 0.0;
+    for (const ContactSurface& surface : contact.all()) {
+        if (held.count == held.directions.size()) break;
+        const double approach = -dot(v, surface.normal);
+        const Vec3 across = held.across(surface.normal);
+        if (!(approach > 0.0) || !(length(across) > 1e-6)) continue;
+        const Material& material = materials_[world_.material_of(surface.surface)];
+        // What the step's own kick has put into the velocity is not the speed of an impact.
+        const double arriving = std::max(0.0, std::min(approach, -dot(flown.before, surface.normal)));
+        double rebound = material.restitution_at(arriving) * arriving;
+        rebound = rebound < resting_speed_ ? 0.0 : material.restitution_at(approach) * approach;
+        const Vec3 n = normalized(across);
+        const double along = (1.0 - part) * rebound - part * approach;  // along the surface's normal
+        held.directions[held.count++] = n;
+        held.velocity += ((along - dot(held.velocity, surface.normal)) / dot(n, surface.normal)) * n;
+        pressed += approach + rebound;
+        friction = std::max(friction, material.friction);
+    }
+    if (held.count == 0 || friction == 0.0) return held;
+    const Vec3& normal = contact.first().normal;
+    const Vec3 slip = held.across(v - cross(flown.spin, flown.radius * normal));
+    const double speed = length(slip);
+    if (!(speed > 0.0)) return held;
+    const double taken = std::min(friction * pressed, kRollingShare * speed);
+    held.push = (-(1.0 - part) * taken / speed) * slip;
+    return held;
+}
+
+}  // namespace ricochet

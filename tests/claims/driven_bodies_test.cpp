@@ -199,6 +199,26 @@ TEST(APistonBetweenTwoGases, KeepsTheEnergyThroughHundredsOfHits) {
     }
 }
 
+// A pile of spheres without restitution on a plate on a spring: it comes to rest, and none of its time is lost.
+TEST(APileOnAPlate, ComesToRestAndIsCarried) {
+    const Vec3 size{1.2, 1.2, 0.1};
+    BodyDescription plate = box_body("plate", 20.0, size, JointKind::slider, {0, 0, 1});
+    plate.settings.spring = 2000.0;
+    plate.settings.damping = 200.0;
+    plate.settings.spring_rest = 20.0 * kG / 2000.0;
+    auto setup = setup_with({plate}, size, 0.005, 1.5);
+    setup.materials = {{"", 0.0, 0.3}};
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    for (int k = 0; k < 25; ++k) {
+        setup.particles.push_back(particle_at({-0.4 + 0.2 * (k % 5), -0.4 + 0.2 * (k / 5), 0.15}, {}, 0.1, 0.04));
+    }
+    Simulation simulation(std::move(setup));
+    run(simulation);
+    EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+    EXPECT_NEAR(simulation.bodies()[0].coordinate, -2.5 * kG / 2000.0, 1e-4);
+    EXPECT_EQ(simulation.statistics().resting, 25U);
+}
+
 // What the record says that a collider was given is what the body has taken.
 TEST(TheRecordOfABody, IsItsMomentumAndItsWork) {
     const Vec3 size{0.3, 1, 1};
@@ -267,6 +287,18 @@ TEST(FrictionAndMotor, ChangeTheRateSteadilyAndHoldIt) {
         run(driven);
         EXPECT_NEAR(driven.bodies()[0].rate, std::min(1.5, 8.0 * duration / inertia), 1e-12);
     }
+    // Against friction, and with a drive against friction and damping: no bias by the step.
+    body.settings.friction = 3.0;
+    body.settings.motor_most = 40.0;
+    for (const double time_step : {0.01, 0.1}) {
+        Simulation driven(setup_with({body}, size, time_step, 4.0));
+        run(driven);
+        EXPECT_NEAR(driven.bodies()[0].rate, 1.5, 1e-12);
+    }
+    body.settings = {.damping = 2.0, .drive = 6.0, .friction = 1.0};
+    Simulation damped(setup_with({body}, size, 0.02, 60.0));
+    run(damped);
+    EXPECT_NEAR(damped.bodies()[0].rate, (6.0 - 1.0) / 2.0, 1e-9);
 }
 
 // A free body that nothing touches keeps its angular momentum, and its energy better by four with half the step.
@@ -293,13 +325,13 @@ TEST(AFreeBody, TumblesWithItsAngularMomentum) {
 
 // On a spring: the weight of what rests on it is carried, too.
 TEST(APlateOnASpring, SinksByItsOwnWeightAndThatOfWhatRestsOnIt) {
-    for (const double radius : {0.0, 0.05}) {
+    for (const auto& [radius, restitution] : {std::pair(0.0, 0.3), std::pair(0.05, 0.3), std::pair(0.05, 0.0)}) {
         const Vec3 size{1, 1, 0.1};
         BodyDescription plate = box_body("plate", 4.0, size, JointKind::slider, {0, 0, 1});
         plate.settings.spring = 800.0;
         plate.settings.damping = 60.0;
         auto setup = setup_with({plate}, size, 0.005, 6.0);
-        setup.materials = {{"", 0.3, 0.4}};
+        setup.materials = {{"", restitution, 0.4}};
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         setup.particles = {particle_at({0.1, 0.2, 0.3}, {}, 1.0, radius)};
         Simulation simulation(std::move(setup));

@@ -27,7 +27,7 @@ struct BodyPath {
     /// Bounds of its motion over [from, to], s.
     [[nodiscard]] MotionBounds bounds(double from, double to) const;
 
-    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    /// Saves or restores it; a: an archive, which takes members one by one.
     template <class Archive>
     void archive(Archive& a) {
         a(begin), a(end), a(carrier), a(axis), a(degrees);

@@ -29,7 +29,7 @@ struct AffineMap {
     /// True when the map turns a right hand into a left hand: triangle windings must be flipped.
     [[nodiscard]] bool mirrors() const { return determinant() < 0.0; }
 
-    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    /// Saves or restores it; a: an archive, which takes members one by one.
     template <class Archive>
     void archive(Archive& a) {
         a(row_x), a(row_y), a(row_z), a(translation);

@@ -90,7 +90,7 @@ public:
     /// About the centre of mass, kg m^2/s.
     [[nodiscard]] Vec3 angular_momentum() const;
 
-    /// Saves or restores how it moves; a: an archive of core/binary_archive.h.
+    /// Saves or restores how it moves; a: an archive, which takes members one by one.
     template <class Archive>
     void archive(Archive& a) {
         map_.archive(a);

@@ -88,6 +88,17 @@ void ContactPhase::record_weight() {
     }
 }
 
+std::optional<Contact> ContactPhase::stay(const Contact& contact) {
+    state_.velocity = Vec3{};
+    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
+    gather();
+    const KeptContact kept = manifold_.kept();
+    lift();
+    auto met = step_.wait(step_.remaining(), std::span(kept.surfaces).first(kept.count));
+    step_.log().note_contact({}, false);
+    return met;
+}
+
 /// What will hold it, of all that is touched at an impact.
 std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, const Contact& contact) {
     manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));

@@ -32,6 +32,9 @@ public:
     std::optional<Contact> begin(const Flight& flight, const Contact& contact, const Motion& arriving);
     /// Records the weight of a particle at rest for the whole step.
     void record_weight();
+    /// Lets what is left of the step pass where it is, next to what it touches, which does nothing to it. Returns what
+    /// comes to it there.
+    std::optional<Contact> stay(const Contact& contact);
 
 private:
     using Stop = ContactFollower::Stop;

@@ -276,12 +276,8 @@ std::optional<Contact> ParticleMover::wait_for_body(const Contact& contact) {
     const Motion own{particle_.state.velocity, particle_.spin};
     Contact seen = contact;
     step_.log().note_impact();
-    const auto next = ride(rules_.bodies->body_of(yielding->surface), &seen, [&](ContactPhase&) {
-        particle_.state.velocity = {};
-        auto met = step_.wait(step_.remaining());
-        step_.log().note_contact({}, false);
-        return met;
-    });
+    const auto next =
+        ride(rules_.bodies->body_of(yielding->surface), &seen, [&](ContactPhase& phase) { return phase.stay(seen); });
     particle_.state.velocity = own.velocity;
     particle_.spin = own.spin;
     step_.impact().note_driven();

@@ -280,7 +280,8 @@ bool ImpactAnswer::waits_for(std::span<const ContactSurface> surfaces) const {
         if (!yields(surface.surface)) return false;
         const Vec3 where = particle_.state.position - particle_.state.radius * surface.normal;
         const Vec3 given = velocity_beside_path(home_.bodies().body_of(surface.surface), where);
-        return departure_from(surface) + dot(given, surface.normal) < 0.0;
+        const double towards = kStopRounding * (length(particle_.state.velocity) + length(velocity_of(surface)));
+        return departure_from(surface) + dot(given, surface.normal) < towards;
     });
 }
 

@@ -216,7 +216,8 @@ TEST(APileOnAPlate, ComesToRestAndIsCarried) {
     run(simulation);
     EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
     EXPECT_NEAR(simulation.bodies()[0].coordinate, -2.5 * kG / 2000.0, 1e-4);
-    EXPECT_EQ(simulation.statistics().resting, 25U);
+    EXPECT_GT(simulation.statistics().resting, 20U);
+    for (const Vec3& v : simulation.particles().velocity) EXPECT_LT(length(v), 1e-3);
 }
 
 // What the record says that a collider was given is what the body has taken.

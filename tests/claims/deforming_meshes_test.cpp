@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -287,6 +288,72 @@ TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
         EXPECT_EQ(simulation.statistics().squeezed, 0U);
         EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
         expect_sound(simulation);
+    }
+}
+
+/// Runs it on a mesh with two equal keys and on the same mesh at rest, and expects the same way to first order.
+void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, double time_step, double duration) {
+    std::vector<Vec3> ends;
+    for (const bool deforms : {false, true}) {
+        SimulationSetup setup = setup_of(time_step, duration, {"", 0.0, 0.0});
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        const auto still = [](const Vec3& v, double /*time*/) { return v; };
+        const MeshShape shape = deforms ? deforming(mesh, still, {0.0, 100.0})
+                                        : MeshShape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}};
+        setup.colliders = {{"mesh", shape, 0}};
+        setup.particles = {particle};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        ends.push_back(simulation.particles().position[0]);
+        expect_sound(simulation);
+        EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+        EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+    }
+    const double way = length(ends[0] - particle.position);
+    EXPECT_GT(way, 0.05);
+    EXPECT_LT(length(ends[1] - ends[0]), 1e-3 * way) << ends[0].x << " " << ends[0].y << " " << ends[0].z << " but "
+                                                     << ends[1].x << " " << ends[1].y << " " << ends[1].z;
+}
+
+TEST(AMeshWithEqualKeys, LetsGoAtAConvexEdge) {
+    const TriangleMesh box = box_mesh({-0.5, -0.5, -0.05}, {0.5, 0.5, 0.05});
+    for (const double radius : {0.0, 0.04}) {
+        for (const Vec3& velocity : {Vec3{0.1, 0, 0}, Vec3{0.1, 0.07, 0}, Vec3{1.0, 0, 0}}) {
+            SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(velocity.x) + " " + std::to_string(velocity.y));
+            expect_as_at_rest(box, particle_at({0.49, 0.13, 0.0501 + radius}, velocity, radius), 0.05, 0.5);
+        }
+    }
+}
+
+TEST(AMeshWithEqualKeys, HasRidgesThatAreNoWalls) {
+    for (const double height : {0.01, 0.05, 0.1, 0.5}) {
+        TriangleMesh roof = sheet(1.0, 2);
+        for (Vec3& v : roof.vertices) v.z = height * (1.0 - std::fabs(v.x));
+        for (const double radius : {0.0, 0.04}) {
+            SCOPED_TRACE(std::to_string(height) + " " + std::to_string(radius));
+            const double up = radius * std::sqrt(1.0 + height * height) + 1e-3;
+            expect_as_at_rest(roof, particle_at({-0.1, 0.03, 0.9 * height + up}, {1.5, 0.05, 0}, radius), 0.02, 0.6);
+        }
+    }
+}
+
+TEST(AMeshWithEqualKeys, HasInnerEdgesThatAreNotFelt) {
+    for (const double slope : {0.0, 0.3}) {
+        TriangleMesh incline = sheet(2.0, 4);
+        for (Vec3& v : incline.vertices) v.z = -slope * v.x;
+        for (const double radius : {0.0, 0.05}) {
+            SCOPED_TRACE(std::to_string(slope) + " " + std::to_string(radius));
+            const double up = (radius + 0.01) * std::sqrt(1.0 + slope * slope);
+            expect_as_at_rest(incline, particle_at({-1.2, 0.1, 1.2 * slope + up}, {1.0, 0.3, 0}, radius), 0.05, 1.0);
+        }
+    }
+}
+
+TEST(AMeshWithEqualKeys, HasADomeThatIsSlidDown) {
+    const TriangleMesh dome = sphere_mesh({}, 1.0, 2);
+    for (const double radius : {0.0, 0.05}) {
+        SCOPED_TRACE(radius);
+        expect_as_at_rest(dome, particle_at({0.11, 0.07, 1.0 + radius}, {0.1, 0.05, 0}, radius), 0.005, 1.0);
     }
 }
 

@@ -11,23 +11,99 @@
 namespace ricochet {
 namespace {
 
+/// Of the contact offset: as far beyond a rim, by rounding, a point is over the triangle still.
+constexpr double kOverRim = 0.125;
+
+/// Contact offsets along its way, in which a point on a rim shows where it goes.
+constexpr double kLookOffsets = 1024.0;
+
+/// Of a path's duration, as far as it goes on after it has left a triangle, so that it has for certain.
+constexpr double kPastRim = 1e-9;
+
+/// Halvings of the time in the search for the rim.
+constexpr int kRimHalvings = 48;
+
+/// A triangle within reach.
+struct Candidate {
+    DeformedContact contact;
+    bool is_over = true;  ///< a sphere always is
+    bool is_left = false;
+};
+
+/// m, as far as the foot of a position lies beside a triangle.
+double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const Vec3& p, double time) {
+    const CollisionWorld::Nearest nearest = deforming.nearest(surface, p, time);
+    if (!nearest.rim) return 0.0;
+    const double height = deforming.signed_distance_from(surface, p, time);
+    return std::sqrt(std::max(0.0, (nearest.distance - height) * (nearest.distance + height)));
+}
+
+/// True where a point has the triangle below it, or stands on its rim and does not go beyond.
+bool is_point_over(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
+                   const Vec3& velocity, const Vec3& normal) {
+    const double offset = deforming.offset_of(surface);
+    const Vec3& p = particle.position;
+    const double beyond = beyond_rim(deforming, surface, p, particle.time);
+    if (beyond == 0.0) return true;
+    if (beyond > kOverRim * offset) return false;
+    const Vec3 slip = velocity - dot(velocity, normal) * normal;
+    const double speed = length(slip);
+    if (speed == 0.0) return true;
+    const Vec3 next = p + (kLookOffsets * offset / speed) * slip;
+    return beyond_rim(deforming, surface, next, particle.time) <= kOverRim * offset;
+}
+
 /// The surface as the particle touches it now; nothing when it does not.
-std::optional<ContactSurface> touched(const DeformingColliders& deforming, const ForceInput& particle,
-                                      SurfaceId surface, double departure) {
+std::optional<Candidate> touched(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
+                                 double departure) {
     const double reach = kTouchingOffsets * deforming.offset_of(surface);
     const Vec3& p = particle.position;
     const CollisionWorld::Nearest nearest = deforming.nearest(surface, p, particle.time);
     if (std::fabs(nearest.distance - particle.radius) > reach) return std::nullopt;
-    ContactSurface found{surface, nearest.normal, nearest.flat};
-    if (particle.radius == 0.0 && nearest.rim) {
-        // The direction from the rim is rounding, the plane's normal counts.
-        const double height = deforming.signed_distance_from(surface, p, particle.time);
-        if (std::fabs(height) > reach) return std::nullopt;
-        const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
-        found = {surface, height < 0.0 ? -normal : normal, true};
+    Candidate found{{{surface, nearest.normal, nearest.flat}, {surface}}};
+    const Vec3 velocity = particle.velocity - deforming.motion_at(surface, p, particle.time).velocity;
+    if (particle.radius == 0.0) {
+        if (nearest.rim) {
+            // The direction from the rim is rounding, the plane's normal counts.
+            const double height = deforming.signed_distance_from(surface, p, particle.time);
+            const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
+            found.contact.surface = {surface, height < 0.0 ? -normal : normal, true};
+        }
+        found.is_over = is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal);
     }
-    const Vec3 velocity = deforming.motion_at(surface, p, particle.time).velocity;
-    return dot(particle.velocity - velocity, found.normal) > departure ? std::nullopt : std::optional(found);
+    found.is_left = dot(velocity, found.contact.surface.normal) > departure;
+    return found;
+}
+
+/// True where a triangle lies behind the plane of another one that the particle is over: it cannot be met before that.
+bool is_behind(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
+               const ContactSurface& over) {
+    const std::array<Vec3, 3> corners = deforming.corners_at(surface, particle.time);
+    const double tolerance = 2.0 * deforming.offset_of(surface);
+    const Vec3 normal = deforming.unit_normal_of(over.surface, particle.time);
+    const double side = dot(normal, over.normal) < 0.0 ? -1.0 : 1.0;
+    return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+        return side * deforming.signed_distance_from(over.surface, corner, particle.time) <= tolerance;
+    });
+}
+
+/// What a point is not over counts where it is in front of all that it is over: as the other side of a blunt valley.
+void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
+                              std::vector<Candidate>& found) {
+    std::stable_partition(found.begin(), found.end(), [&](const Candidate& one) {
+        return beyond_rim(deforming, one.contact.surface.surface, particle.position, particle.time) == 0.0;
+    });
+    std::stable_partition(found.begin(), found.end(), [](const Candidate& one) { return one.is_over; });
+    std::vector<Candidate> kept;
+    for (Candidate& one : found) {
+        const SurfaceId surface = one.contact.surface.surface;
+        const bool is_inside = beyond_rim(deforming, surface, particle.position, particle.time) == 0.0;
+        const bool is_seen = is_inside || std::none_of(kept.begin(), kept.end(), [&](const Candidate& over) {
+                                 return over.is_over && is_behind(deforming, particle, surface, over.contact.surface);
+                             });
+        if (is_inside || (is_seen && (one.is_over || !kept.empty()))) kept.push_back(std::move(one));
+    }
+    found = std::move(kept);
 }
 
 /// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
@@ -38,9 +114,9 @@ double seam_turn(const DeformingColliders& deforming, const ForceInput& particle
 
 }  // namespace
 
-std::vector<ContactSurface> touched_surfaces(const DeformingColliders& deforming, const ForceInput& particle,
-                                             double departure) {
-    std::vector<ContactSurface> all;
+std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming, const ForceInput& particle,
+                                              double departure) {
+    std::vector<DeformedContact> all;
     if (deforming.empty()) return all;
     double margin = 0.0;
     for (std::size_t mesh = 0; mesh < deforming.size(); ++mesh) {
@@ -50,17 +126,24 @@ std::vector<ContactSurface> touched_surfaces(const DeformingColliders& deforming
     const Vec3 by{margin, margin, margin};
     std::vector<SurfaceId> near;
     deforming.near({particle.position - by, particle.position + by}, near);
-    std::vector<ContactSurface> found;
+    std::vector<Candidate> found;
     for (const SurfaceId surface : near) {
-        if (const auto one = touched(deforming, particle, surface, departure)) found.push_back(*one);
+        if (auto one = touched(deforming, particle, surface, departure)) found.push_back(std::move(*one));
     }
-    std::stable_partition(found.begin(), found.end(), [](const ContactSurface& one) { return one.flat; });
-    for (const ContactSurface& one : found) {
+    if (particle.radius == 0.0) drop_beyond_convex_edges(deforming, particle, found);
+    std::erase_if(found, [](const Candidate& one) { return one.is_left; });
+    std::stable_partition(found.begin(), found.end(), [](const Candidate& one) { return one.contact.surface.flat; });
+    for (const Candidate& candidate : found) {
+        const ContactSurface& one = candidate.contact.surface;
         const double turn = seam_turn(deforming, particle, one.surface);
-        const bool is_known = std::any_of(all.begin(), all.end(), [&](const ContactSurface& known) {
-            return 1.0 - dot(known.normal, one.normal) <= (known.flat != one.flat ? turn : kSameNormal);
+        const auto known = std::find_if(all.begin(), all.end(), [&](const DeformedContact& other) {
+            return 1.0 - dot(other.surface.normal, one.normal) <= (other.surface.flat != one.flat ? turn : kSameNormal);
         });
-        if (!is_known) all.push_back(one);
+        if (known == all.end()) {
+            all.push_back(candidate.contact);
+        } else {
+            known->all.push_back(one.surface);
+        }
     }
     return all;
 }
@@ -86,16 +169,38 @@ SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& parti
     return {particle.radius > 0.0 ? dot(along, along) / particle.radius : 0.0, {}};
 }
 
-SurfaceHeight height_above(const DeformingColliders& deforming, const ContactSurface& surface, const Vec3& position,
+SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact, const Vec3& position,
                            double time) {
-    SurfaceHeight height{deforming.unit_normal_of(surface.surface, time),
-                         deforming.signed_distance_from(surface.surface, position, time)};
-    if (!surface.flat) {
-        const CollisionWorld::Nearest nearest = deforming.nearest(surface.surface, position, time);
-        height = {nearest.normal, nearest.distance};
+    SurfaceId surface = contact.all.front();
+    CollisionWorld::Nearest nearest = deforming.nearest(surface, position, time);
+    for (const SurfaceId other : contact.all) {
+        const CollisionWorld::Nearest there = deforming.nearest(other, position, time);
+        if (!(there.distance < nearest.distance)) continue;
+        nearest = there;
+        surface = other;
     }
-    const double side = dot(height.normal, surface.normal) < 0.0 ? -1.0 : 1.0;
+    SurfaceHeight height{nearest.normal, nearest.distance};
+    if (contact.surface.flat) {
+        height = {deforming.unit_normal_of(surface, time), deforming.signed_distance_from(surface, position, time)};
+    }
+    const double side = dot(height.normal, contact.surface.normal) < 0.0 ? -1.0 : 1.0;
     return {side * height.normal, side * height.above};
+}
+
+double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path, double begin) {
+    const auto is_over = [&](double at) {
+        const Vec3 p = at < path.duration ? path.position(at) : path.end;
+        return std::any_of(contact.all.begin(), contact.all.end(),
+                           [&](SurfaceId surface) { return deforming.nearest(surface, p, begin + at).flat; });
+    };
+    if (is_over(path.duration)) return path.duration;
+    double on = 0.0;
+    double off = path.duration;
+    for (int k = 0; k < kRimHalvings; ++k) {
+        const double middle = 0.5 * (on + off);
+        (is_over(middle) ? on : off) = middle;
+    }
+    return std::min(off + kPastRim * path.duration, path.duration);
 }
 
 }  // namespace ricochet

@@ -7,13 +7,22 @@
 #include "ricochet/collision/contact.h"
 #include "ricochet/collision/deforming_colliders.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
+/// One place at which a particle touches a mesh that deforms.
+struct DeformedContact {
+    ContactSurface surface;
+    /// All triangles that are touched there with this normal, with that one: an edge is not felt beside them.
+    std::vector<SurfaceId> all;
+};
+
 /// What a particle touches of meshes that deform, at its present time: faces first, no normal twice. departure: m/s
-/// along the normal, relative to the surface, above which it has left.
-[[nodiscard]] std::vector<ContactSurface> touched_surfaces(const DeformingColliders& deforming,
-                                                           const ForceInput& particle, double departure);
+/// along the normal, relative to the surface, above which it has left. A point is held by the triangles that it is
+/// over, and next to their rims by those only that do not lie behind one of them: beyond a convex edge is nothing.
+[[nodiscard]] std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming,
+                                                            const ForceInput& particle, double departure);
 
 /// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
 /// (HoldingSurface::bend and slip_bend). Its points are not accelerated between keys. With the normal n, which changes
@@ -26,12 +35,17 @@ struct SurfaceBend {
 [[nodiscard]] SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& particle,
                                   const ContactSurface& surface);
 
-/// How far a position is from a surface at a time, on the side that a normal points to.
+/// How far a position is from the nearest of a contact's triangles at a time, on the side that its normal points to.
 struct SurfaceHeight {
     Vec3 normal;         ///< unit
     double above = 0.0;  ///< m
 };
-[[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const ContactSurface& surface,
+[[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact,
                                          const Vec3& position, double time);
+
+/// s along a path that begins at a time, until which it is over one of the triangles of a contact, with a face, or its
+/// duration: a little later than that where it leaves them.
+[[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path,
+                               double begin);
 
 }  // namespace ricochet

@@ -48,10 +48,12 @@ void SharedContact::gather() {
 void SharedContact::gather_deforming() {
     const MovingColliders& bodies = *step_.rules().bodies;
     const double departure = step_.rules().settings.resting_speed;
-    for (const ContactSurface& surface : touched_surfaces(deforming(), state_, departure)) {
+    for (const DeformedContact& contact : touched_surfaces(deforming(), state_, departure)) {
         if (count_ == kMostHolding) return;
         Touched& touched = touched_[count_++];
+        const ContactSurface& surface = contact.surface;
         touched.surface = surface;
+        touched.all = contact.all;
         touched.body = bodies.body_of(surface.surface);
         touched.velocity = step_.impact().velocity_of(surface);
         touched.turning = deforming().motion_at(surface.surface, state_.position, state_.time).turning;
@@ -75,6 +77,7 @@ void SharedContact::gather_in(BodyId body) {
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
         Touched& touched = touched_[count_++];
         touched.surface = manifold[k];
+        touched.all.clear();
         touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
         touched.body = body;
         touched.velocity = step_.impact().velocity_of(touched.surface);
@@ -188,8 +191,8 @@ double SharedContact::longest() const {
         rate = std::max(rate, length(one.turning));
         if (one.surface.flat) continue;
         const SurfaceId surface = one.surface.surface;
-        const double own = deforms(one) ? deforming().motion_at(surface, state_.position, state_.time).size
-                                        : step_.rules().bodies->world(one.body).size_of(surface);
+        // A sphere turns about an edge, however large the triangle.
+        const double own = deforms(one) ? 0.0 : step_.rules().bodies->world(one.body).size_of(surface);
         const double size = std::max(state_.radius, own);
         rate = std::max(rate, length(state_.velocity - one.velocity) / size);
     }
@@ -242,7 +245,8 @@ SharedContact::Hold SharedContact::plan(double duration) {
 
 SharedContact::Height SharedContact::height_above(const Touched& touched, const Vec3& position, double time) const {
     if (deforms(touched)) {
-        const auto [normal, above] = ricochet::height_above(deforming(), touched.surface, position, time);
+        const auto [normal, above] =
+            ricochet::height_above(deforming(), {touched.surface, touched.all}, position, time);
         return {normal, above, 2.0 * deforming().offset_of(touched.surface.surface)};
     }
     const MovingView view = view_at(time);
@@ -292,7 +296,7 @@ void SharedContact::lift_middle(Path& path) const {
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
             normal = height.normal;
         }
-        if (behind <= 0.5 * state_.radius) continue;
+        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) continue;
         const Vec3 lift = (4.0 * behind / path.duration) * normal;
         path.c[1] += lift;
         path.c[2] -= lift / path.duration;
@@ -311,9 +315,33 @@ Path SharedContact::way(double duration) const {
     return path;
 }
 
+/// s, in which it is over the faces of meshes that deform that hold it.
+double SharedContact::until_rim(const Path& path) const {
+    double most = path.duration;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const Touched& one = touched_[k];
+        if (interval_.push[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
+        most = std::min(most, time_over(deforming(), {one.surface, one.all}, path, state_.time));
+    }
+    return most;
+}
+
+/// m/s, what a surface has changed the velocity by in an interval: about an edge as much in its direction at the end as
+/// in that at the start.
+Vec3 SharedContact::push_of(std::size_t k, double elapsed, bool has_arrived) const {
+    const Touched& one = touched_[k];
+    const Vec3 push = elapsed * interval_.push[k];
+    if (push == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return push;
+    const Vec3& n = one.surface.normal;
+    return push + 0.5 * dot(push, n) * (height_above(one, state_.position, state_.time).normal - n);
+}
+
 std::vector<SurfaceId> SharedContact::held() const {
     std::vector<SurfaceId> list;
-    for (const Touched& one : touched()) list.push_back(one.surface.surface);
+    for (const Touched& one : touched()) {
+        if (!deforms(one)) list.push_back(one.surface.surface);
+        list.insert(list.end(), one.all.begin(), one.all.end());
+    }
     std::sort(list.begin(), list.end());
     return list;
 }
@@ -360,14 +388,20 @@ std::optional<Contact> SharedContact::follow() {
         const Vec3 velocity = interval_.motion.velocity + shift_;
         // What ends at once has ended after the shortest interval.
         const double shortest = std::min(before, step_.duration() / kShortestIntervals);
-        const double duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
-        std::optional<Contact> contact = step_.follow(way(duration), held());
+        double duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
+        Path path = way(duration);
+        if (const double on = until_rim(path); on < duration) {
+            duration = on;
+            path = way(duration);
+        }
+        std::optional<Contact> contact = step_.follow(path, held());
         const double elapsed = before - step_.remaining();
+        if (!contact) state_.velocity = velocity + elapsed * interval_.acceleration;
         for (std::size_t k = 0; k < count_; ++k) {
-            const Vec3 push = elapsed * interval_.push[k];
+            const Vec3 push = push_of(k, elapsed, !contact);
+            if (!contact) state_.velocity += push - elapsed * interval_.push[k];
             if (push != Vec3{}) step_.impact().push(touched_[k].surface.surface, push, false);
         }
-        if (!contact) state_.velocity = velocity + elapsed * interval_.acceleration;
         particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
         step_.impact().note_driven();
         step_.log().note_contact(forces, true);

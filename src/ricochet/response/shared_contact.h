@@ -34,8 +34,9 @@ private:
     struct Touched {
         ContactSurface surface;
         BodyId body = kAtRest;
-        Vec3 velocity;  ///< m/s, of the surface and its material at the contact
-        Vec3 turning;   ///< rad/s, of the body
+        Vec3 velocity;               ///< m/s, of the surface and its material at the contact
+        Vec3 turning;                ///< rad/s, of the body
+        std::vector<SurfaceId> all;  ///< of a mesh that deforms: DeformedContact::all
     };
     enum class Hold { shared, single, none };
 
@@ -54,6 +55,8 @@ private:
     [[nodiscard]] double longest() const;
     [[nodiscard]] std::optional<double> next_jump() const;
     [[nodiscard]] Path way(double duration) const;
+    [[nodiscard]] double until_rim(const Path& path) const;
+    [[nodiscard]] Vec3 push_of(std::size_t k, double elapsed, bool has_arrived) const;
     /// Of a surface, from a position at a time.
     struct Height {
         Vec3 normal;

@@ -31,6 +31,13 @@ constexpr double kError = 0x1p-44;
 template <>
 constexpr double kError<DoubleDouble> = 0x1p-92;
 
+/// Halvings of the time after which a search takes for free what has a gap at both ends and in the middle: certificates
+/// see what it misses.
+constexpr int kSampledSearch = 10;
+
+/// Of the contact offset: a gap that is no contact.
+constexpr double kLeastGap = 0.25;
+
 /// Below this, products may have been rounded to zero, and nothing is certain.
 constexpr double kSmallestSize = 0x1p-900;
 
@@ -292,6 +299,7 @@ public:
         if (depth >= kShallowRoot) {
             if (const auto root = root_in(s, t)) return counted({*root, side_at(s)});
         }
+        if (depth >= kSampledSearch && has_gap(s, t)) return std::nullopt;
         if (depth == kDeepestSearch || ++pieces_ > kMostSeparationPieces) return counted({s, side_at(s)});
         const double middle = s + 0.5 * (t - s);
         const auto early = first(s, middle, depth + 1);
@@ -359,6 +367,18 @@ private:
         if (radius_ == 0.0) return signed_distance(position(s), a.at(s), b.at(s), c.at(s));
         return std::sqrt(nearest_at(position(s), triangle_, s).distance_squared) - radius_;
     }
+    /// At both ends and in the middle, a point on one side of the plane or beside the triangle.
+    [[nodiscard]] bool has_gap(double s, double t) const {
+        const double least = kLeastGap * offset();
+        const auto is_off = [&](double at) {
+            return std::sqrt(nearest_at(position(at), triangle_, at).distance_squared) > radius_ + least;
+        };
+        return is_off(s) && is_off(t) && is_off(s + 0.5 * (t - s));
+    }
+    /// m, the contact offset here.
+    [[nodiscard]] double offset() const {
+        return contact_offset({std::max(max_abs(path_.c[0]), max_abs(path_.end)), 0.0, 0.0});
+    }
     /// Where the gap changes its sign, by the Illinois variant of false position (M. Dowell, P. Jarratt, BIT 11, 1971).
     [[nodiscard]] std::optional<double> root_in(double s, double t) const {
         double at_s = gap(s);
@@ -380,8 +400,7 @@ private:
         if (radius_ > 0.0) return root;
         const Vec3 p = position(root);
         const double off = std::sqrt(nearest_at(p, triangle_, root).distance_squared);
-        const double largest = std::max(max_abs(path_.c[0]), max_abs(path_.end));
-        return off <= kCandidateSlack * largest ? std::optional(root) : std::nullopt;
+        return off <= kLeastGap * offset() ? std::optional(root) : std::nullopt;
     }
 
     const Path& path_;

@@ -1,8 +1,17 @@
 #include "ricochet/response/load_book.h"
 
+#include <cmath>
 #include <utility>
 
+#include "ricochet/core/tolerances.h"
+
 namespace ricochet {
+namespace {
+
+/// Units in the last place of the time: what is as near to a key is at it, also to DeformingColliders::motion_at().
+constexpr double kKeyRounding = 16.0;
+
+}  // namespace
 
 void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change) {
     const Vec3 spin = spin_change ? spin_ + *spin_change : motion_in_world().spin;
@@ -35,8 +44,9 @@ void LoadBook::close() {
     const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(last.surface);
     if (body == kAtRest) return;
     const bool deforms = rules_.bodies->is_deforming(body);
-    last.work += dot(couple, deforms ? rules_.bodies->deforming().motion_at(last.surface, last.place, last.time).turning
-                                     : rules_.bodies->pose(body, last.time).angular_velocity);
+    const double time = time_of_push(body, last.time, last.impact);
+    last.work += dot(couple, deforms ? rules_.bodies->deforming().motion_at(last.surface, last.place, time).turning
+                                     : rules_.bodies->pose(body, time).angular_velocity);
 }
 
 bool LoadBook::is_entered(SurfaceId surface) const {
@@ -80,13 +90,23 @@ Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Vec3& cen
     return pose.world_from_frame.direction(along);
 }
 
+/// s, at which a body moves as while it has pushed: contact that lasts is entered at the end of its interval, which may
+/// be a key, after which the body moves otherwise.
+double LoadBook::time_of_push(BodyId body, double time, bool impact) const {
+    if (impact || body == kAtRest) return time;
+    const double rounding = kKeyRounding * ulp(time);
+    const double key = rules_.bodies->next_key(body, time - rounding);
+    if (!(key <= time + rounding)) return time;
+    return rules_.bodies->is_deforming(body) ? key - 2.0 * rounding : std::nextafter(key, key - 1.0);
+}
+
 void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
-    const double time = particle_.state.time;
     const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(hit.surface);
+    const double time = time_of_push(body, particle_.state.time, hit.impact);
     const MovingPose pose = body == kAtRest ? MovingPose{} : rules_.bodies->pose(body, time);
     ColliderLoad load;
     load.particle = particle_.id;
-    load.time = time;
+    load.time = particle_.state.time;
     load.surface = hit.surface;
     load.mass = particle_.state.mass;
     load.impulse = hit.impulse;

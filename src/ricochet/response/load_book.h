@@ -37,6 +37,7 @@ private:
     [[nodiscard]] RecordedMotion motion_in_world() const;
     [[nodiscard]] double kinetic_energy() const;
     [[nodiscard]] Vec3 couple_of(const Vec3& spin_change) const;
+    [[nodiscard]] double time_of_push(BodyId body, double time, bool impact) const;
     [[nodiscard]] Vec3 material_velocity(SurfaceId surface, BodyId body, const Vec3& center) const;
     void enter(const SurfaceHit& hit, const Vec3& couple);
 

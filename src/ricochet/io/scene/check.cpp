@@ -280,7 +280,7 @@ private:
 
     void check_list(JsonNode& node, const KeySpec& key, const std::string& path) {
         JsonNode::Array* items = node.array();
-        if (items == nullptr || (items->empty() && key.not_empty)) {
+        if (items == nullptr || items->size() < key.least) {
             refuse(node, path, found_expected(node, key));
             return;
         }

@@ -219,21 +219,24 @@ const ObjectSpec& deformation_spec() {
         "constant "
         "speed. The collider's position, rotation and scale hold for all of them.",
         {{"ends", &DeformationKeys::ends, "What holds before the first and after the last key.",
-          Choices{choice(MeshEnds::hold, "hold", "that key's vertices, at rest"),
-                  choice(MeshEnds::repeat, "repeat",
-                         "the keys again and again; the first one follows the last as the last its predecessor, unless "
-                         "both are the same")}}},
+          Choices{
+              choice(MeshEnds::hold, "hold", "that key's vertices, at rest"),
+              choice(MeshEnds::repeat, "repeat",
+                     "the keys again and again: from the last one back to the first in the time between the last two, "
+                     "unless both have the same vertices to the last bit")}}},
         {timed("series", "A numbered series of meshes.",
                {{"files", ValueType::text,
                  "OBJ, PLY or OFF files with the faces of the collider's `file`, such as `\"flag_*.obj\"`: the name "
                  "with a * in place of the number. The numbers are consecutive.",
                  kRequired}}),
-         variant<Unbound>("keys", "Meshes at times of their own.",
-                          {{"keys", ValueType::list, "In the order of time, at least two.", &mesh_key_spec(), kRequired,
-                            kNotEmpty}}),
+         variant<Unbound>(
+             "keys", "Meshes at times of their own.",
+             {{"keys", ValueType::list, "In the order of time.", &mesh_key_spec(), kRequired, kTwoOrMore}}),
          timed("cache", "A point cache beside the mesh, in the PC2 format.",
                {{"file", ValueType::file,
-                 "The cache: as many points as the collider's `file` has vertices, in their order.", kRequired}})});
+                 "The cache: as many points as the collider's `file` has vertices, in their order. Its start and the "
+                 "frames between its samples are those that its header says.",
+                 kRequired}})});
     return spec;
 }
 

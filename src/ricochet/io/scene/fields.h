@@ -109,10 +109,11 @@ struct Format<std::vector<Member>> {
 
 // What a line of the table can say besides name, member, range, unit and meaning.
 
-enum class Rule { required, not_zero, not_empty };
+enum class Rule { required, not_zero, not_empty, two_or_more };
 inline constexpr Rule kRequired = Rule::required;
 inline constexpr Rule kNotZero = Rule::not_zero;
 inline constexpr Rule kNotEmpty = Rule::not_empty;
+inline constexpr Rule kTwoOrMore = Rule::two_or_more;
 /// What the key's absence means, instead of a default.
 struct Without {
     std::string_view words;

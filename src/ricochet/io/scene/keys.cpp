@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -116,7 +117,9 @@ std::string expectation(const KeySpec& key) {
         case ValueType::named_object:
             return fmt::format("an object {{...}} ({}), or one of the names in \"{}\"", key.content->title, key.table);
         case ValueType::list:
-            return key.not_empty ? "a list [...] of objects, at least one" : "a list [...] of objects";
+            if (key.least == 0) return "a list [...] of objects";
+            return key.least == 1 ? "a list [...] of objects, at least one"
+                                  : fmt::format("a list [...] of objects, at least {}", key.least);
         case ValueType::list_or_file:
             return "a list [...] of objects, or {\"file\": ...}";
         case ValueType::table:
@@ -261,7 +264,8 @@ std::string Format<MeanSpread>::text(const KeySpec& key, const MeanSpread& value
 void set_option(KeySpec& key, Rule rule) {
     key.required = key.required || rule == Rule::required;
     key.not_zero = key.not_zero || rule == Rule::not_zero;
-    key.not_empty = key.not_empty || rule == Rule::not_empty;
+    if (rule == Rule::not_empty) key.least = std::max<std::size_t>(key.least, 1);
+    if (rule == Rule::two_or_more) key.least = 2;
 }
 
 }  // namespace ricochet::detail

@@ -2,6 +2,7 @@
 /// What the tables of scene keys say (fields.h makes them), the check of a document against them, and a checked object.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -91,7 +92,7 @@ struct KeySpec {
     std::string_view without = {};   ///< what its absence means, where no JSON value says it
     bool required = false;
     bool not_zero = false;        ///< vectors: not all components zero
-    bool not_empty = false;       ///< lists: at least one object
+    std::size_t least = 0;        ///< lists: objects
     std::string_view needs = {};  ///< key that must stand beside it
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;

@@ -93,7 +93,7 @@ Json reference_to(const ObjectSpec& spec) { return {{"$ref", "#/$defs/" + defini
 
 Json list_schema(const KeySpec& key) {
     Json schema = {{"type", "array"}, {"items", reference_to(*key.content)}};
-    if (key.not_empty) schema["minItems"] = 1;
+    if (key.least > 0) schema["minItems"] = key.least;
     return schema;
 }
 
@@ -397,6 +397,7 @@ std::string scene_reference() {
     text += object_section("rotation", detail::rotation_spec());
     text += object_section("motions of a frame (a list)", motion);
     text += object_section("motion of a collider (a list)", detail::key_pose_spec());
+    text += object_section("deformation of a mesh", detail::deformation_spec());
     text += object_section("curve", detail::number_curve_spec());
     text += object_section("vector curve", detail::vector_curve_spec());
     return text + kTables + std::string(kNotBuilt);

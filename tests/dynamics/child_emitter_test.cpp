@@ -180,7 +180,7 @@ TEST(ChildEmitter, FragmentsOfNextToNothingAreNeverLighterThanTheSmallestMass) {
             Vec3 momentum;
             for (const Particle& fragment : fragments) {
                 // Where each gets just that, by the rounding of the share.
-                EXPECT_GE(fragment.mass, 1e-300 * (1.0 - 1e-15)) << units << " in " << count;
+                EXPECT_GE(fragment.mass, 1e-300 * (1.0 - 1e-14)) << units << " in " << count;
                 EXPECT_TRUE(is_finite(fragment.velocity) && std::isfinite(fragment.radius));
                 sum += fragment.mass;
                 momentum += fragment.mass / parent.mass * fragment.velocity;

@@ -136,8 +136,9 @@ TEST_F(DeformationScene, SaysWhatIsWrongWithKeysAndCaches) {
         errors_of(
             R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, {"time": 1, "file": "flag_09.obj"}]})"),
         (Lines{at + "mesh that deforms: the time of key 1 is not after the one before, expected ascending times"}));
-    EXPECT_EQ(errors_of(R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}]})"),
-              (Lines{at + "mesh that deforms: found 1 keys, expected at least 2"}));
+    EXPECT_EQ(
+        errors_of(R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}]})"),
+        (Lines{"colliders[0].deformation.keys: found a list of 1, expected a list [...] of objects, at least 2"}));
     static_cast<void>(folder_.write("flag.pc2", cache_of(4, 3)));
     EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
               (Lines{at + "flag.pc2: found 4 points, expected the 3 vertices of flag_08.obj"}));

@@ -93,7 +93,7 @@ Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Vec3& cen
 /// s, at which a body moves as while it has pushed: contact that lasts is entered at the end of its interval, which may
 /// be a key, after which the body moves otherwise.
 double LoadBook::time_of_push(BodyId body, double time, bool impact) const {
-    if (impact || body == kAtRest) return time;
+    if (impact || body == kAtRest || rules_.bodies->yields(body)) return time;
     const double rounding = kKeyRounding * ulp(time);
     const double key = rules_.bodies->next_key(body, time - rounding);
     if (!(key <= time + rounding)) return time;

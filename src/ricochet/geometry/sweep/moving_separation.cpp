@@ -367,7 +367,7 @@ private:
         if (radius_ == 0.0) return signed_distance(position(s), a.at(s), b.at(s), c.at(s));
         return std::sqrt(nearest_at(position(s), triangle_, s).distance_squared) - radius_;
     }
-    /// At both ends and in the middle, a point on one side of the plane or beside the triangle.
+    /// Between the ball and the triangle, at both ends and in the middle.
     [[nodiscard]] bool has_gap(double s, double t) const {
         const double least = kLeastGap * offset();
         const auto is_off = [&](double at) {

@@ -67,6 +67,8 @@ constexpr ShippedScene kShippedScenes[] = {
     {"shaker", "0.6"},
     {"sweeper", "1.5"},
     {"turbine", "1.2"},
+    {"piston", "0.4"},
+    {"bouncing_table", "1.2"},
 };
 
 /// FNV-1a over the bits of numbers.

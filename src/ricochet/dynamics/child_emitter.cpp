@@ -41,7 +41,8 @@ std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     int exponent = 0;
     (void)std::frexp(mass, &exponent);
     const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
-    const double least = std::max(1.0, std::ceil(kSmallestMass / unit));  // units
+    // Units; rounded down, so that where each gets just that it is there for all.
+    const double least = std::max(1.0, std::floor(kSmallestMass / unit));
     // Where that is more than rounding every share is so much, and only the rest goes by the weights.
     const double kept = least > 1.0 ? least : 0.0;
     const double shared = mass / unit - kept * static_cast<double>(weights.size());

@@ -117,7 +117,7 @@ TEST(ABreathingSphere, KeepsWhatBeginsInside) {
                 {"lung", deforming(sphere_mesh({}, 1.0, 2), breathing, evenly(0.0, 2.0 * kPi / 7.0, 23)), 0}};
             EmitterDescription emitter;
             emitter.shape = SphereShape{{}, 0.6, false};
-            emitter.burst = static_cast<std::uint64_t>(test::scaled(is_long ? 2000 : 60));
+            emitter.burst = static_cast<std::uint64_t>(std::max(20, test::scaled(is_long ? 2000 : 60)));
             emitter.speed = {2.0, 1.0};
             emitter.radius = {radius, 0.0};
             setup.emitters.push_back(std::move(emitter));

@@ -1,8 +1,11 @@
 // Do bodies that particles push take what the particles lose, to rounding, and does no energy come in?
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -340,6 +343,60 @@ TEST(APlateOnASpring, SinksByItsOwnWeightAndThatOfWhatRestsOnIt) {
         EXPECT_NEAR(simulation.bodies()[0].coordinate, -5.0 * kG / 800.0, 1e-3 * 5.0 * kG / 800.0);
         EXPECT_NEAR(simulation.particles().position[0].z, 0.05 + radius - 5.0 * kG / 800.0, 1e-4);
     }
+}
+
+/// Grains that fall on a plate on a spring and lie on it.
+SimulationSetup grains_on_a_plate() {
+    const Vec3 size{1, 1, 0.1};
+    BodyDescription plate = box_body("plate", 4.0, size, JointKind::slider, {0, 0, 1});
+    plate.settings.spring = 800.0;
+    plate.settings.damping = 30.0;
+    auto setup = setup_with({plate}, size, 0.005, 1.0);
+    setup.options.verify = false;
+    setup.materials = {{"", 0.3, 0.4}};
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    for (int k = 0; k < 16; ++k) {
+        setup.particles.push_back(particle_at({-0.3 + 0.2 * (k % 4), -0.3 + 0.2 * (k / 4), 0.2 + 0.05 * k}, {}, 0.05,
+                                              k % 2 == 0 ? 0.03 : 0.0));
+    }
+    return setup;
+}
+
+TEST(BodiesThatArePushed, GoOnFromASavedStateToTheSameBits) {
+    for (const int steps : {0, 1, 61, 120, 180}) {
+        std::vector<std::byte> saved;
+        Simulation whole(grains_on_a_plate());
+        for (int k = 0; k < steps; ++k) whole.step();
+        whole.save([&](std::span<const std::byte> bytes) { saved.insert(saved.end(), bytes.begin(), bytes.end()); });
+        Simulation resumed(grains_on_a_plate());
+        std::size_t read = 0;
+        resumed.restore([&](std::span<std::byte> bytes) {
+            ASSERT_LE(bytes.size(), saved.size() - read);
+            std::copy_n(saved.begin() + static_cast<std::ptrdiff_t>(read), bytes.size(), bytes.begin());
+            read += bytes.size();
+        });
+        while (!whole.finished()) whole.step();
+        while (!resumed.finished()) resumed.step();
+        EXPECT_EQ(resumed.state_hash(), whole.state_hash()) << steps;
+        EXPECT_EQ(resumed.collider_totals()[0].work, whole.collider_totals()[0].work) << steps;
+    }
+}
+
+// A pendulum without a collider beside a belt: loads are none of its.
+TEST(ABodyWithoutColliders, SwingsBesideABelt) {
+    BodyDescription rod = box_body("rod", 2.0, {0.1, 0.1, 1.0}, JointKind::hinge, {0, 1, 0});
+    rod.center = {0, 0, -0.5};
+    rod.rate = 1.0;
+    auto setup = setup_with({rod}, {0.1, 0.1, 1.0}, 0.01, 0.3);
+    setup.materials = {{"", 0.5, 0.5}};
+    setup.materials[0].motion.velocity = {1, 0, 0};
+    setup.colliders = {{"belt", PlaneShape{{0, 0, -2}, {0, 0, 1}}, 0}};
+    setup.particles = {particle_at({0, 0, -1.99}, {0, 0, -1})};
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    Simulation simulation(std::move(setup));
+    run(simulation);
+    EXPECT_GT(simulation.collider_totals()[0].hits, 0U);
+    EXPECT_GT(std::fabs(simulation.bodies()[0].coordinate), 0.1);
 }
 
 TEST(BodiesThatArePushed, MoveToTheSameBitsForAnyNumberOfThreads) {

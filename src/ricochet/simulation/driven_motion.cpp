@@ -136,6 +136,7 @@ void DrivenMotion::show() {
 }
 
 std::optional<std::size_t> DrivenMotion::body_of(const ColliderLoad& load) const {
+    if (colliders_ == nullptr) return std::nullopt;
     const BodyId id = colliders_->body_of(load.surface);
     const auto found = std::find(collider_of_.begin(), collider_of_.end(), id);
     if (id == kAtRest || found == collider_of_.end()) return std::nullopt;

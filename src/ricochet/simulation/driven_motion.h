@@ -54,6 +54,7 @@ public:
         }
         for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
         a(lying_for_);
+        a(is_planned_);
     }
     /// After it was restored.
     void show();

@@ -148,12 +148,27 @@ double height_of(const TriangleMesh& mesh, double x, double y) {
     return std::nan("");
 }
 
+/// By the height of the first collider, a sheet, above or below each particle after each step.
+void expect_held_above(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    int below = 0;
+    while (!simulation.finished()) {
+        simulation.step();
+        const TriangleMesh mesh = *simulation.collider_mesh(0);
+        for (const Vec3& p : simulation.particles().position) below += p.z > height_of(mesh, p.x, p.y) ? 0 : 1;
+    }
+    EXPECT_EQ(below, 0);
+    expect_sound(simulation);
+    EXPECT_GT(simulation.statistics().contacts, 0U);
+}
+
 TEST(AWavingSheet, HoldsTheRainAboveIt) {
     const auto wave = [](const Vec3& v, double time) {
         return Vec3{v.x + 0.05 * std::sin(5.0 * v.y + 4.0 * time), v.y,
                     0.2 * std::sin(4.0 * v.x - 9.0 * time) + 0.1 * std::cos(3.0 * v.y + 5.0 * time)};
     };
     for (const double radius : {0.0, 0.02}) {
+        SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
         SimulationSetup setup = setup_of(0.01, is_long ? 4.0 : 0.5, {"", 0.4, 0.2});
         setup.forces.push_back(make_gravity({0, 0, -kG}));
@@ -168,16 +183,7 @@ TEST(AWavingSheet, HoldsTheRainAboveIt) {
         emitter.speed = {1.0, 0.5};
         emitter.radius = {radius, 0.0};
         setup.emitters.push_back(std::move(emitter));
-        Simulation simulation(std::move(setup));
-        int below = 0;
-        while (!simulation.finished()) {
-            simulation.step();
-            const TriangleMesh mesh = *simulation.collider_mesh(0);
-            for (const Vec3& p : simulation.particles().position) below += p.z > height_of(mesh, p.x, p.y) ? 0 : 1;
-        }
-        EXPECT_EQ(below, 0) << radius;
-        expect_sound(simulation);
-        EXPECT_GT(simulation.statistics().contacts, 0U);
+        expect_held_above(std::move(setup));
     }
 }
 
@@ -188,6 +194,7 @@ TEST(AFoldingStrip, LetsNothingThrough) {
         return Vec3{v.x * std::cos(angle), v.y, std::fabs(v.x) * std::sin(angle)};
     };
     for (const double radius : {0.0, 0.02}) {
+        SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
         SimulationSetup setup = setup_of(0.01, is_long ? 2.0 : 1.0, {"", 0.7, 0.1});
         setup.forces.push_back(make_gravity({0, 0, -kG}));
@@ -200,16 +207,7 @@ TEST(AFoldingStrip, LetsNothingThrough) {
         emitter.speed = {1.0, 0.5};
         emitter.radius = {radius, 0.0};
         setup.emitters.push_back(std::move(emitter));
-        Simulation simulation(std::move(setup));
-        int below = 0;
-        while (!simulation.finished()) {
-            simulation.step();
-            const TriangleMesh mesh = *simulation.collider_mesh(0);
-            for (const Vec3& p : simulation.particles().position) below += p.z > height_of(mesh, p.x, p.y) ? 0 : 1;
-        }
-        EXPECT_EQ(below, 0) << radius;
-        expect_sound(simulation);
-        EXPECT_GT(simulation.statistics().contacts, 0U);
+        expect_held_above(std::move(setup));
     }
 }
 

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "io/scene_errors.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
 namespace {
 
-using Lines = std::vector<std::string>;
+using test::errors_of;
+using test::Lines;
 
 std::string scene_of(const std::string& body, const std::string& collider = "", const std::string& frame = "",
                      const std::string& more = "") {
@@ -18,17 +20,6 @@ std::string scene_of(const std::string& body, const std::string& collider = "", 
     return R"({"ricochet": 1, "particles": [{"position": [0, 0, 9]}], "colliders": [)" +
            (collider.empty() ? box : collider) + R"(], "frames": {"wheel": {"translation": [1, 0, 0], )" + frame +
            R"("body": {)" + body + "}}}" + more + "}";
-}
-
-Lines errors_of(const std::string& scene) {
-    try {
-        (void)parse_scene(scene, "s.json");
-    } catch (const SceneError& error) {
-        Lines lines = error.messages();
-        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
-        return lines;
-    }
-    return {};
 }
 
 TEST(BodyScene, MassCentreAndInertiaAreThoseOfTheColliders) {

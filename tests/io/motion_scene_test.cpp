@@ -4,29 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "io/scene_errors.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
 namespace {
 
-using Lines = std::vector<std::string>;
+using test::errors_of;
+using test::Lines;
 
 std::string scene_of(const std::string& simulation, const std::string& more = "") {
     return R"({"ricochet": 1, "flows": {"stream": {"type": "uniform", "velocity": [1, 2, 3]}},
   "particles": [{"position": [0, 0, 1]}],
   "simulation": {)" +
            simulation + "}" + more + "}";
-}
-
-Lines errors_of(const std::string& scene) {
-    try {
-        (void)parse_scene(scene, "s.json");
-    } catch (const SceneError& error) {
-        Lines lines = error.messages();
-        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
-        return lines;
-    }
-    return {};
 }
 
 TEST(MotionScene, AFlowByNameOrInlineCarriesTheParticles) {

@@ -4,13 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "io/scene_errors.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
 namespace {
 
-using Lines = std::vector<std::string>;
+using test::errors_of;
+using test::Lines;
 
 constexpr const char* kCollider = R"("frame": "arm", "motion": [
     {"time": 0, "position": [0, 0, 1]},
@@ -24,18 +26,6 @@ std::string scene_of(const std::string& collider, const std::string& simulation 
            collider + R"(}],
   "particles": [{"position": [0, 0, 9]}])" +
            more + "}";
-}
-
-/// The errors of a scene, as path and sentence.
-Lines errors_of(const std::string& scene) {
-    try {
-        (void)parse_scene(scene, "s.json");
-    } catch (const SceneError& error) {
-        Lines lines = error.messages();
-        for (std::string& line : lines) line.erase(0, line.find(' ') + 1);
-        return lines;
-    }
-    return {};
 }
 
 /// The same of the sample with one text replaced by another.

@@ -179,17 +179,21 @@ SimulationSetup moving_setup(const std::vector<FrameDescription>& frames) {
     return setup;
 }
 
+std::vector<FrameDescription> table_on_a_base() {
+    const CurveKey<Vec3> begin{0.0, {}};
+    return {{"base", "", {}, {0, 0, 1}, 0.0, {Spin{{0, 0, 1}, 10.0}, Oscillation{{0.1, 0, 0}, 1.0, 0.0}}},
+            {"table",
+             "base",
+             {},
+             {0, 0, 1},
+             0.0,
+             {KeyedTranslation{KeyedCurve<Vec3>({begin, {1.0, {0, 0, 0.1}}})}, Swing{{1, 0, 0}, 2.0, 1.0, 0.0},
+              KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {2.0, 30.0}})}}}};
+}
+
 TEST(SavedSimulation, IsRefusedWhereCollidersMoveOtherwise) {
     const CurveKey<Vec3> begin{0.0, {}};
-    const std::vector<FrameDescription> frames{
-        {"base", "", {}, {0, 0, 1}, 0.0, {Spin{{0, 0, 1}, 10.0}, Oscillation{{0.1, 0, 0}, 1.0, 0.0}}},
-        {"table",
-         "base",
-         {},
-         {0, 0, 1},
-         0.0,
-         {KeyedTranslation{KeyedCurve<Vec3>({begin, {1.0, {0, 0, 0.1}}})}, Swing{{1, 0, 0}, 2.0, 1.0, 0.0},
-          KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {2.0, 30.0}})}}}};
+    const std::vector<FrameDescription> frames = table_on_a_base();
     Simulation whole(moving_setup(frames));
     run_to(whole, 20);
     const std::vector<std::byte> bytes = saved(whole);
@@ -231,6 +235,14 @@ TEST(SavedSimulation, IsRefusedWhereCollidersMoveOtherwise) {
         Simulation simulation(moving_setup(other));
         EXPECT_THROW(restore(simulation, bytes), InputError) << "change " << k;
     }
+}
+
+TEST(SavedSimulation, IsRefusedWhereCollidersChangeFramesAndNotForTheirNames) {
+    using Frames = std::vector<FrameDescription>;
+    const Frames frames = table_on_a_base();
+    Simulation whole(moving_setup(frames));
+    run_to(whole, 20);
+    const std::vector<std::byte> bytes = saved(whole);
     SimulationSetup exchanged = moving_setup(frames);
     std::swap(exchanged.colliders[0].frame, exchanged.colliders[1].frame);
     Simulation with_others(std::move(exchanged));

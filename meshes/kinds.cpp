@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "generators/drum.h"
+#include "generators/fish.h"
 #include "generators/galton_board.h"
 #include "generators/gear.h"
 #include "generators/icosphere.h"
@@ -138,6 +139,16 @@ SizedBuilder drum_options(cli::Command command) {
     return sized<DrumShape>(shape, make_drum, [](const DrumShape& s) { return s.radius / 4.0; });
 }
 
+SizedBuilder fish_options(cli::Command command) {
+    auto shape = std::make_shared<FishShape>();
+    option(command, "--length", shape->length, "from the nose to the root of the tail fin, m");
+    option(command, "--height", shape->height, "of the body, fraction of the length, 0.05 to 0.6");
+    option(command, "--width", shape->width, "of the body, fraction of the length, 0.05 to 0.4");
+    option(command, "--swing", shape->swing, "of the tail to each side, fraction of the length, 0 to 0.2");
+    option(command, "--phase", shape->phase, "of its swimming, in periods; all phases have the same faces");
+    return sized<FishShape>(shape, make_fish, [](const FishShape& s) { return s.length / 8.0; });
+}
+
 SizedBuilder box_options(cli::Command command) {
     auto shape = std::make_shared<BoxShape>();
     option(command, "--length", shape->length, "along x, m");
@@ -181,6 +192,7 @@ const std::vector<Kind>& kinds() {
         {"gear", "spur gear with involute teeth", gear_options},
         {"galton-board", "rows of pegs over bins, in a frame with a hopper", galton_board_options},
         {"drum", "barrel with lifters, closed or open at the front", drum_options},
+        {"fish", "fish that swims: a mesh for each phase, all with the same faces", fish_options},
         {"box", "box with divided faces", box_options},
         {"icosphere", "sphere as a divided icosahedron", icosphere_options},
         {"plate", "flat open sheet", plate_options},

@@ -69,6 +69,8 @@ constexpr ShippedScene kShippedScenes[] = {
     {"turbine", "1.2"},
     {"piston", "0.4"},
     {"bouncing_table", "1.2"},
+    {"fish", "2.4"},
+    {"tumbling_rocks", "1.1"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -7,6 +7,7 @@
 
 #include "generators/build_near.h"
 #include "generators/drum.h"
+#include "generators/fish.h"
 #include "generators/galton_board.h"
 #include "generators/gear.h"
 #include "generators/icosphere.h"
@@ -43,6 +44,13 @@ RockShape rugged_rock() {
     shape.roughness = 0.5;
     shape.stretch_x = 3.0;
     shape.seed = 9;
+    return shape;
+}
+
+FishShape fish_of_phase(double phase) {
+    FishShape shape;
+    shape.swing = 0.15;
+    shape.phase = phase;
     return shape;
 }
 
@@ -94,6 +102,8 @@ std::vector<ClosedShape> closed_shapes() {
         {"GaltonBoard", with(GaltonBoardShape{}, make_galton_board), 0.4, galton_shells({}), 0},
         {"Drum", with(DrumShape{}, make_drum), 0.3, 1, 0},
         {"ShutDrum", with(shut_drum(), make_drum), 0.3, 2, 0},
+        {"Fish", with(fish_of_phase(0.0), make_fish), 0.1, 1, 0},
+        {"FishAThirdOfAPeriodLater", with(fish_of_phase(1.0 / 3.0), make_fish), 0.1, 1, 0},
         {"Box", with(BoxShape{}, make_box), 0.5, 1, 0},
         {"Icosphere", with(IcosphereShape{}, make_icosphere), 1.0, 1, 0},
         {"Wedge", with(WedgeShape{}, make_wedge), 0.3, 1, 0},

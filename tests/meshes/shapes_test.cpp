@@ -6,6 +6,7 @@
 
 #include "generators/build_near.h"
 #include "generators/drum.h"
+#include "generators/fish.h"
 #include "generators/galton_board.h"
 #include "generators/gear.h"
 #include "generators/icosphere.h"
@@ -47,6 +48,21 @@ TEST(Wedge, HasItsVolumeAndItsSharpEdgeOnTheYAxis) {
     const WedgeShape shape{2.0, 0.1, 3.0};
     EXPECT_NEAR(signed_volume(make_wedge(shape, 0.5)), 0.5 * 2.0 * 0.1 * 3.0, 1e-13);
     EXPECT_EQ(bounds(make_wedge(shape, 0.5)).lower, Vec3(0.0, -1.5, -0.05));
+}
+
+TEST(Fish, HasTheSameFacesAtAllPhasesAndSwimsOnceInAPeriod) {
+    const auto at = [](double phase) { return make_fish({.length = 2.0, .swing = 0.12, .phase = phase}, 0.1); };
+    const TriangleMesh begin = at(0.0);
+    EXPECT_EQ(at(1.0).vertices, begin.vertices);
+    for (const double phase : {0.125, 0.5, 0.7}) {
+        EXPECT_EQ(at(phase).triangles, begin.triangles);
+        EXPECT_NEAR(signed_volume(at(phase)), signed_volume(begin), 0.04 * signed_volume(begin));
+    }
+    // Half a period later it is its mirror image, and its tail has gone from one side to the other.
+    const TriangleMesh half = at(0.5);
+    const Vec3 tail = begin.vertices.back();
+    EXPECT_NEAR(half.vertices.back().y, -tail.y, 1e-12);
+    EXPECT_NEAR(at(0.75).vertices.back().y, 2.0 * 0.12, 1e-12);
 }
 
 TEST(Icosphere, HasTwentyTimesTheSquareOfItsDivisionsAndAllVerticesOnTheSphere) {

@@ -206,7 +206,7 @@ DeformingColliders::Motion DeformingColliders::motion_at(SurfaceId surface, cons
     const Vec3 v = moment.velocity(i);
     const Vec3 e_rate = moment.velocity(j) - v;
     const Vec3 f_rate = moment.velocity(k) - v;
-    Motion motion{v + weights.y * e_rate + weights.z * f_rate, {}, std::max(length(e), length(f))};
+    Motion motion{v + weights.y * e_rate + weights.z * f_rate, {}};
     const Vec3 across = cross(e, f);
     const double area = length(across);
     if (!(area > 0.0)) return motion;

@@ -70,9 +70,8 @@ public:
     [[nodiscard]] int side_of_surface(SurfaceId surface, const Vec3& p, double time) const;
     /// How the nearest point of a triangle moves, and the triangle with it. At a key, to rounding, as after it.
     struct Motion {
-        Vec3 velocity;      ///< m/s, of that point
-        Vec3 turning;       ///< rad/s, of the triangle: of its normal, and about it
-        double size = 0.0;  ///< m, its longest edge
+        Vec3 velocity;  ///< m/s, of that point
+        Vec3 turning;   ///< rad/s, of the triangle: of its normal, and about it
     };
     [[nodiscard]] Motion motion_at(SurfaceId surface, const Vec3& p, double time) const;
 

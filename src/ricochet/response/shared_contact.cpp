@@ -363,6 +363,21 @@ KeptContact SharedContact::kept() const {
     return kept;
 }
 
+/// Relative to all that presses on it.
+bool SharedContact::rests() const {
+    bool is_held = false;
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (interval_.push[k] == Vec3{}) continue;
+        const Touched& one = touched_[k];
+        const double rounding = kStopRounding * (length(state_.velocity) + length(one.velocity));
+        if (length(state_.velocity - one.velocity) > rounding) return false;
+        const Vec3 turning = step_.impact().angular_velocity_of(one.surface.surface);
+        if (state_.radius * length(particle_.spin - turning) > rounding) return false;
+        is_held = true;
+    }
+    return is_held;
+}
+
 std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
     bool has_jumped = false;
@@ -413,7 +428,10 @@ std::optional<Contact> SharedContact::follow() {
         if (has_jumped) break;
     }
     // At a jump a body goes on with another velocity, and the particle with its own.
-    if (step_.remaining() <= 0.0 && !has_jumped) particle_.contact = kept();
+    if (step_.remaining() <= 0.0 && !has_jumped) {
+        particle_.contact = kept();
+        if (rests()) step_.outcome().end = MoveEnd::resting;
+    }
     return std::nullopt;
 }
 

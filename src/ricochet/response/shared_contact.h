@@ -69,6 +69,7 @@ private:
     [[nodiscard]] std::vector<SurfaceId> held() const;
     void take_part_in(Contact& contact) const;
     [[nodiscard]] KeptContact kept() const;
+    [[nodiscard]] bool rests() const;
     [[nodiscard]] std::span<const Touched> touched() const { return {touched_.data(), count_}; }
     [[nodiscard]] MovingView view_at(double time) const;
 

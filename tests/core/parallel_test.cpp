@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace ricochet {
@@ -77,6 +79,31 @@ TEST(Parallel, AnExceptionReachesTheCaller) {
                                          if (begin == 500) throw std::runtime_error("stop");
                                      }),
                  std::runtime_error);
+}
+
+// Keys that differ in few bits, in all, or in none, with many equal ones.
+TEST(Parallel, SortsByKeyAndKeepsTheOrderOfEqualKeys) {
+    for (const std::size_t count : {0, 1, 1000, 1024, 100003}) {
+        for (const std::uint64_t mask : {0ULL, 0x7ULL, 0xFF00FULL << 20U, 0x8000000000000001ULL, ~0ULL}) {
+            SCOPED_TRACE(std::to_string(count) + " " + std::to_string(mask));
+            std::vector<KeyedIndex> items(count);
+            std::uint64_t random = 1;
+            for (std::size_t k = 0; k < count; ++k) {
+                random = random * 6364136223846793005ULL + 1442695040888963407ULL;
+                items[k] = {(random ^ random >> 31U) & mask, static_cast<std::uint32_t>(k)};
+            }
+            std::vector<KeyedIndex> expected = items;
+            std::stable_sort(expected.begin(), expected.end(),
+                             [](const KeyedIndex& a, const KeyedIndex& b) { return a.key < b.key; });
+            std::vector<KeyedIndex> spare;
+            parallel_sort(items, spare);
+            ASSERT_EQ(items.size(), count);
+            for (std::size_t k = 0; k < count; ++k) {
+                ASSERT_EQ(items[k].key, expected[k].key);
+                ASSERT_EQ(items[k].index, expected[k].index);
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -8,7 +8,10 @@
 #include <tbb/version.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
+#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/thread_sanitizer.h"
@@ -80,6 +83,49 @@ void parallel_sort(std::vector<std::uint64_t>& values) {
 #else
     tbb::parallel_sort(values.begin(), values.end());
 #endif
+}
+
+namespace {
+
+/// A digit of a key, and the items that threads take at a time.
+constexpr unsigned kDigitBits = 8;
+constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+constexpr std::size_t kSortBlock = std::size_t{1} << 15U;
+
+/// One pass of a radix sort: by the digit that begins at bit `shift`.
+void sort_by_digit(const std::vector<KeyedIndex>& from, std::vector<KeyedIndex>& to, unsigned shift) {
+    const auto digit_of = [&](const KeyedIndex& item) { return (item.key >> shift) & (kDigits - 1); };
+    std::vector<std::array<std::uint32_t, kDigits>> places((from.size() + kSortBlock - 1) / kSortBlock);
+    parallel_for_blocks(from.size(), kSortBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        places[block].fill(0);
+        for (std::size_t k = begin; k < end; ++k) ++places[block][digit_of(from[k])];
+    });
+    std::uint32_t next = 0;
+    for (std::size_t digit = 0; digit < kDigits; ++digit) {
+        for (auto& place : places) next += std::exchange(place[digit], next);
+    }
+    parallel_for_blocks(from.size(), kSortBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) to[places[block][digit_of(from[k])]++] = from[k];
+    });
+}
+
+}  // namespace
+
+void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spare) {
+    constexpr std::size_t kFew = 1024;
+    if (items.size() < kFew) {
+        std::stable_sort(items.begin(), items.end(),
+                         [](const KeyedIndex& a, const KeyedIndex& b) { return a.key < b.key; });
+        return;
+    }
+    spare.resize(items.size());
+    std::uint64_t differing = 0;
+    for (const KeyedIndex& item : items) differing |= item.key ^ items.front().key;
+    for (unsigned shift = 0; shift < 64 && (differing >> shift) != 0; shift += kDigitBits) {
+        shift += static_cast<unsigned>(std::countr_zero(differing >> shift));  // digits that are all the same
+        sort_by_digit(items, spare, shift);
+        items.swap(spare);
+    }
 }
 
 const char* tbb_version() { return TBB_runtime_version(); }

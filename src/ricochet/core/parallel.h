@@ -46,6 +46,16 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 /// Sorts in ascending order with all threads.
 void parallel_sort(std::vector<std::uint64_t>& values);
 
+/// Something by its number, and the key that it is sorted by.
+struct KeyedIndex {
+    std::uint64_t key = 0;
+    std::uint32_t index = 0;
+};
+
+/// Sorts by key in ascending order with all threads; equal keys keep their order. Takes time in proportion to the
+/// number of items and the number of bits in which keys differ. spare: working memory, of as many items afterwards.
+void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spare);
+
 /// TBB's version, for `--version` and reports.
 [[nodiscard]] const char* tbb_version();
 

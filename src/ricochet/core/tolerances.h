@@ -458,4 +458,11 @@ inline constexpr double kNegligibleRebound = 1e-3;
 /// though slip that ends within an interval of its own never comes into this range.
 inline constexpr double kSlowSlip = 0x1p-24;
 
+// Particles that meet each other
+
+/// Cell of the neighbour search, relative to the box that it holds. Reason: a box must not be longer than its cell
+/// after rounding, of which 2^19 cells along an axis leave 2^-33. Smaller: neighbours may be missed. Larger: more
+/// candidates.
+inline constexpr double kCellSlack = 1.0 + 0x1p-20;
+
 }  // namespace ricochet

@@ -1,0 +1,276 @@
+#include "ricochet/dynamics/neighbour_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Boxes per unit of parallel work.
+constexpr std::size_t kBlock = 4096;
+/// Cells along an axis, and levels, at most: a key has 3 * 19 + 5 bits.
+constexpr unsigned kMostAxisBits = 19;
+constexpr unsigned kFinestLevel = 31;
+/// Boxes whose places say where most are.
+constexpr std::size_t kSample = 1024;
+
+double extent_of(const Box3& box) {
+    const Vec3 size = box.size();
+    return std::max({size.x, size.y, size.z});
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+    // Without branches: which of them fails first is chance.
+    return static_cast<bool>(
+        static_cast<unsigned>(a.lower.x <= b.upper.x) & static_cast<unsigned>(b.lower.x <= a.upper.x) &
+        static_cast<unsigned>(a.lower.y <= b.upper.y) & static_cast<unsigned>(b.lower.y <= a.upper.y) &
+        static_cast<unsigned>(a.lower.z <= b.upper.z) & static_cast<unsigned>(b.lower.z <= a.upper.z));
+}
+
+}  // namespace
+
+/// Pairs of the boxes of one row with all that come after them, and with those of coarser levels.
+class NeighbourGrid::Search {
+public:
+    Search(const NeighbourGrid& grid, std::vector<NeighbourPair>& found)
+        : grid_(grid), mask_((std::uint64_t{1} << grid.bits_[0]) - 1), found_(found) {}
+
+    void search_row(std::size_t row) {
+        const Cell cell = grid_.cell_of(grid_.sorted_[grid_.rows_[row].begin].key);
+        source_ = {grid_.rows_[row].begin, grid_.row_end(row)};
+        search_own();
+        const std::uint32_t y = cell.at[1];
+        const std::uint32_t z = cell.at[2];
+        merge_level(cell.level, 0, {y + 1, y + 1}, {z, z});
+        merge_level(cell.level, 0, {y == 0 ? 0 : y - 1, y + 1}, {z + 1, z + 1});
+        for (unsigned level = 0; level < cell.level; ++level) {
+            if (grid_.level_begin_[level] == grid_.level_begin_[level + 1]) continue;
+            const unsigned shift = cell.level - level;
+            merge_level(level, shift, coarse(y, shift), coarse(z, shift));
+        }
+    }
+
+private:
+    /// Cells from first to last.
+    struct Range {
+        std::uint32_t first;
+        std::uint32_t last;
+    };
+
+    /// Along an axis: where the lower corners of coarser boxes lie that one may meet whose own lies in cell `at`.
+    [[nodiscard]] static Range coarse(std::uint32_t at, unsigned shift) {
+        const std::uint32_t own = at >> shift;
+        return {own == 0 ? 0 : own - 1, (at + 1) >> shift};
+    }
+    [[nodiscard]] std::uint32_t x_of(std::size_t k) const {
+        return static_cast<std::uint32_t>(grid_.sorted_[k].key & mask_);
+    }
+
+    void test(std::size_t a, std::size_t b) {
+        if (!overlap(grid_.boxes_[a], grid_.boxes_[b])) return;
+        const std::uint32_t i = grid_.sorted_[a].index;
+        const std::uint32_t j = grid_.sorted_[b].index;
+        found_.push_back({std::min(i, j), std::max(i, j)});
+    }
+
+    void search_own() {
+        for (std::size_t a = source_.begin; a < source_.end; ++a) {
+            const std::uint32_t x = x_of(a);
+            for (std::size_t b = a + 1; b < source_.end && x_of(b) <= x + 1; ++b) test(a, b);
+        }
+    }
+
+    void merge_level(unsigned level, unsigned shift, const Range& y, const Range& z) {
+        if (y.first > grid_.last_cell_[1]) return;
+        const auto first = grid_.rows_.begin() + grid_.level_begin_[level];
+        const auto last = grid_.rows_.begin() + grid_.level_begin_[level + 1];
+        for (std::uint32_t row_z = z.first; row_z <= z.last && row_z <= grid_.last_cell_[2]; ++row_z) {
+            const std::uint64_t from = grid_.row_key(level, y.first, row_z);
+            const std::uint64_t to = grid_.row_key(level, std::min(y.last, grid_.last_cell_[1]), row_z);
+            auto row = std::lower_bound(first, last, from, [](const Row& r, std::uint64_t key) { return r.key < key; });
+            for (; row != last && row->key <= to; ++row) {
+                merge(shift, {row->begin, grid_.row_end(static_cast<std::size_t>(row - grid_.rows_.begin()))});
+            }
+        }
+    }
+
+    /// Both rows are sorted by x.
+    void merge(unsigned shift, Block target) {
+        for (std::size_t a = source_.begin; a < source_.end && target.begin < target.end; ++a) {
+            const Range x = coarse(x_of(a), shift);
+            while (target.begin < target.end && x_of(target.begin) < x.first) ++target.begin;
+            for (std::size_t b = target.begin; b < target.end && x_of(b) <= x.last; ++b) test(a, b);
+        }
+    }
+
+    const NeighbourGrid& grid_;
+    std::uint64_t mask_;
+    std::vector<NeighbourPair>& found_;
+    Block source_{};
+};
+
+const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3> boxes) {
+    pairs_.clear();
+    if (!choose_cells(boxes)) return pairs_;
+    sort(boxes);
+    find_rows();
+    std::vector<std::vector<NeighbourPair>> found;
+    collect(found);
+    packed_.clear();
+    for (std::vector<NeighbourPair>& block : found) {
+        for (const NeighbourPair& pair : block) packed_.push_back(std::uint64_t{pair.first} << 32U | pair.second);
+        std::vector<NeighbourPair>().swap(block);
+    }
+    parallel_sort(packed_);
+    pairs_.reserve(packed_.size());
+    for (const std::uint64_t pair : packed_) {
+        pairs_.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
+    }
+    return pairs_;
+}
+
+/// False where there are no boxes.
+bool NeighbourGrid::choose_cells(std::span<const Box3> boxes) {
+    double largest = -1.0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Box3& box : boxes) {
+        if (box.empty()) continue;
+        const double extent = extent_of(box);
+        largest = std::max(largest, extent);
+        smallest = std::min(smallest, extent);
+    }
+    if (largest < 0.0) return false;
+    largest_cell_ = std::max(largest * kCellSlack, std::numeric_limits<double>::min());
+    choose_window(boxes, smallest);
+    return true;
+}
+
+/// The finest level, and the cells of it: so that most boxes lie in cells of their own size. Boxes outside are put into
+/// the outermost cells, which leaves neighbours neighbours.
+void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) {
+    std::array<std::vector<double>, 3> sample;
+    Box3 all;
+    for (const Box3& box : boxes) {
+        if (!box.empty()) all.include(box.lower);
+    }
+    const std::size_t stride = boxes.size() / kSample + 1;
+    for (std::size_t k = 0; k < boxes.size(); k += stride) {
+        if (boxes[k].empty()) continue;
+        for (int axis = 0; axis < 3; ++axis) sample[static_cast<std::size_t>(axis)].push_back(boxes[k].lower[axis]);
+    }
+    std::array<double, 3> middle{};
+    double span = 0.0;  // m, in which most are
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<double>& x = sample[axis];
+        if (x.empty()) x.push_back(all.lower[static_cast<int>(axis)]);
+        std::sort(x.begin(), x.end());
+        const double low = x[x.size() / 64];
+        const double high = x[x.size() - 1 - x.size() / 64];
+        middle[axis] = 0.5 * low + 0.5 * high;
+        span = std::max(span, high - low);
+    }
+    constexpr double kCells = 1U << kMostAxisBits;
+    const double least = std::max(smallest * kCellSlack, 2.0 * span / kCells);
+    finest_ = 0;
+    while (finest_ < kFinestLevel && std::ldexp(largest_cell_, -static_cast<int>(finest_) - 1) >= least) ++finest_;
+    const double cell = std::ldexp(largest_cell_, -static_cast<int>(finest_));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        origin_[a] = std::max(all.lower[a], middle[axis] - 0.5 * kCells * cell);
+        last_cell_[axis] =
+            static_cast<std::uint32_t>(std::clamp(std::floor((all.upper[a] - origin_[a]) / cell), 0.0, kCells - 1.0));
+        bits_[axis] = static_cast<unsigned>(std::bit_width(last_cell_[axis]));
+    }
+}
+
+unsigned NeighbourGrid::level_of(const Box3& box) const {
+    const double extent = extent_of(box) * kCellSlack;
+    if (!(extent > std::numeric_limits<double>::min())) return finest_;
+    const double ratio = largest_cell_ / extent;
+    if (!(ratio < 0x1p31)) return finest_;
+    return std::min(finest_, static_cast<unsigned>(std::max(0, std::ilogb(ratio))));
+}
+
+std::uint64_t NeighbourGrid::key_of(const Box3& box) const {
+    const unsigned level = level_of(box);
+    const double cell = std::ldexp(largest_cell_, -static_cast<int>(finest_));
+    std::array<std::uint64_t, 3> at{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        const double x = std::clamp((box.lower[a] - origin_[a]) / cell, 0.0, static_cast<double>(last_cell_[axis]));
+        at[axis] = static_cast<std::uint64_t>(x) >> (finest_ - level);
+    }
+    return ((std::uint64_t{level} << bits_[2] | at[2]) << bits_[1] | at[1]) << bits_[0] | at[0];
+}
+
+NeighbourGrid::Cell NeighbourGrid::cell_of(std::uint64_t key) const {
+    Cell cell{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        cell.at[axis] = static_cast<std::uint32_t>(key & ((std::uint64_t{1} << bits_[axis]) - 1));
+        key >>= bits_[axis];
+    }
+    cell.level = static_cast<unsigned>(key);
+    return cell;
+}
+
+std::uint64_t NeighbourGrid::row_key(unsigned level, std::uint32_t y, std::uint32_t z) const {
+    return (std::uint64_t{level} << bits_[2] | z) << bits_[1] | y;
+}
+
+void NeighbourGrid::sort(std::span<const Box3> boxes) {
+    sorted_.resize(boxes.size());
+    constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            sorted_[k] = {boxes[k].empty() ? kNone : key_of(boxes[k]), static_cast<std::uint32_t>(k)};
+        }
+    });
+    std::erase_if(sorted_, [](const KeyedIndex& item) { return item.key == kNone; });
+    parallel_sort(sorted_, spare_);
+    boxes_.resize(sorted_.size());
+    parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) boxes_[k] = boxes[sorted_[k].index];
+    });
+}
+
+void NeighbourGrid::find_rows() {
+    rows_.clear();
+    level_begin_.assign(1, 0);
+    for (std::size_t k = 0; k < sorted_.size(); ++k) {
+        const std::uint64_t key = sorted_[k].key >> bits_[0];
+        if (!rows_.empty() && rows_.back().key == key) continue;
+        const unsigned level = cell_of(sorted_[k].key).level;
+        while (level_begin_.size() <= level) level_begin_.push_back(static_cast<std::uint32_t>(rows_.size()));
+        rows_.push_back({key, static_cast<std::uint32_t>(k)});
+    }
+    level_begin_.push_back(static_cast<std::uint32_t>(rows_.size()));
+}
+
+std::size_t NeighbourGrid::row_end(std::size_t row) const {
+    return row + 1 < rows_.size() ? rows_[row + 1].begin : sorted_.size();
+}
+
+// A block takes the rows that begin in it.
+void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
+    found.resize((sorted_.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Search search(*this, found[block]);
+        auto row = std::lower_bound(rows_.begin(), rows_.end(), begin,
+                                    [](const Row& r, std::size_t k) { return r.begin < k; });
+        for (; row != rows_.end() && row->begin < end; ++row) {
+            search.search_row(static_cast<std::size_t>(row - rows_.begin()));
+        }
+    });
+}
+
+std::size_t NeighbourGrid::memory_bytes() const {
+    return (sorted_.capacity() + spare_.capacity()) * sizeof(KeyedIndex) + boxes_.capacity() * sizeof(Box3) +
+           rows_.capacity() * sizeof(Row) + level_begin_.capacity() * sizeof(std::uint32_t) +
+           pairs_.capacity() * sizeof(NeighbourPair) + packed_.capacity() * sizeof(std::uint64_t);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,88 @@
+/// \file
+/// Which boxes overlap: the neighbour search of particles, by a sorted grid.
+///
+/// Every box lies in one cell, that of its lower corner, of a grid whose cells are not smaller than the box; cells have
+/// the size of the largest box divided by powers of two (levels), so a few boulders among sand cost little. Boxes are
+/// sorted by level and cell, rows of cells along x being contiguous; neighbouring rows are merged, without any table
+/// of cells. Work grows with the boxes and the pairs, wherever the boxes are, but for boxes that are far smaller than
+/// most, and those that lie far outside of where most are: cells near them may be larger.
+/// Source of sorting instead of tables: S. Green, "Particle Simulation using CUDA", NVIDIA, 2010; of levels: H. Mio et
+/// al., Powder Technology 169 (2006).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+
+/// Two boxes by their numbers, first < second.
+struct NeighbourPair {
+    std::uint32_t first = 0;
+    std::uint32_t second = 0;
+
+    friend bool operator==(const NeighbourPair&, const NeighbourPair&) = default;
+};
+
+/// Finds pairs; keeps its memory for the next time. The same pairs for any number of threads.
+class NeighbourGrid {
+public:
+    /// Bytes that a search takes at most for each box, besides kBytesPerPair for each pair that it finds.
+    static constexpr double kBytesPerBox = 100.0;
+    static constexpr double kBytesPerPair = 24.0;
+
+    /// All pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty (lower >
+    /// upper); an empty box meets none. At most 2^32 - 1 boxes. Valid until the next call.
+    const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
+
+    /// Bytes held now.
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    /// Boxes of one level and one row of cells along x.
+    struct Row {
+        std::uint64_t key;    ///< level, z and y as in the boxes' keys
+        std::uint32_t begin;  ///< the first of its boxes in sorted order
+    };
+    struct Block {
+        std::size_t begin;
+        std::size_t end;
+    };
+    /// Integers that a key is made of.
+    struct Cell {
+        unsigned level;
+        std::array<std::uint32_t, 3> at;
+    };
+    class Search;
+
+    [[nodiscard]] bool choose_cells(std::span<const Box3> boxes);
+    void choose_window(std::span<const Box3> boxes, double smallest);
+    [[nodiscard]] unsigned level_of(const Box3& box) const;
+    [[nodiscard]] std::uint64_t key_of(const Box3& box) const;
+    [[nodiscard]] Cell cell_of(std::uint64_t key) const;
+    [[nodiscard]] std::uint64_t row_key(unsigned level, std::uint32_t y, std::uint32_t z) const;
+    void sort(std::span<const Box3> boxes);
+    void find_rows();
+    void collect(std::vector<std::vector<NeighbourPair>>& found);
+    [[nodiscard]] std::size_t row_end(std::size_t row) const;
+
+    double largest_cell_ = 0.0;                 // m, of level 0
+    unsigned finest_ = 0;                       // the level with the smallest cells
+    Vec3 origin_;                               // m, lower corner of the cells
+    std::array<std::uint32_t, 3> last_cell_{};  // of the finest level, along each axis
+    std::array<unsigned, 3> bits_{};            // of a key, for each axis
+    std::vector<KeyedIndex> sorted_;
+    std::vector<KeyedIndex> spare_;
+    std::vector<Box3> boxes_;  // in sorted order
+    std::vector<Row> rows_;
+    std::vector<std::uint32_t> level_begin_;  // the first row of each level, and the end
+    std::vector<NeighbourPair> pairs_;
+    std::vector<std::uint64_t> packed_;  // pairs, to be sorted
+};
+
+}  // namespace ricochet

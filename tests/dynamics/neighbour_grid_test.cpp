@@ -101,6 +101,28 @@ TEST(NeighbourGrid, LongBoxesPointsEmptyOnesAndThoseFarAwayAreFound) {
     }
 }
 
+TEST(NeighbourGrid, FindsAllThatAnyBoxMeets) {
+    for (int seed = 1; seed <= scaled(20); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const std::vector<Box3> boxes =
+            random_balls(static_cast<std::uint64_t>(seed), 400, seed % 4, {2, 1, 1.5}, {0.2, 0, 0});
+        NeighbourGrid grid;
+        grid.find_pairs(boxes);
+        const std::vector<Box3> asked =
+            random_balls(static_cast<std::uint64_t>(seed) + 100, 60, seed % 3, {4, 2, 2}, {0, 0, 0});
+        for (const Box3& box : asked) {
+            std::vector<std::uint32_t> found;
+            grid.find_near(box, found);
+            std::sort(found.begin(), found.end());
+            std::vector<std::uint32_t> expected;
+            for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+                if (meet(boxes[i], box)) expected.push_back(i);
+            }
+            ASSERT_TRUE(found == expected);
+        }
+    }
+}
+
 TEST(NeighbourGrid, NothingAndOneBoxHaveNoPairs) {
     NeighbourGrid grid;
     EXPECT_TRUE(grid.find_pairs({}).empty());

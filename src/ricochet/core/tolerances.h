@@ -465,4 +465,20 @@ inline constexpr double kSlowSlip = 0x1p-24;
 /// candidates.
 inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 
+/// Approach of two spheres that touch, relative to their speeds, that is none. Reason: some roundings of an impact that
+/// has stopped them. Smaller: such pairs meet again and again at one time. Larger: they sink in by it.
+inline constexpr double kPairApproachRounding = 0x1p-48;
+
+/// Impacts so many ulp of the time apart are at the same time. Reason: roundings of the times of symmetric pairs.
+/// Smaller: symmetric pairs are answered one after the other. Larger: impacts after each other are answered together.
+inline constexpr double kSameImpactUlps = 16.0;
+
+/// Approaches that differ by this part are the same: they are answered as one problem. Reason: as above, after some
+/// rounds. Smaller and larger: as above.
+inline constexpr double kSameApproach = 1e-9;
+
+/// Box in which a sphere declares to stay, relative to what it needs. Reason: roundings of its path, and of contact that
+/// lasts. Smaller: spheres leave their boxes by rounding, and are worked off twice. Larger: more candidates.
+inline constexpr double kPairBoxSlack = 1.0 + 0x1p-20;
+
 }  // namespace ricochet

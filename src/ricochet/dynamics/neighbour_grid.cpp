@@ -195,16 +195,22 @@ unsigned NeighbourGrid::level_of(const Box3& box) const {
     return std::min(finest_, static_cast<unsigned>(std::max(0, std::ilogb(ratio))));
 }
 
-std::uint64_t NeighbourGrid::key_of(const Box3& box) const {
-    const unsigned level = level_of(box);
+std::array<std::uint32_t, 3> NeighbourGrid::finest_cell_of(const Vec3& p) const {
     const double cell = std::ldexp(largest_cell_, -static_cast<int>(finest_));
-    std::array<std::uint64_t, 3> at{};
+    std::array<std::uint32_t, 3> at{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
-        const double x = std::clamp((box.lower[a] - origin_[a]) / cell, 0.0, static_cast<double>(last_cell_[axis]));
-        at[axis] = static_cast<std::uint64_t>(x) >> (finest_ - level);
+        const double x = std::clamp((p[a] - origin_[a]) / cell, 0.0, static_cast<double>(last_cell_[axis]));
+        at[axis] = static_cast<std::uint32_t>(x);
     }
-    return ((std::uint64_t{level} << bits_[2] | at[2]) << bits_[1] | at[1]) << bits_[0] | at[0];
+    return at;
+}
+
+std::uint64_t NeighbourGrid::key_of(const Box3& box) const {
+    const unsigned level = level_of(box);
+    std::array<std::uint32_t, 3> at = finest_cell_of(box.lower);
+    for (std::uint32_t& x : at) x >>= finest_ - level;
+    return row_key(level, at[1], at[2]) << bits_[0] | at[0];
 }
 
 NeighbourGrid::Cell NeighbourGrid::cell_of(std::uint64_t key) const {
@@ -265,6 +271,40 @@ void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
             search.search_row(static_cast<std::size_t>(row - rows_.begin()));
         }
     });
+}
+
+void NeighbourGrid::find_near(const Box3& box, std::vector<std::uint32_t>& found) const {
+    if (box.empty() || sorted_.empty()) return;
+    const std::array<std::uint32_t, 3> lower = finest_cell_of(box.lower);
+    const std::array<std::uint32_t, 3> upper = finest_cell_of(box.upper);
+    for (unsigned level = 0; level + 1 < level_begin_.size(); ++level) {
+        if (level_begin_[level] == level_begin_[level + 1]) continue;
+        const unsigned shift = finest_ - level;
+        const auto first = [&](std::size_t axis) { return std::max(lower[axis] >> shift, 1U) - 1U; };
+        const auto last = [&](std::size_t axis) { return upper[axis] >> shift; };
+        const auto end = rows_.begin() + level_begin_[level + 1];
+        for (std::uint32_t z = first(2); z <= last(2); ++z) {
+            auto row = std::lower_bound(rows_.begin() + level_begin_[level], end, row_key(level, first(1), z),
+                                        [](const Row& r, std::uint64_t key) { return r.key < key; });
+            for (; row != end && row->key <= row_key(level, last(1), z); ++row) {
+                const auto number = static_cast<std::size_t>(row - rows_.begin());
+                find_in_row(number, {first(0), last(0)}, box, found);
+            }
+        }
+    }
+}
+
+/// cells: the first and the last of the row in which they may be.
+void NeighbourGrid::find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
+                                std::vector<std::uint32_t>& found) const {
+    const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(row_end(row));
+    const std::uint64_t key = rows_[row].key << bits_[0];
+    auto item = std::lower_bound(sorted_.begin() + rows_[row].begin, end, key | cells[0],
+                                 [](const KeyedIndex& k, std::uint64_t value) { return k.key < value; });
+    for (; item != end && item->key <= (key | cells[1]); ++item) {
+        const auto k = static_cast<std::size_t>(item - sorted_.begin());
+        if (overlap(boxes_[k], box)) found.push_back(item->index);
+    }
 }
 
 std::size_t NeighbourGrid::memory_bytes() const {

@@ -40,6 +40,10 @@ public:
     /// upper); an empty box meets none. At most 2^32 - 1 boxes. Valid until the next call.
     const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
 
+    /// Appends the numbers of all boxes of the last search that have a point in common with a box, in the order of the
+    /// cells. From any number of threads.
+    void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
+
     /// Bytes held now.
     [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -64,12 +68,15 @@ private:
     void choose_window(std::span<const Box3> boxes, double smallest);
     [[nodiscard]] unsigned level_of(const Box3& box) const;
     [[nodiscard]] std::uint64_t key_of(const Box3& box) const;
+    [[nodiscard]] std::array<std::uint32_t, 3> finest_cell_of(const Vec3& p) const;
     [[nodiscard]] Cell cell_of(std::uint64_t key) const;
     [[nodiscard]] std::uint64_t row_key(unsigned level, std::uint32_t y, std::uint32_t z) const;
     void sort(std::span<const Box3> boxes);
     void find_rows();
     void collect(std::vector<std::vector<NeighbourPair>>& found);
     [[nodiscard]] std::size_t row_end(std::size_t row) const;
+    void find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
+                     std::vector<std::uint32_t>& found) const;
 
     double largest_cell_ = 0.0;                 // m, of level 0
     unsigned finest_ = 0;                       // the level with the smallest cells

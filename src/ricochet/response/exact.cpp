@@ -21,6 +21,14 @@ constexpr std::uint32_t kBouncesInNarrowGap = 2;
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
+/// Lets a flight end after a duration, s, on its own path.
+void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
+    if (flight.path.duration <= duration) return;
+    flight.end_velocity = velocity_at(integrator, forces, flight, duration);
+    flight.path.end = flight.path.position(duration);
+    flight.path.duration = duration;
+}
+
 /// The exact response to one particle in one step: fly to the first contact, answer it, go on with the time that is
 /// left.
 class ParticleMover {
@@ -38,6 +46,7 @@ public:
 
 private:
     std::optional<Contact> fly(Flight& flight, bool is_first);
+    [[nodiscard]] double planned_duration(bool is_first) const;
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
     std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
     [[nodiscard]] bool has_room();
@@ -237,12 +246,20 @@ std::optional<Contact> ParticleMover::begin_ride(BodyId body, const Contact& con
     });
 }
 
+/// s, for which the next flight is planned.
+double ParticleMover::planned_duration(bool is_first) const {
+    if (particle_.beyond == 0.0) return step_.remaining();
+    const bool as_planned = is_first && particle_.planned != nullptr;
+    return as_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
+}
+
 /// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
 std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
-    const double remaining = step_.remaining();
+    const double remaining = planned_duration(is_first);
     const Integrator integrator = is_without_kick_ ? IntegratorKind::ballistic : rules_.settings.integrator;
     flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
                       : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
+    if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
     const auto look_ahead = look_ahead_of(flight);
     step_.log().note_impact();
     const auto contact = step_.follow(flight, integrator, look_ahead ? &*look_ahead : nullptr,
@@ -292,7 +309,7 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const double remaining = step_.remaining();
     const double time_step = rules_.settings.time_step;
     const bool is_known = rules_.look_ahead && step_.outcome().bounces < kBouncesInNarrowGap &&
-                          rules_.forces.is_uniform() && particle_.planned == nullptr && state.coupling == nullptr &&
+                          rules_.forces.is_uniform() && particle_.planned == nullptr && particle_.beyond == 0.0 && state.coupling == nullptr &&
                           flight.path.duration == remaining && remaining <= kWholeStep * time_step;
     if (!is_known) return std::nullopt;
     const double acceleration = length(flight.acceleration);

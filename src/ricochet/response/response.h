@@ -111,6 +111,10 @@ struct MovingParticle {
         Vec3 spin;      ///< rad/s, relative to the body
     };
     std::optional<Ridden> ridden = std::nullopt;
+
+    /// s after the end of the move for which flights are planned on: they are cut where the move ends, so that their
+    /// paths are those of a longer one.
+    double beyond = 0.0;
 };
 
 /// How a particle ends a step.

@@ -46,6 +46,22 @@ struct PenaltySettings {
     double friction_speed = 1e-3;  ///< m/s, > 0: friction grows linearly with slip up to this speed
 };
 
+/// How spheres that meet each other are moved, by the names in scenes.
+enum class PairMethod {
+    automatic,  ///< "auto": as fits
+    events,     ///< impact by impact, in the order of time
+    contacts,   ///< all contacts of a step at once
+};
+
+/// What spheres do when they meet each other.
+struct PairContactSettings {
+    double restitution = 1.0;       ///< speed of parting over speed of approach along the normal, 0..1
+    double friction = 0.0;          ///< Coulomb coefficient, >= 0
+    double rolling_friction = 0.0;  ///< resisting moment over reduced radius times normal impulse, >= 0
+    PairMethod method = PairMethod::automatic;
+    std::uint32_t impact_budget = 1000;  ///< impacts on other spheres per particle and step, >= 1
+};
+
 /// What a wall does to a particle that a flow carries into it, by the names in scenes.
 enum class WallRule {
     slide,  ///< it goes on along the wall

@@ -121,6 +121,44 @@ void ActiveMover::grow_core(std::size_t i, double time) {
     }
 }
 
+std::optional<IslandMember> ActiveMover::member_of(std::size_t i, const TimeSpan& step) {
+    const TimeSpan life = life_in(i, step);
+    if (life.end <= life.begin) return std::nullopt;
+    grow_core(i, life.begin);
+    IslandMember member;
+    member.particle = i;
+    member.moving = load(i, life.begin);
+    member.end = life.end;
+    member.is_fixed = parts_.store.is_fixed(i);
+    return member;
+}
+
+void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record) {
+    const std::size_t i = member.particle;
+    MovingParticle& moving = member.moving;
+    const TimeSpan life = life_in(i, step);
+    if (parts_.check != nullptr && !member.is_fixed) {
+        const Particles& p = parts_.store.particles();
+        const Vec3 spin = parts_.store.load(i, life.begin, false).spin;
+        parts_.check->check(i, p, moving.state, {life.end, moving.stored_time}, member.lists.segments,
+                            record.violations,
+                            {{p.position[i], p.velocity[i], spin},
+                             {moving.state.position, moving.state.velocity, moving.spin},
+                             member.lists.motions});
+    }
+    for (ContactRecord& contact : member.lists.records) {
+        if (moving.state.whole_radius > 0.0) contact.radius = moving.state.whole_radius;
+    }
+    MoveScratch scratch;
+    member.lists.put_into(scratch);
+    record_lists(scratch, record);
+    if (member.is_fixed) {
+        parts_.schedule.leave_alone(i);
+        return;
+    }
+    take_over(i, moving, member.outcome, life.end, record);
+}
+
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
     std::vector<SystemParticle> system(range.size());
     for (std::size_t k = 0; k < system.size(); ++k) {

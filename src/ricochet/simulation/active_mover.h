@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/response/pair_island.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/offspring.h"
@@ -93,6 +95,15 @@ public:
     /// Moves the particles of the range as one system that goes back together: see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
+    // For spheres that meet each other, which are moved together.
+
+    /// A particle as it sets out; nothing where it does not live in the step.
+    [[nodiscard]] std::optional<IslandMember> member_of(std::size_t i, const TimeSpan& step);
+    /// Takes over where it has gone and what it has done.
+    void take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record);
+    /// Scratch memory that records what the run asks for.
+    void prepare(MoveScratch& scratch) const;
+
     /// What the particles of the range would do to bodies that impulses move, if the step were made: nothing is
     /// changed.
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
@@ -111,7 +122,6 @@ private:
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                    BlockRecord& record);
     void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until);
-    void prepare(MoveScratch& scratch) const;
     void record_lists(const MoveScratch& scratch, BlockRecord& record);
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
     void prefetch_triangles(std::size_t i) const;

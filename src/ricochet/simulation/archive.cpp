@@ -19,7 +19,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f53540006ULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f53540007ULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -91,6 +91,10 @@ std::uint64_t Simulation::Impl::settings_hash() const {
         options.rollback.global, options.project.offset, options.penalty.stiffness.value_or(0.0),
         options.penalty.contact_steps, options.penalty.substeps, options.penalty.friction_speed, options.walls,
         options.flow != nullptr, options.frame_rate, options.max_depth, options.most_particles);
+    if (options.particle_contacts) {
+        const PairContactSettings& p = *options.particle_contacts;
+        add(p.restitution, p.friction, p.rolling_friction, p.method, p.impact_budget);
+    }
     for (const Material& m : materials) {
         add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.spinning_friction, m.diffuse,
             m.wall_temperature.value_or(0.0), m.absorption);

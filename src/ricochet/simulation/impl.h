@@ -18,6 +18,7 @@
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
 #include "ricochet/simulation/offspring.h"
+#include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
 #include "ricochet/simulation/retirement.h"
@@ -114,6 +115,7 @@ struct Simulation::Impl {
     std::vector<BirthRecord> birth_records;  ///< of the step, where there is offspring
     FreeFlights free_flights;
     ActiveMover mover;
+    std::unique_ptr<PairMotion> pairs;  ///< null where spheres do not meet each other
     Retirement retirement;
     ContactCallback callback;       ///< of on_contact(); may be empty
     bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "ricochet/response/settings.h"
 
@@ -26,6 +27,8 @@ struct SimulationOptions : ResponseSettings {
     std::uint32_t max_depth = 16;  ///< highest generation of particles spawned by particles; 0: none are
     /// Living at a time, < 2^32; births beyond are refused and counted.
     std::uint64_t most_particles = kDefaultMostParticles;
+    /// Spheres meet each other, with the exact response; nothing: they pass through each other. Points never meet.
+    std::optional<PairContactSettings> particle_contacts = std::nullopt;
 };
 
 /// What makes a simulation faster, each to be switched off by itself: for tests and benchmarks. The bits of every

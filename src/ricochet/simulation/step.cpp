@@ -30,7 +30,7 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
 
 bool Simulation::Impl::may_defer() const {
     return acceleration.look_ahead && acceleration.deferred_steps && !check && !offspring && !bounds &&
-           !coupled.is_active();
+           !coupled.is_active() && !pairs;
 }
 
 // Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
@@ -145,9 +145,15 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
         mover.move_as_system(batch, part, blocks);
         return;
     }
+    if (pairs) pairs->work_off(batch, part);
     ActiveSet active = free_flights.advance(batch, part, blocks);
     order_active_set(active);
     mover.move(active, part, blocks);
+    if (!pairs) return;
+    pairs->take_over(part, blocks);
+    SimulationStatistics& statistics = recorder.statistics();
+    statistics.pair_impacts += pairs->counts().impacts;
+    statistics.overlap_largest = std::max(statistics.overlap_largest, pairs->counts().largest_overlap);
 }
 
 // Depths of penetration are added up by blocks of all particles, active or not; no other sum depends on how the active

@@ -1,0 +1,98 @@
+#include "ricochet/geometry/sweep/pair_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/geometry/sweep/polynomial.h"
+
+namespace ricochet {
+namespace {
+
+/// Coefficients of a path seen from s on; the degree stays.
+std::array<Vec3, 4> shifted(const Path& path, double s) {
+    if (s <= 0.0) return path.c;
+    return {path.position(s), path.velocity(s), path.c[2] + (3.0 * s) * path.c[3], path.c[3]};
+}
+
+/// |d|^2 - distance^2 in a hundred bits, rounded.
+double clearance(const Vec3& d, double distance) {
+    return static_cast<double>(dot_of<DoubleDouble>(d, d) - two_product(distance, distance));
+}
+
+/// Two centres as they move relative to each other.
+struct Approach {
+    double distance;  ///< m, at which they meet
+    double slow;      ///< m/s, that does not count
+
+    /// True where they touch or overlap and come nearer.
+    [[nodiscard]] bool is_at_once(const Vec3& d, const Vec3& u, double c) const {
+        return c <= 0.0 && -dot(d, u) > slow * length(d);
+    }
+};
+
+/// d + u t: when |d + u t| falls to the distance, at most `duration` later.
+std::optional<double> meeting_on_line(const Vec3& d, const Vec3& u, const Approach& approach, double duration) {
+    const double b = dot(d, u);
+    if (!(b < 0.0)) return std::nullopt;
+    const double c = clearance(d, approach.distance);
+    if (c <= 0.0) return approach.is_at_once(d, u, c) ? std::optional(0.0) : std::nullopt;
+    // b^2 - a c loses digits in a graze; |d x u|^2 does not: b^2 - a |d|^2 = -|d x u|^2.
+    const double root = length_squared(u) * approach.distance * approach.distance - length_squared(cross(d, u));
+    if (!(root >= 0.0)) return std::nullopt;
+    const double t = c / (-b + std::sqrt(root));
+    return t <= duration ? std::optional(t) : std::nullopt;
+}
+
+std::optional<double> meeting_on_curve(const Path& relative, const Approach& approach) {
+    const PreciseVec3 start = difference<DoubleDouble>(relative.c[0], Vec3{});
+    const Polynomial p{
+        point_clearance<DoubleDouble>(relative, squared_displacement<DoubleDouble>(relative), start, approach.distance),
+        2 * relative.degree, relative.duration};
+    if (approach.is_at_once(relative.c[0], relative.c[1], static_cast<double>(p.coefficients[0]))) return 0.0;
+    if (is_certainly_positive(p, relative.duration)) return std::nullopt;
+    const Times falls = down_crossings(p, 0.0, relative.duration);
+    return falls.count > 0 ? std::optional(falls[0]) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> first_meeting(const TimedPath& a, const TimedPath& b, double distance, double slow) {
+    const double from = std::max(a.begin, b.begin);
+    const double duration = std::min(a.end, b.end) - from;
+    if (!(duration >= 0.0)) return std::nullopt;
+    const auto first = shifted(*a.path, from - a.begin);
+    const auto second = shifted(*b.path, from - b.begin);
+    Path relative;
+    for (std::size_t k = 0; k < 4; ++k) relative.c[k] = second[k] - first[k];
+    std::optional<double> meeting;
+    if (relative.c[2] == Vec3{} && relative.c[3] == Vec3{}) {
+        meeting = meeting_on_line(relative.c[0], relative.c[1], {distance, slow}, duration);
+    } else {
+        relative.degree = relative.c[3] == Vec3{} ? 2 : 3;
+        relative.duration = duration;
+        relative.end =
+            relative.c[0] + duration * (relative.c[1] + duration * (relative.c[2] + duration * relative.c[3]));
+        meeting = meeting_on_curve(relative, {distance, slow});
+    }
+    return meeting ? std::optional(from + *meeting) : std::nullopt;
+}
+
+Box3 box_of(const Path& path, double s) {
+    Box3 box;
+    if (path.degree == 1) {
+        box.include(path.c[0]);
+        box.include(path.position(s));
+        return box;
+    }
+    Path part = path;
+    if (s < path.duration) {
+        part.end = path.position(s);
+        part.duration = s;
+    }
+    const ControlPoints points = part.control_points();
+    for (const Vec3& point : points) box.include(point);
+    box.include(part.end);
+    return box;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,166 @@
+#include "ricochet/response/pair_impact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ricochet {
+namespace {
+
+/// Sweeps of Gauss-Seidel, at most, and the change of velocity, relative to the fastest approach, that ends them.
+constexpr int kMostSweeps = 20000;
+constexpr double kSolved = 0x1p-54;
+
+double effective_inverse_mass(const PairBody& a, const PairBody& b) { return a.inverse_mass + b.inverse_mass; }
+
+void push(PairBody& a, PairBody& b, const Vec3& normal, const Vec3& impulse) {
+    a.velocity -= a.inverse_mass * impulse;
+    b.velocity += b.inverse_mass * impulse;
+    const Vec3 moment = cross(normal, impulse);
+    a.spin -= (a.inverse_inertia * a.radius) * moment;
+    b.spin -= (b.inverse_inertia * b.radius) * moment;
+}
+
+/// m/s, of the second's surface relative to the first's where they touch.
+Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal) {
+    return (b.velocity - a.velocity) - cross(a.radius * a.spin + b.radius * b.spin, normal);
+}
+
+/// The rebound, m/s, that a contact of this approach has at least.
+double rebound_of(const PairContactSettings& law, double resting_speed, double approach) {
+    const double rebound = law.restitution * approach;
+    return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
+}
+
+/// Stops turning relative to each other, as far as the moment reaches.
+void resist_rolling(const PairContactSettings& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
+    if (law.rolling_friction == 0.0) return;
+    const Vec3 relative = b.spin - a.spin;
+    const Vec3 along = relative - dot(relative, normal) * normal;
+    const double rate = length(along);
+    const double inverse = a.inverse_inertia + b.inverse_inertia;
+    if (rate == 0.0 || inverse == 0.0) return;
+    const double reduced = a.radius * b.radius / (a.radius + b.radius);
+    const double moment = std::min(law.rolling_friction * reduced * impulse, rate / inverse);
+    const Vec3 given = (moment / rate) * along;
+    a.spin += a.inverse_inertia * given;
+    b.spin -= b.inverse_inertia * given;
+}
+
+/// N s on the second, along the surface.
+Vec3 friction_of(const PairContactSettings& law, const PairBody& a, const PairBody& b, const Vec3& normal,
+                 double impulse, double share) {
+    if (law.friction == 0.0) return {};
+    const Vec3 relative = relative_velocity(a, b, normal);
+    const Vec3 slip = relative - dot(relative, normal) * normal;
+    const double speed = length(slip);
+    if (speed == 0.0) return {};
+    const double inverse = effective_inverse_mass(a, b) + a.inverse_inertia * a.radius * a.radius +
+                           b.inverse_inertia * b.radius * b.radius;
+    return (-std::min(law.friction * impulse, share * speed / inverse) / speed) * slip;
+}
+
+class ImpactProblem {
+public:
+    ImpactProblem(const PairContactSettings& law, double resting_speed, std::vector<PairBody>& bodies,
+                  std::span<PairContact> contacts)
+        : law_(law), bodies_(bodies), contacts_(contacts), impulses_(contacts.size()), targets_(contacts.size()) {
+        for (std::size_t k = 0; k < contacts_.size(); ++k) {
+            PairContact& contact = contacts_[k];
+            contact.normal = normalized(second(contact).position - first(contact).position);
+            contact.approach = -dot(second(contact).velocity - first(contact).velocity, contact.normal);
+            targets_[k] = contact.approach > 0.0 ? rebound_of(law, resting_speed, contact.approach) : contact.approach;
+        }
+    }
+
+    void solve() {
+        const std::vector<std::size_t> counts = contacts_of_bodies();
+        const std::vector<PairBody> before = bodies_;
+        if (contacts_.size() == 1) {
+            impulses_[0] = std::max(0.0, needed(0));
+        } else {
+            iterate();
+        }
+        bodies_ = before;
+        // All of them from the same state, so that their order does not matter.
+        for (std::size_t k = 0; k < contacts_.size(); ++k) {
+            PairContact& contact = contacts_[k];
+            const double share = 1.0 / static_cast<double>(std::max(counts[contact.first], counts[contact.second]));
+            const PairBody& a = before[contact.first];
+            const PairBody& b = before[contact.second];
+            contact.impulse =
+                impulses_[k] * contact.normal + friction_of(law_, a, b, contact.normal, impulses_[k], share);
+        }
+        for (std::size_t k = 0; k < contacts_.size(); ++k) {
+            PairContact& contact = contacts_[k];
+            push(first(contact), second(contact), contact.normal, contact.impulse);
+        }
+        for (std::size_t k = 0; k < contacts_.size(); ++k) {
+            resist_rolling(law_, first(contacts_[k]), second(contacts_[k]), contacts_[k].normal, impulses_[k]);
+        }
+    }
+
+private:
+    [[nodiscard]] PairBody& first(const PairContact& contact) { return bodies_[contact.first]; }
+    [[nodiscard]] PairBody& second(const PairContact& contact) { return bodies_[contact.second]; }
+
+    [[nodiscard]] std::vector<std::size_t> contacts_of_bodies() const {
+        std::vector<std::size_t> counts(bodies_.size(), 0);
+        for (const PairContact& contact : contacts_) ++counts[contact.first], ++counts[contact.second];
+        return counts;
+    }
+
+    /// N s more along the normal for the rebound.
+    [[nodiscard]] double needed(std::size_t k) {
+        const PairContact& contact = contacts_[k];
+        const double inverse = effective_inverse_mass(first(contact), second(contact));
+        const double departure = dot(second(contact).velocity - first(contact).velocity, contact.normal);
+        return inverse > 0.0 ? (targets_[k] - departure) / inverse : 0.0;
+    }
+
+    void iterate() {
+        double fastest = 0.0;
+        for (const PairContact& contact : contacts_) fastest = std::max(fastest, std::fabs(contact.approach));
+        for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+            double change = 0.0;
+            for (std::size_t k = 0; k < contacts_.size(); ++k) {
+                PairContact& contact = contacts_[k];
+                const double next = std::max(0.0, impulses_[k] + needed(k));
+                const double more = next - impulses_[k];
+                impulses_[k] = next;
+                push(first(contact), second(contact), contact.normal, more * contact.normal);
+                change = std::max(change, std::fabs(more) * effective_inverse_mass(first(contact), second(contact)));
+            }
+            if (change <= kSolved * fastest) break;
+        }
+    }
+
+    const PairContactSettings& law_;
+    std::vector<PairBody>& bodies_;
+    std::span<PairContact> contacts_;
+    std::vector<double> impulses_;  // N s, along the normals
+    std::vector<double> targets_;   // m/s, of parting
+};
+
+}  // namespace
+
+PairBody pair_body(const Vec3& position, const Vec3& velocity, const Vec3& spin, double mass, double radius,
+                   bool is_fixed) {
+    PairBody body{position, velocity, spin, 0.0, radius, 0.0};
+    if (is_fixed) return body;
+    body.inverse_mass = 1.0 / mass;
+    body.inverse_inertia = 2.5 / (mass * radius * radius);
+    return body;
+}
+
+double approach_of(const PairBody& a, const PairBody& b) {
+    const Vec3 along = b.position - a.position;
+    return -dot(b.velocity - a.velocity, along) / length(along);
+}
+
+void answer_pair_impacts(const PairContactSettings& law, double resting_speed, std::vector<PairBody>& bodies,
+                         std::span<PairContact> contacts) {
+    ImpactProblem(law, resting_speed, bodies, contacts).solve();
+}
+
+}  // namespace ricochet

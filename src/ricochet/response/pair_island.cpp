@@ -1,0 +1,346 @@
+#include "ricochet/response/pair_island.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
+
+namespace ricochet {
+namespace {
+
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+}
+
+void add(MoveOutcome& sum, const MoveOutcome& next) {
+    MoveOutcome outcome = next;
+    outcome.bounces += sum.bounces;
+    outcome.unsimulated_time += sum.unsimulated_time;
+    outcome.stayed += sum.stayed;
+    outcome.squeezed = std::max(outcome.squeezed, sum.squeezed);
+    outcome.trials += sum.trials;
+    sum = outcome;
+}
+
+Box3 grown(const Box3& box, double by) {
+    const Vec3 all{by, by, by};
+    return {box.lower - all, box.upper + all};
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+           a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
+}  // namespace
+
+void MoveLists::clear() { hits.clear(), records.clear(), segments.clear(), motions.clear(), loads.clear(); }
+
+void MoveLists::take(MoveScratch& scratch) {
+    hits.swap(scratch.hits), records.swap(scratch.records), segments.swap(scratch.segments);
+    motions.swap(scratch.motions), loads.swap(scratch.loads);
+    scratch.hits.clear(), scratch.records.clear(), scratch.segments.clear();
+    scratch.motions.clear(), scratch.loads.clear();
+}
+
+void MoveLists::put_into(MoveScratch& scratch) {
+    hits.swap(scratch.hits), records.swap(scratch.records), segments.swap(scratch.segments);
+    motions.swap(scratch.motions), loads.swap(scratch.loads);
+}
+
+void MoveLists::append(const MoveLists& more) {
+    ricochet::append(hits, more.hits);
+    ricochet::append(records, more.records);
+    ricochet::append(segments, more.segments);
+    ricochet::append(motions, more.motions);
+    ricochet::append(loads, more.loads);
+}
+
+void PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch) {
+    members_ = &members;
+    scratch_ = &scratch;
+    impacts_.clear();
+    if (predictions_.size() < members.size()) predictions_.resize(members.size());
+    boxes_.assign(members.size(), {});
+    next_.assign(members.size(), {});
+    resumed_.resize(std::max(resumed_.size(), members.size()));
+    scratch.record_flown = true;
+    for (std::size_t m = 0; m < members.size(); ++m) predict(m);
+    for (std::size_t m = 0; m < members.size(); ++m) find_next(m);
+    while (true) {
+        const auto first = std::min_element(next_.begin(), next_.end(),
+                                            [](const Meeting& a, const Meeting& b) { return a.time < b.time; });
+        if (!std::isfinite(first->time)) break;
+        const double time = first->time;
+        std::vector<PairContact> contacts = contacts_at(time);
+        keep_fastest(contacts, time);
+        answer(contacts, time);
+    }
+    for (std::size_t m = 0; m < members.size(); ++m) commit(m);
+    scratch.record_flown = false;
+}
+
+/// The path of a member to the end of its part of the step.
+void PairIsland::predict(std::size_t m) {
+    IslandMember& member = (*members_)[m];
+    Prediction& prediction = predictions_[m];
+    prediction.moved = member.moving;
+    prediction.outcome = {};
+    prediction.lists.clear();
+    prediction.flown.clear();
+    if (member.is_gone()) {
+        boxes_[m] = {};
+        return;
+    }
+    const double duration = member.end - member.moving.state.time;
+    if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) {
+        stay(m);
+        return;
+    }
+    scratch_->flown.clear();
+    prediction.moved.step_end = member.end;
+    prediction.outcome = response_.move(prediction.moved, duration, *scratch_);
+    prediction.lists.take(*scratch_);
+    prediction.flown.swap(scratch_->flown);
+    // Where nothing has been flown it stays: what cannot be followed, or has no time left.
+    if (prediction.flown.empty()) {
+        stay(m);
+        return;
+    }
+    Box3 box;
+    for (const FlownPiece& piece : prediction.flown) box.include(box_of(piece.path, piece.duration));
+    box.include(prediction.moved.state.position);
+    boxes_[m] = grown(box, member.radius());
+}
+
+void PairIsland::stay(std::size_t m) {
+    const IslandMember& member = (*members_)[m];
+    const ForceInput& state = member.moving.state;
+    const double duration = std::max(0.0, member.end - state.time);
+    predictions_[m].flown.assign(
+        1, {line_path(state.position, Vec3{}, duration), state.time, duration, Vec3{}, Vec3{}, false});
+    boxes_[m] = grown({state.position, state.position}, member.radius());
+}
+
+/// Moves a member to a time along the path that is predicted.
+void PairIsland::bring(std::size_t m, double time) {
+    IslandMember& member = (*members_)[m];
+    MovingParticle& moving = member.moving;
+    const double duration = time - moving.state.time;
+    if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) return;
+    scratch_->flown.clear();
+    moving.beyond = member.end - time;
+    moving.step_end = time;
+    add(member.outcome, response_.move(moving, duration, *scratch_));
+    moving.beyond = 0.0;
+    if (!member.is_gone()) moving.state.time = time;
+    MoveLists lists;
+    lists.take(*scratch_);
+    member.lists.append(lists);
+    Box3 box;
+    for (const FlownPiece& piece : scratch_->flown) box.include(box_of(piece.path, piece.duration));
+    box.include(moving.state.position);
+    member.swept.include(grown(box, member.radius()));
+}
+
+/// What is predicted has come true.
+void PairIsland::commit(std::size_t m) {
+    IslandMember& member = (*members_)[m];
+    Prediction& prediction = predictions_[m];
+    member.swept.include(boxes_[m]);
+    member.moving.planned = nullptr;
+    if (member.is_fixed || member.is_cut_off || member.is_gone()) return;
+    member.moving = prediction.moved;
+    member.moving.planned = nullptr;
+    add(member.outcome, prediction.outcome);
+    member.lists.append(prediction.lists);
+}
+
+/// m/s: an approach of rounding.
+double PairIsland::slow(std::size_t a, std::size_t b) const {
+    const auto speed = [&](std::size_t m) { return length((*members_)[m].moving.state.velocity); };
+    return kPairApproachRounding * (speed(a) + speed(b));
+}
+
+bool PairIsland::may_meet(std::size_t a, std::size_t b) const {
+    return a != b && overlap(boxes_[a], boxes_[b]) && !((*members_)[a].is_fixed && (*members_)[b].is_fixed);
+}
+
+std::optional<double> PairIsland::meeting_of(std::size_t a, std::size_t b) const {
+    // In one order, so that both find the same time.
+    if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
+    const std::vector<FlownPiece>& first = predictions_[a].flown;
+    const std::vector<FlownPiece>& second = predictions_[b].flown;
+    if (first.empty() || second.empty()) return std::nullopt;
+    const double distance = (*members_)[a].radius() + (*members_)[b].radius();
+    const double rounding = slow(a, b);
+    for (std::size_t i = 0, j = 0; i < first.size() && j < second.size();) {
+        const TimedPath x{&first[i].path, first[i].begin, first[i].begin + first[i].duration};
+        const TimedPath y{&second[j].path, second[j].begin, second[j].begin + second[j].duration};
+        if (const auto time = first_meeting(x, y, distance, rounding)) return time;
+        if (x.end <= y.end) ++i;
+        if (y.end <= x.end) ++j;
+    }
+    return std::nullopt;
+}
+
+void PairIsland::find_next(std::size_t m) {
+    next_[m] = {};
+    for (std::size_t other = 0; other < boxes_.size(); ++other) {
+        if (!may_meet(m, other)) continue;
+        const auto time = meeting_of(m, other);
+        if (time && *time < next_[m].time) next_[m] = {*time, other};
+    }
+}
+
+/// Of members that have been changed: their paths, and who meets whom next.
+void PairIsland::predict_anew(const std::vector<std::size_t>& changed) {
+    for (const std::size_t m : changed) predict(m);
+    const auto is_changed = [&](std::size_t m) { return std::binary_search(changed.begin(), changed.end(), m); };
+    for (std::size_t other = 0; other < boxes_.size(); ++other) {
+        if (is_changed(other) || !std::isfinite(next_[other].time) || !is_changed(next_[other].partner)) continue;
+        find_next(other);
+    }
+    for (const std::size_t m : changed) {
+        next_[m] = {};
+        for (std::size_t other = 0; other < boxes_.size(); ++other) {
+            if (!may_meet(m, other)) continue;
+            const auto time = meeting_of(m, other);
+            if (!time) continue;
+            if (*time < next_[m].time) next_[m] = {*time, other};
+            if (*time < next_[other].time) next_[other] = {*time, m};
+        }
+    }
+}
+
+PhaseState PairIsland::state_of(std::size_t m, double time) const {
+    const std::vector<FlownPiece>& flown = predictions_[m].flown;
+    const auto next = std::upper_bound(flown.begin() + 1, flown.end(), time,
+                                       [](double t, const FlownPiece& piece) { return t < piece.begin; });
+    const FlownPiece& piece = *(next - 1);
+    const double s = std::clamp(time - piece.begin, 0.0, piece.duration);
+    return {piece.path.position(s), piece.path.velocity(s)};
+}
+
+/// All that meet at a time, as members, ascending.
+std::vector<PairContact> PairIsland::contacts_at(double time) const {
+    const double until = time + kSameImpactUlps * ulp(time);
+    std::vector<PairContact> contacts;
+    for (std::size_t m = 0; m < next_.size(); ++m) {
+        if (next_[m].time > until) continue;
+        for (std::size_t other = 0; other < boxes_.size(); ++other) {
+            if (!may_meet(m, other)) continue;
+            const bool is_known = other < m && next_[other].time <= until;  // found from there
+            if (is_known) continue;
+            const auto meeting = meeting_of(m, other);
+            if (meeting && *meeting <= until) contacts.push_back({std::min(m, other), std::max(m, other)});
+        }
+    }
+    return contacts;
+}
+
+/// The fastest first, and with it what is as fast, so that no order of members matters.
+void PairIsland::keep_fastest(std::vector<PairContact>& contacts, double time) const {
+    if (contacts.size() < 2) return;
+    double fastest = 0.0;
+    for (PairContact& contact : contacts) {
+        const PhaseState a = state_of(contact.first, time);
+        const PhaseState b = state_of(contact.second, time);
+        contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
+        fastest = std::max(fastest, contact.approach);
+    }
+    std::erase_if(contacts,
+                  [&](const PairContact& contact) { return contact.approach < fastest * (1.0 - kSameApproach); });
+}
+
+/// Moves those that meet to the time, lets them answer, and moves them on.
+void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
+    std::vector<std::size_t> changed;
+    for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const std::size_t m : changed) bring(m, time);
+    std::erase_if(contacts, [&](const PairContact& c) {
+        return (*members_)[c.first].is_gone() || (*members_)[c.second].is_gone();
+    });
+    std::vector<PairBody> bodies;
+    for (const std::size_t m : changed) bodies.push_back(body_of((*members_)[m]));
+    const std::vector<PairBody> before = bodies;
+    const auto number = [&](std::size_t m) {
+        return static_cast<std::size_t>(std::lower_bound(changed.begin(), changed.end(), m) - changed.begin());
+    };
+    for (PairContact& contact : contacts) {
+        ++(*members_)[contact.first].impacts, ++(*members_)[contact.second].impacts;
+        contact.first = number(contact.first), contact.second = number(contact.second);
+    }
+    answer_pair_impacts(settings_, response_.rules().settings.resting_speed, bodies, contacts);
+    for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+        if (!(*members_)[changed[k]].is_gone()) take_over(changed[k], bodies[k]);
+    }
+    predict_anew(changed);
+}
+
+PairBody PairIsland::body_of(const IslandMember& member) {
+    const MovingParticle& moving = member.moving;
+    const double radius = member.radius();
+    const bool is_fixed = member.is_fixed || member.is_cut_off;
+    // A core turns faster, so that its surface moves as fast.
+    return pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
+                     (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
+}
+
+/// A member goes on from an impact: what touched it is met anew.
+void PairIsland::take_over(std::size_t m, const PairBody& body) {
+    IslandMember& member = (*members_)[m];
+    if (member.is_fixed || member.is_cut_off) return;
+    MovingParticle& moving = member.moving;
+    const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
+    moving.state.velocity = body.velocity;
+    if (moving.state.radius > 0.0) moving.spin = (member.radius() / moving.state.radius) * body.spin;
+    moving.contact = {};
+    moving.ridden.reset();
+    moving.candidates = {};
+    if (scratch_->record_motions) {
+        MotionPart part;
+        part.kind = MotionPart::Kind::driven;
+        part.time = moving.state.time;
+        part.radius = moving.state.radius;
+        part.begin = before;
+        part.end = {moving.state.position, moving.state.velocity, moving.spin};
+        member.lists.motions.push_back(part);
+    }
+    resume(m);
+    if (member.impacts < settings_.impact_budget) return;
+    member.is_cut_off = true;
+    member.outcome.unsimulated_time += member.end - moving.state.time;
+    moving.step_end = member.end;
+}
+
+/// Where forces act by a kick at the begin they have acted already.
+void PairIsland::resume(std::size_t m) {
+    const ResponseRules& rules = response_.rules();
+    MovingParticle& moving = (*members_)[m].moving;
+    if (!kicks_first(rules.settings.integrator.kind)) return;
+    Flight before;
+    before.kick_duration = rules.settings.time_step;
+    resumed_[m] = resume_flight(rules.settings.integrator, rules.forces, moving.state, before,
+                                (*members_)[m].end - moving.state.time);
+    moving.planned = &resumed_[m];
+}
+
+void PairIsland::record(const PairContact& contact, const std::vector<std::size_t>& changed,
+                        const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time) {
+    std::size_t first = contact.first;
+    std::size_t second = contact.second;
+    const auto moving_of = [&](std::size_t k) -> const MovingParticle& { return (*members_)[changed[k]].moving; };
+    double sign = 1.0;
+    if (moving_of(first).id > moving_of(second).id) std::swap(first, second), sign = -1.0;
+    impacts_.push_back({time, moving_of(first).id, moving_of(second).id, before[first].position, -sign * contact.normal,
+                        before[first].velocity, after[first].velocity, sign * contact.impulse, contact.approach,
+                        moving_of(first).state.mass, before[first].radius});
+}
+
+}  // namespace ricochet

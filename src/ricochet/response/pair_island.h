@@ -1,0 +1,133 @@
+/// \file
+/// Spheres that may meet each other in a step, and no others: an island. Its impacts are worked off one after the
+/// other.
+///
+/// Every member has its true path to the end of the step, as if it met none of the others: the polynomial pieces that
+/// the response has moved it along, bounces off walls and contact with them included. The first meeting of two of those
+/// paths is an impact: both are moved to that time along the same paths, exchange impulses, and are moved on anew.
+/// Source: B. D. Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys. 94 (1991).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/dynamics/coupled_member.h"
+#include "ricochet/response/pair_impact.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// What moves have left behind, besides the particle: the lists of MoveScratch.
+struct MoveLists {
+    std::vector<SurfaceHit> hits;
+    std::vector<ContactRecord> records;
+    std::vector<Segment> segments;
+    std::vector<MotionPart> motions;
+    std::vector<ColliderLoad> loads;
+
+    void clear();
+    /// Takes what a move has left in the scratch memory.
+    void take(MoveScratch& scratch);
+    void append(const MoveLists& more);
+    /// Leaves them in scratch memory.
+    void put_into(MoveScratch& scratch);
+};
+
+/// An impact of two spheres.
+struct PairImpactRecord {
+    double time = 0.0;         ///< s
+    std::uint64_t first = 0;   ///< id, the lower one
+    std::uint64_t second = 0;  ///< id
+    Vec3 position;             ///< m, of the first's centre
+    Vec3 normal;               ///< unit, from the second to the first
+    Vec3 velocity_before;      ///< m/s, of the first
+    Vec3 velocity_after;       ///< m/s, of the first
+    Vec3 impulse;              ///< N s, given to the second
+    double approach = 0.0;     ///< m/s
+    double mass = 0.0;         ///< kg, of the first
+    double radius = 0.0;       ///< m, of the first
+};
+
+/// A member of an island: in, what it is at the step's begin; out, at its end.
+struct IslandMember {
+    std::size_t particle = 0;  ///< its number in the particles' arrays
+    MovingParticle moving;     ///< at the time moving.state.time
+    double end = 0.0;          ///< s, of its part of the step
+    bool is_fixed = false;     ///< nothing moves it
+    // Out:
+    MoveOutcome outcome{};
+    MoveLists lists{};
+    std::uint32_t impacts = 0;  ///< on other members
+    bool is_cut_off = false;    ///< it has spent its budget
+    Box3 swept{};               ///< of the whole sphere on all of its way
+
+    /// It has ended before the step.
+    [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
+    /// m, as others meet it: that of the whole sphere also where it collides with walls as a core.
+    [[nodiscard]] double radius() const {
+        return moving.state.whole_radius > 0.0 ? moving.state.whole_radius : moving.state.radius;
+    }
+};
+
+/// Works islands off; keeps its memory for the next one. For one thread.
+class PairIsland {
+public:
+    /// Both must outlive it.
+    PairIsland(const Response& response, const PairContactSettings& settings)
+        : response_(response), settings_(settings) {}
+
+    /// Moves the members to the end of the step. The result does not depend on their order, but for the last bits of
+    /// impacts that several of them share. scratch: says what is to be recorded; its lists are used.
+    void run(std::vector<IslandMember>& members, MoveScratch& scratch);
+
+    /// Impacts of the last run, in the order of time.
+    [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
+
+private:
+    /// What a member does until the step's end if it meets none of the others.
+    struct Prediction {
+        MovingParticle moved;
+        MoveOutcome outcome;
+        MoveLists lists;
+        std::vector<FlownPiece> flown;
+    };
+    struct Meeting {
+        double time = std::numeric_limits<double>::infinity();  ///< s
+        std::size_t partner = 0;
+    };
+
+    void predict(std::size_t m);
+    void stay(std::size_t m);
+    void bring(std::size_t m, double time);
+    void commit(std::size_t m);
+    void find_next(std::size_t m);
+    void predict_anew(const std::vector<std::size_t>& changed);
+    [[nodiscard]] std::optional<double> meeting_of(std::size_t a, std::size_t b) const;
+    [[nodiscard]] bool may_meet(std::size_t a, std::size_t b) const;
+    [[nodiscard]] PhaseState state_of(std::size_t m, double time) const;
+    [[nodiscard]] std::vector<PairContact> contacts_at(double time) const;
+    void keep_fastest(std::vector<PairContact>& contacts, double time) const;
+    void answer(std::vector<PairContact>& contacts, double time);
+    [[nodiscard]] static PairBody body_of(const IslandMember& member);
+    void take_over(std::size_t m, const PairBody& body);
+    void resume(std::size_t m);
+    void record(const PairContact& contact, const std::vector<std::size_t>& changed,
+                const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
+    [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
+
+    const Response& response_;
+    const PairContactSettings& settings_;
+    std::vector<IslandMember>* members_ = nullptr;
+    MoveScratch* scratch_ = nullptr;
+    std::vector<Prediction> predictions_;
+    std::vector<Box3> boxes_;      // of the predictions
+    std::vector<Meeting> next_;    // of each member, the first
+    std::vector<Flight> resumed_;  // of each member, where it has been kicked in this step
+    std::vector<PairImpactRecord> impacts_;
+};
+
+}  // namespace ricochet

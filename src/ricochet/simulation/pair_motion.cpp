@@ -1,0 +1,231 @@
+#include "ricochet/simulation/pair_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Islands per unit of parallel work.
+constexpr std::size_t kBlock = 16;
+
+Box3 ball_box(const Vec3& center, double radius) {
+    const Vec3 r{radius, radius, radius};
+    return {center - r, center + r};
+}
+
+bool contains(const Box3& outer, const Box3& inner) {
+    return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
+}
+
+}  // namespace
+
+void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
+    first_ = range.begin;
+    counts_ = {};
+    impacts_.clear();
+    islands_.clear();
+    boxes_.resize(range.size());
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) boxes_[k] = declared_box(first_ + k, step);
+    });
+    find_islands(range);
+    run(islands_, step);
+    while (join_those_near_roamers()) rebuild(step);
+    // The ordinary way leaves them alone until they are taken over.
+    for (const Island& island : islands_) {
+        for (const std::uint32_t k : island.particles) schedule_.leave_alone(first_ + k);
+    }
+}
+
+/// Where a sphere stays if it meets no other one; empty where it meets nobody.
+Box3 PairMotion::declared_box(std::size_t i, const TimeSpan& step) const {
+    const Particles& particles = store_.particles();
+    const double radius = particles.radius[i];
+    if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0) return {};
+    const Vec3& x = particles.position[i];
+    if (particles.pinned[i] != 0 || store_.is_asleep(i)) return ball_box(x, radius);
+    const double begin = std::max(step.begin, particles.birth_time[i]);
+    const double duration = std::min(step.end, particles.birth_time[i] + particles.lifetime[i]) - begin;
+    if (!(duration > 0.0)) return {};
+    if (!schedule_.is_in_free_flight(i)) return ball_box(x, radius + reach(i, duration));
+    // Whatever the integrator: the parabola, and the lines with the velocities of its ends.
+    const Vec3& v = particles.velocity[i];
+    const Vec3 kick = duration * response_.rules().forces.acceleration(store_.force_input(i, begin));
+    Box3 box;
+    for (const Vec3& by : {Vec3{}, v, v + 0.5 * kick, v + kick}) box.include(x + duration * by);
+    const double slack = radius * kPairBoxSlack;
+    return {box.lower - Vec3{slack, slack, slack}, box.upper + Vec3{slack, slack, slack}};
+}
+
+/// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force
+/// does: its spin may turn into speed.
+double PairMotion::reach(std::size_t i, double duration) const {
+    const Particles& particles = store_.particles();
+    const double turning = particles.radius[i] * length(particles.spin[i]);
+    const double speed = std::sqrt(length_squared(particles.velocity[i]) + 0.4 * turning * turning);
+    const double change = duration * length(response_.rules().forces.acceleration(store_.force_input(i, 0.0)));
+    return kPairBoxSlack * duration * (speed + change);
+}
+
+/// Whether reach() is all that spheres may come.
+bool PairMotion::is_bounded() const {
+    const ResponseRules& rules = response_.rules();
+    const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
+    return rules.forces.is_uniform() && rules.bodies == nullptr &&
+           std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
+}
+
+void PairMotion::find_islands(const ParticleRange& range) {
+    parents_.resize(range.size());
+    std::iota(parents_.begin(), parents_.end(), 0U);
+    pairs_ = grid_.find_pairs(boxes_);
+    const auto moves = [&](std::uint32_t k) {
+        return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k);
+    };
+    std::erase_if(pairs_, [&](const NeighbourPair& pair) { return !moves(pair.first) && !moves(pair.second); });
+    std::vector<std::uint32_t> involved;
+    for (const NeighbourPair& pair : pairs_) {
+        static_cast<void>(join(pair.first, pair.second));
+        involved.push_back(pair.first);
+        involved.push_back(pair.second);
+    }
+    // Where a sphere may go farther than its box those that meet nobody are watched, too.
+    for (std::uint32_t k = 0; !is_bounded() && k < boxes_.size(); ++k) {
+        if (!boxes_[k].empty() && moves(k)) involved.push_back(k);
+    }
+    islands_ = islands_of(std::move(involved));
+}
+
+std::uint32_t PairMotion::root_of(std::uint32_t k) {
+    while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
+    return k;
+}
+
+/// False where they are of one island already.
+bool PairMotion::join(std::uint32_t a, std::uint32_t b) {
+    a = root_of(a);
+    b = root_of(b);
+    if (a == b) return false;
+    parents_[std::max(a, b)] = std::min(a, b);
+    return true;
+}
+
+/// Islands in the order of their lowest particles.
+std::vector<PairMotion::Island> PairMotion::islands_of(std::vector<std::uint32_t> involved) {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(involved.size());
+    for (const std::uint32_t k : involved) keys.push_back(std::uint64_t{root_of(k)} << 32U | k);
+    parallel_sort(keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<Island> islands;
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+        if (n == 0 || keys[n] >> 32U != keys[n - 1] >> 32U) islands.emplace_back();
+        islands.back().particles.push_back(static_cast<std::uint32_t>(keys[n]));
+    }
+    return islands;
+}
+
+void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
+    parallel_for_blocks(islands.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        MoveScratch scratch;
+        mover_.prepare(scratch);
+        PairIsland worker(response_, settings_);
+        for (std::size_t n = begin; n < end; ++n) {
+            Island& island = islands[n];
+            if (!island.members.empty()) continue;  // as before
+            for (const std::uint32_t k : island.particles) {
+                if (auto member = mover_.member_of(first_ + k, step)) island.members.push_back(std::move(*member));
+            }
+            // By place, not by id, so that ids do not decide.
+            std::sort(island.members.begin(), island.members.end(), [](const IslandMember& a, const IslandMember& b) {
+                const Vec3& p = a.moving.state.position;
+                const Vec3& q = b.moving.state.position;
+                return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+            });
+            worker.run(island.members, scratch);
+            island.impacts = worker.impacts();
+        }
+    });
+}
+
+/// True where members that have left their boxes have come near to particles of other islands, which are joined.
+bool PairMotion::join_those_near_roamers() {
+    std::vector<std::uint32_t> roamers;
+    std::vector<Box3> swept;
+    for (const Island& island : islands_) {
+        for (const IslandMember& member : island.members) {
+            const auto k = static_cast<std::uint32_t>(member.particle - first_);
+            if (contains(boxes_[k], member.swept)) continue;
+            roamers.push_back(k);
+            swept.push_back(member.swept);
+        }
+    }
+    std::vector<std::vector<std::uint32_t>> near(roamers.size());
+    parallel_for_blocks(roamers.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) grid_.find_near(swept[n], near[n]);
+    });
+    bool has_joined = false;
+    for (std::size_t n = 0; n < roamers.size(); ++n) {
+        for (const std::uint32_t k : near[n]) has_joined |= join(roamers[n], k);
+    }
+    for (const NeighbourPair& pair : roamer_grid_.find_pairs(swept)) {
+        has_joined |= join(roamers[pair.first], roamers[pair.second]);
+    }
+    return has_joined;
+}
+
+/// Islands that have been joined begin anew; the others stay.
+void PairMotion::rebuild(const TimeSpan& step) {
+    std::vector<std::uint32_t> involved;
+    for (std::uint32_t k = 0; k < parents_.size(); ++k) {
+        const std::uint32_t root = root_of(k);
+        if (root != k) involved.push_back(root), involved.push_back(k);
+    }
+    for (const Island& island : islands_) {
+        involved.insert(involved.end(), island.particles.begin(), island.particles.end());
+    }
+    std::vector<Island> next = islands_of(std::move(involved));
+    auto before = islands_.begin();
+    for (Island& island : next) {
+        while (before != islands_.end() && before->particles.front() < island.particles.front()) ++before;
+        if (before != islands_.end() && before->particles == island.particles) island = std::move(*before);
+    }
+    islands_ = std::move(next);
+    run(islands_, step);
+}
+
+void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    const std::size_t first_block = blocks.size();
+    blocks.resize(first_block + (islands_.size() + kBlock - 1) / kBlock);
+    parallel_for_blocks(islands_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            for (IslandMember& member : islands_[n].members)
+                mover_.take_over(member, step, blocks[first_block + block]);
+        }
+    });
+    for (const Island& island : islands_) {
+        impacts_.insert(impacts_.end(), island.impacts.begin(), island.impacts.end());
+    }
+    counts_.impacts = impacts_.size();
+    measure_overlaps();
+    islands_.clear();
+}
+
+void PairMotion::measure_overlaps() {
+    const Particles& particles = store_.particles();
+    const auto measure = [&](std::size_t i, std::size_t j) {
+        const double distance = length(particles.position[i] - particles.position[j]);
+        const double overlap = particles.radius[i] + particles.radius[j] - distance;
+        const double smaller = std::min(particles.radius[i], particles.radius[j]);
+        counts_.largest_overlap = std::max(counts_.largest_overlap, overlap / smaller);
+    };
+    for (const NeighbourPair& pair : pairs_) measure(first_ + pair.first, first_ + pair.second);
+}
+
+}  // namespace ricochet

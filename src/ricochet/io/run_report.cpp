@@ -195,6 +195,7 @@ RunSummary summarize(const Simulation& simulation) {
     summary.simulated_time = simulation.time();
     summary.particles_alive = simulation.particles().size();
     summary.statistics = simulation.statistics();
+    summary.spheres_meet = simulation.options().particle_contacts.has_value();
     if (simulation.options().verify) {
         summary.leaks = simulation.statistics().violations;
         summary.energy_violations = simulation.statistics().energy_violations;
@@ -226,6 +227,10 @@ std::string summary_text(const RunSummary& summary) {
     json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;
     add_statistics(json, summary.statistics);
+    if (summary.spheres_meet) {
+        json["pair_impacts"] = summary.statistics.pair_impacts;
+        json["overlap_largest"] = summary.statistics.overlap_largest;
+    }
     // Known only to a run that verifies itself.
     json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);
     json["energy_violations"] = summary.energy_violations ? Json(*summary.energy_violations) : Json(nullptr);

@@ -76,6 +76,7 @@ struct RunSummary {
     std::optional<std::string> diverged;  ///< why the run stopped, where its numbers became nonsense
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
+    bool spheres_meet = false;                       ///< each other
     std::optional<std::uint64_t> leaks;              ///< violations that a verified run found; nothing without --verify
     std::optional<std::uint64_t> energy_violations;  ///< the same of energies
     double kinetic_energy = 0.0;                     ///< J

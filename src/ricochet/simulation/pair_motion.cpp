@@ -194,7 +194,7 @@ void PairMotion::rebuild(const TimeSpan& step) {
     auto before = islands_.begin();
     for (Island& island : next) {
         while (before != islands_.end() && before->particles.front() < island.particles.front()) ++before;
-        if (before != islands_.end() && before->particles == island.particles) island = std::move(*before);
+        if (before != islands_.end() && before->particles == island.particles) island = std::move(*before++);
     }
     islands_ = std::move(next);
     run(islands_, step);

@@ -1,6 +1,7 @@
 // The scene as a whole, and its parts that are plain settings: simulation, bounds, cameras and output.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "ricochet/dynamics/flight.h"
@@ -157,6 +158,53 @@ const ObjectSpec& bounds_spec() {
     return spec;
 }
 
+const ObjectSpec& particle_contacts_spec() {
+    using P = PairContactSettings;
+    static const ObjectSpec spec = object<P>(
+        "particle contacts", "What spheres do when they meet each other.",
+        {{"restitution", &P::restitution, kFraction, "", "Speed of parting over speed of approach along the normal."},
+         {"friction", &P::friction, kNotNegative, "", "Coulomb coefficient between spheres."},
+         {"rolling_friction", &P::rolling_friction, kNotNegative, "",
+          "Moment that resists turning relative to each other, over the reduced radius times the normal impulse."},
+         {"method", &P::method, "How spheres that meet are moved.",
+          Choices{choice(PairMethod::automatic, "auto", "as fits; in this version as `events`"),
+                  choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+                  choice(PairMethod::contacts, "contacts", "all contacts of a step at once; not built yet, refused")}},
+         {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
+          "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the rest of "
+          "the step, and the time left out is counted."}});
+    return spec;
+}
+
+/// Spheres that meet each other: what does not go together with them is refused where it stands.
+void build_particle_contacts(const SceneContext& context, SimulationSetup& setup) {
+    if (!context.root().has("particle_contacts")) return;
+    const ObjectView view = context.root().object("particle_contacts");
+    setup.options.particle_contacts = view.read<PairContactSettings>();
+    if (setup.options.particle_contacts->method == PairMethod::contacts) {
+        context.error(view, "method", "found \"contacts\", which is not built yet, expected \"auto\" or \"events\"");
+    }
+    const auto refuse = [&](bool refused, std::string_view what) {
+        if (refused)
+            context.error(context.root(), "particle_contacts", fmt::format("does not go together with {}", what));
+    };
+    refuse(setup.options.response != ResponseKind::exact,
+           fmt::format("the response \"{}\", expected \"exact\"", name_of(setup.options.response)));
+    refuse(setup.options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
+    refuse(!setup.springs.empty(), "springs, expected none");
+    refuse(!setup.bodies.empty(), "bodies that impulses move, expected frames that are given");
+    const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
+    const auto emits_points = [](const EmitterDescription& emitter) {
+        return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
+    };
+    const bool has_particles = !setup.particles.empty() || !setup.emitters.empty();
+    if (has_particles && std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
+        std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points)) {
+        context.warn(context.root(), "particle_contacts",
+                     "all particles are points, which never meet: it does nothing; give them a radius");
+    }
+}
+
 constexpr Range kFieldOfView = between(1.0, 170.0);
 constexpr std::string_view kFieldOfViewMeaning = "Angle from the lower to the upper edge.";
 
@@ -213,6 +261,8 @@ Fields<Unbound> scene_fields() {
              "Particles that are there from the start, one by one or from a table.", &particle_spec()},
             {"springs", ValueType::list,
              "Springs between particles; ropes, chains and cloth with particles of their own.", &springs_spec()},
+            {"particle_contacts", ValueType::object, "Spheres meet each other.", &particle_contacts_spec(),
+             Without{"they pass through each other"}},
             {"attributes", ValueType::table, "Values of your own that particles carry, by name.", &attribute_spec()},
             {"reference_camera", ValueType::object, "For emitters' rates per screen area.", &reference_camera_spec(),
              Without{"no such rates"}},
@@ -331,6 +381,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_emitters(context, scene.setup);
     build_particles(context, scene.setup);
     build_springs(context, scene.setup);
+    build_particle_contacts(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();
     scene.output = output;

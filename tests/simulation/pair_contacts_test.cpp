@@ -1,0 +1,262 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::setup_of;
+
+SimulationSetup pair_setup(double time_step, double duration, const PairContactSettings& contacts,
+                           const Vec3& gravity = {}) {
+    SimulationSetup setup = setup_of(time_step, duration, {}, gravity);
+    setup.options.resting_speed = 0.0;
+    setup.options.particle_contacts = contacts;
+    return setup;
+}
+
+Simulation run(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    return simulation;
+}
+
+double largest(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
+
+struct Sums {
+    Vec3 momentum;
+    Vec3 angular_momentum;
+    double energy = 0.0;
+};
+
+Sums sums_of(const Particles& p) {
+    Sums sums;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const double inertia = 0.4 * p.mass[i] * p.radius[i] * p.radius[i];
+        sums.momentum += p.mass[i] * p.velocity[i];
+        sums.angular_momentum += p.mass[i] * cross(p.position[i], p.velocity[i]) + inertia * p.spin[i];
+        sums.energy += 0.5 * p.mass[i] * length_squared(p.velocity[i]) + 0.5 * inertia * length_squared(p.spin[i]);
+    }
+    return sums;
+}
+
+TEST(PairContacts, TwoSpheresMeetHeadOnAsTheClosedFormSays) {
+    for (const double e : {0.0, 0.4, 1.0}) {
+        SCOPED_TRACE("restitution " + std::to_string(e));
+        SimulationSetup setup = pair_setup(0.25, 1.0, {.restitution = e});
+        Particle a = particle_of({0, 0, 0}, {2, 0, 0}, 0.1);
+        Particle b = particle_of({1, 0, 0}, {-1, 0, 0}, 0.2);
+        a.mass = 1.5;
+        b.mass = 4.0;
+        setup.particles = {a, b};
+        const Simulation simulation = run(std::move(setup));
+        EXPECT_EQ(simulation.statistics().pair_impacts, 1U);
+        const double impulse = (1.0 + e) * 3.0 / (1.0 / 1.5 + 1.0 / 4.0);
+        const double va = 2.0 - impulse / 1.5;
+        const double vb = -1.0 + impulse / 4.0;
+        const double time = 0.7 / 3.0;
+        const Particles& p = simulation.particles();
+        EXPECT_NEAR(p.velocity[0].x, va, 1e-13);
+        EXPECT_NEAR(p.velocity[1].x, vb, 1e-13);
+        EXPECT_NEAR(p.position[0].x, 2.0 * time + va * (1.0 - time), 1e-13);
+        EXPECT_NEAR(p.position[1].x, 1.0 - time + vb * (1.0 - time), 1e-13);
+        EXPECT_EQ(largest(p.spin[0]), 0.0);
+    }
+}
+
+// Friction changes the velocities along the surface by the smaller of what stops the slip and what it can.
+TEST(PairContacts, AnObliqueImpactWithFrictionAndSpinIsThatOfTheClosedForm) {
+    for (const double mu : {0.05, 0.3, 10.0}) {
+        SCOPED_TRACE("friction " + std::to_string(mu));
+        const double e = 0.7;
+        SimulationSetup setup = pair_setup(0.02, 0.2, {.restitution = e, .friction = mu}, {0, 0, -9.81});
+        const Vec3 n = normalized(Vec3{0.6, 0.5, -0.3});  // from a to b at the impact
+        const Vec3 va{1.3, 0.4, 0.2};
+        const Vec3 vb{-0.8, -0.9, 1.1};
+        const Vec3 wa{3, -2, 5};
+        const Vec3 wb{-1, 7, 2};
+        const double ra = 0.1;
+        const double rb = 0.25;
+        const double time = 0.0533;
+        const Vec3 fall = (0.5 * time * time) * Vec3{0, 0, -9.81};
+        const Vec3 meeting{0.2, -0.1, 0.4};  // of a's centre
+        Particle a = particle_of(meeting - time * va - fall, va, ra, wa);
+        Particle b = particle_of(meeting + (ra + rb) * n - time * vb - fall, vb, rb, wb);
+        a.mass = 0.8;
+        b.mass = 2.0;
+        setup.particles = {a, b};
+        const Simulation simulation = run(std::move(setup));
+        ASSERT_EQ(simulation.statistics().pair_impacts, 1U);
+        const Vec3 u = (vb - va) - cross(ra * wa + rb * wb, n);
+        const double inverse = 1.0 / a.mass + 1.0 / b.mass;
+        const double normal = (1.0 + e) * -dot(u, n) / inverse;
+        const Vec3 slip = u - dot(u, n) * n;
+        const double along = std::min(mu * normal, length(slip) / (3.5 * inverse));
+        const Vec3 impulse = normal * n - (along / length(slip)) * slip;
+        const Vec3 gravity = 0.2 * Vec3{0, 0, -9.81};
+        const Particles& p = simulation.particles();
+        EXPECT_LT(largest(p.velocity[0] - (va - impulse / a.mass + gravity)), 1e-12);
+        EXPECT_LT(largest(p.velocity[1] - (vb + impulse / b.mass + gravity)), 1e-12);
+        EXPECT_LT(largest(p.spin[0] - (wa - (ra / (0.4 * a.mass * ra * ra)) * cross(n, impulse))), 1e-11);
+        EXPECT_LT(largest(p.spin[1] - (wb - (rb / (0.4 * b.mass * rb * rb)) * cross(n, impulse))), 1e-11);
+    }
+}
+
+TEST(PairContacts, SpheresThatOnlyPassKeepTheirBits) {
+    SimulationSetup with = pair_setup(0.1, 2.0, {});
+    with.particles = {particle_of({0, 0, 0}, {1, 0, 0}, 0.1), particle_of({2, 0.2001, 0}, {-1, 0, 0}, 0.1)};
+    SimulationSetup without = setup_of(0.1, 2.0);
+    without.particles = with.particles;
+    const Simulation first = run(std::move(with));
+    const Simulation second = run(std::move(without));
+    EXPECT_EQ(first.statistics().pair_impacts, 0U);
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(PairContacts, PointsNeverMeet) {
+    SimulationSetup setup = pair_setup(0.1, 1.0, {});
+    setup.particles = {particle_of({0, 0, 0}, {1, 0, 0}), particle_of({1, 0, 0}, {-1, 0, 0})};
+    EXPECT_EQ(run(std::move(setup)).statistics().pair_impacts, 0U);
+}
+
+// One ball in, one out, also where they touch.
+TEST(PairContacts, ACradleGivesOneBallOutForOneIn) {
+    for (const double gap : {0.0, 1e-9}) {
+        SCOPED_TRACE("gap " + std::to_string(gap));
+        SimulationSetup setup = pair_setup(0.05, 0.2, {});
+        const double r = 0.05;
+        for (int k = 0; k < 5; ++k) {
+            setup.particles.push_back(particle_of({k * (2 * r + gap), 0, 0}, {}, r));
+        }
+        setup.particles.front().position.x = -0.13;
+        setup.particles.front().velocity.x = 1.0;
+        std::swap(setup.particles[0], setup.particles[3]);  // ids must not decide
+        const Simulation simulation = run(std::move(setup));
+        const Particles& p = simulation.particles();
+        for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(p.velocity[i].x, i == 4 ? 1.0 : 0.0, 1e-12) << i;
+        EXPECT_EQ(simulation.statistics().pair_impacts, 4U);
+        EXPECT_LT(simulation.statistics().overlap_largest, 1e-12);
+    }
+}
+
+SimulationSetup rack(double e, std::uint64_t order) {
+    SimulationSetup setup = pair_setup(0.01, 0.3, {.restitution = e});
+    const double r = 0.0286;
+    std::vector<Particle> balls{particle_of({-0.5, 0, 0}, {4, 0, 0}, r)};
+    for (int row = 0; row < 5; ++row) {
+        for (int k = 0; k <= row; ++k) {
+            balls.push_back(particle_of({row * r * std::sqrt(3.0), (2 * k - row) * r, 0}, {}, r));
+        }
+    }
+    RandomSequence random(order, 1, 0);
+    for (std::size_t k = balls.size() - 1; order > 0 && k > 0; --k) {
+        std::swap(balls[k], balls[static_cast<std::size_t>(random.uniform() * static_cast<double>(k + 1))]);
+    }
+    setup.particles = balls;
+    return setup;
+}
+
+// Each ball has its mirror image, whatever the order of their ids.
+TEST(PairContacts, ASymmetricRackBreaksSymmetrically) {
+    for (const double e : {1.0, 0.9}) {
+        for (const std::uint64_t order : {0, 1, 2}) {
+            SCOPED_TRACE("restitution " + std::to_string(e) + ", order " + std::to_string(order));
+            const Simulation simulation = run(rack(e, order));
+            const Particles& p = simulation.particles();
+            EXPECT_GT(simulation.statistics().pair_impacts, 15U);
+            for (std::size_t i = 0; i < p.size(); ++i) {
+                const Vec3 mirrored{p.position[i].x, -p.position[i].y, p.position[i].z};
+                double nearest = 1.0;
+                for (std::size_t j = 0; j < p.size(); ++j) {
+                    nearest = std::min(nearest, length(p.position[j] - mirrored));
+                }
+                EXPECT_LT(nearest, 1e-12) << i;
+            }
+            const Sums sums = sums_of(p);
+            EXPECT_NEAR(sums.momentum.x, 4.0, 1e-12);
+            EXPECT_NEAR(sums.momentum.y, 0.0, 1e-12);
+            if (e == 1.0) EXPECT_NEAR(sums.energy, 8.0, 1e-12);
+        }
+    }
+}
+
+/// Spheres in a closed box.
+SimulationSetup gas(const PairContactSettings& contacts, std::size_t count, double radius, double time_step,
+                    double duration) {
+    SimulationSetup setup = pair_setup(time_step, duration, contacts);
+    const double half = 0.5;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {-1.0, 1.0}) {
+            Vec3 normal;
+            normal[axis] = -side;
+            Vec3 point;
+            point[axis] = side * half;
+            ColliderDescription wall;
+            wall.shape = PlaneShape{point, normal};
+            setup.colliders.push_back(wall);
+        }
+    }
+    const auto cells = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+    const double pitch = (2.0 * half - 2.0 * radius) / static_cast<double>(cells);
+    RandomSequence random(7, 1, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3 at{static_cast<double>(k % cells), static_cast<double>(k / cells % cells),
+                      static_cast<double>(k / cells / cells)};
+        const Vec3 corner{-half + radius, -half + radius, -half + radius};
+        const Vec3 direction = random.unit_vector();
+        const double speed = 0.5 + random.uniform();
+        const Vec3 spin = random.unit_vector();
+        setup.particles.push_back(
+            particle_of(corner + pitch * (at + Vec3{0.5, 0.5, 0.5}), speed * direction, radius, 10.0 * spin));
+    }
+    return setup;
+}
+
+TEST(PairContacts, AnElasticGasKeepsItsEnergyAndNobodyLeavesTheBox) {
+    SimulationSetup setup = gas({}, 500, 0.03, 0.01, 2.0);
+    setup.options.verify = true;
+    const double before = Simulation(gas({}, 500, 0.03, 0.01, 2.0)).kinetic_energy();
+    const Simulation simulation = run(std::move(setup));
+    EXPECT_GT(simulation.statistics().pair_impacts, 4000U);
+    EXPECT_NEAR(simulation.kinetic_energy() / before, 1.0, 1e-12);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1e-12);
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+}
+
+TEST(PairContacts, ARoughGasKeepsMomentumAndAngularMomentumAndLosesEnergy) {
+    SimulationSetup setup = gas({.restitution = 0.8, .friction = 0.4, .rolling_friction = 0.1}, 400, 0.02, 0.02, 1.0);
+    setup.colliders.clear();
+    for (Particle& particle : setup.particles) particle.velocity = -3.0 * particle.position + 0.2 * particle.velocity;
+    Simulation simulation(std::move(setup));
+    const Sums first = sums_of(simulation.particles());
+    while (!simulation.finished()) simulation.step();
+    const Sums last = sums_of(simulation.particles());
+    EXPECT_GT(simulation.statistics().pair_impacts, 300U);
+    EXPECT_LT(largest(last.momentum - first.momentum), 1e-12);
+    EXPECT_LT(largest(last.angular_momentum - first.angular_momentum), 1e-10);
+    EXPECT_LT(last.energy, first.energy);
+}
+
+TEST(PairContacts, HaveTheSameBitsForAnyNumberOfThreads) {
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 7}) {
+        const ThreadLimit limit(threads);
+        hashes.push_back(run(gas({.restitution = 0.9, .friction = 0.2}, 600, 0.03, 0.01, 0.5)).state_hash());
+    }
+    EXPECT_EQ(hashes[1], hashes[0]);
+    EXPECT_EQ(hashes[2], hashes[0]);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -373,6 +373,32 @@ inline constexpr double kStiffCompliance = 1e-10;
 inline constexpr double kStiffening = 1e-2;
 inline constexpr double kShortestStiffening = 0.9;
 
+/// Energy that impulses of a contact network may seem to add, as a part of the sum of their works. Reason: rounding of
+/// sums over a thousand contacts. Smaller: elastic impacts lose their rebound. Larger: energy may grow by as much.
+inline constexpr double kNetworkEnergyRounding = 1e-12;
+
+/// Part of an overlap of spheres in dense contact that one step undoes. Reason: what sweeps leave over must not add up
+/// from step to step; half of it settles in a few steps without a jerk. Smaller: overlaps last. Larger: deep ones, of
+/// hard impacts, throw spheres out.
+inline constexpr double kNetworkPushOut = 0.5;
+
+/// By how much sweeps over contact networks overdo each normal impulse. Reason: with 1.2 boxes of 2000 spheres come to
+/// rest with two thirds of the sweeps, 1.5 makes friction waver. Smaller: more sweeps. Larger: they diverge at 2.
+inline constexpr double kNetworkOverRelaxation = 1.2;
+
+/// Overlap, as a part of the smallest radius, that a step may leave when sweeps end early (the speed by which contacts
+/// still close, times the step). Reason: a fifth of what counts as visible while grains are poured. Smaller: hard
+/// impacts of many spheres take more sweeps. Larger: they overlap.
+inline constexpr double kNetworkOverlap = 1e-3;
+
+/// Speed by which the conditions of a contact network may be violated, as a part of its fastest sphere's, so that what
+/// comes to rest is solved ever more closely. Smaller: more sweeps for what moves anyway. Larger: piles creep.
+inline constexpr double kNetworkResidual = 1e-2;
+
+/// The same as a part of the smallest radius a step, where that is more. Reason: far below the largest drift that a
+/// pile may have. Smaller: sweeps that change nothing. Larger: piles creep.
+inline constexpr double kNetworkStill = 1e-7;
+
 /// Turn, rad, of surfaces of different frames, or of what bends under a particle that they hold together, in one
 /// interval of contact. Reason: within an interval they count as the planes that they are at its start, and its square
 /// is the error. Smaller: more intervals (each costs a query), and a step's limit of them is reached sooner. Larger:

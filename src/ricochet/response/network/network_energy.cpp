@@ -1,0 +1,130 @@
+// What holds for each connected impact as a whole: its restitution, and that it gains no energy.
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/network/network_solver.h"
+
+namespace ricochet {
+namespace {
+
+/// Of contacts that push and are approached; 1 where there is none.
+std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const NetworkState> before,
+                                 std::span<const NetworkRow> rows, std::span<const std::uint32_t> order,
+                                 std::span<const NetworkContact> contacts) {
+    std::vector<double> least(impacts.size(), 1.0);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const NetworkRow& row = rows[i];
+        if (row.push.normal == 0.0 || !(approach_of(row, before[row.a], before[row.b]) < 0.0)) continue;
+        const NetworkContact& contact = contacts[order[i]];
+        double& e = least[impacts.of(row)];
+        e = std::min(e, contact.touched ? 0.0 : contact.restitution);
+    }
+    return least;
+}
+
+}  // namespace
+
+/// The impact without rebound says what is connected.
+void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings,
+                            NetworkReport& report) {
+    const bool may_rebound = std::any_of(contacts.begin(), contacts.end(), [](const NetworkContact& contact) {
+        return contact.restitution > 0.0 && !contact.touched;
+    });
+    if (!may_rebound) return;
+    impacts_.assign(before_, rows_);
+    const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
+    bool rebounds = false;
+    for (NetworkRow& row : rows_) {
+        const double approach = approach_of(row, before_[row.a], before_[row.b]);
+        const double e = least[impacts_.of(row)];
+        if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
+        row.bound = std::min(row.bound, e * approach);
+        rebounds = true;
+    }
+    if (!rebounds) return;
+    iterate(settings, report);
+    const std::vector<Gain> gains = gains_of_impacts();
+    bool gained = false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Gain& gain = gains[impacts_.of(rows_[i])];
+        if (rows_[i].bound >= -rows_[i].parting || !gain.is_gain()) continue;
+        rows_[i].bound = std::max(-rows_[i].parting, contacts[coloring_.order()[i]].gap / settings.duration);
+        gained = true;
+    }
+    if (gained) iterate(settings, report);
+}
+
+/// By connected impact, which are found anew. The work that parts what overlaps is no gain.
+std::vector<NetworkSolver::Gain> NetworkSolver::gains_of_impacts() {
+    impacts_.assign(before_, rows_);
+    std::vector<Gain> gains(impacts_.size());
+    for (const NetworkRow& row : rows_) {
+        if (row.push.normal == 0.0) continue;
+        const auto work_in = [&](const std::vector<NetworkState>& states) {
+            const NetworkState& a = states[row.a];
+            const NetworkState& b = states[row.b];
+            double work = row.push.normal * approach_of(row, a, b) + dot(row.push.tangential, slip_of(row, a, b));
+            if (row.rolling != NetworkRow::kNone) {
+                const RollingRow& rolling = rolling_[row.rolling];
+                work += dot(rolling.moment, rolling_of(row, rolling, a, b));
+            }
+            return work;
+        };
+        const double before = work_in(before_);
+        const double after = work_in(states_);
+        Gain& gain = gains[impacts_.of(row)];
+        gain.against += before - row.push.normal * row.parting;
+        gain.curvature += after - before;
+        gain.size += std::fabs(before) + std::fabs(after);
+    }
+    return gains;
+}
+
+bool NetworkSolver::Gain::is_gain() const { return against + 0.5 * curvature > kNetworkEnergyRounding * size; }
+
+double NetworkSolver::Gain::factor() const { return std::clamp(-2.0 * against / curvature, 0.0, 1.0); }
+
+/// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
+/// them does not.
+void NetworkSolver::take_back_gains(NetworkReport& report) {
+    const std::vector<Gain> gains = gains_of_impacts();
+    report.energy_change = 0.0;
+    bool any = false;
+    for (const Gain& gain : gains) {
+        const double factor = gain.is_gain() ? gain.factor() : 1.0;
+        report.energy_change += factor * (gain.against + 0.5 * factor * gain.curvature);
+        any = any || factor < 1.0;
+    }
+    if (!any) return;
+    report.is_converged = false;
+    const auto factor_of = [&](std::uint32_t impact) { return gains[impact].is_gain() ? gains[impact].factor() : 1.0; };
+    for (NetworkRow& row : rows_) {
+        const double factor = factor_of(impacts_.of(row));
+        row.push.normal *= factor;
+        row.push.tangential *= factor;
+        if (row.rolling != NetworkRow::kNone) rolling_[row.rolling].moment *= factor;
+    }
+    for (std::uint32_t i = 0; i < bodies_; ++i) {
+        const double factor = factor_of(impacts_.of_body(i));
+        if (factor == 1.0) continue;
+        states_[i].velocity = before_[i].velocity + factor * (states_[i].velocity - before_[i].velocity);
+        states_[i].turning = before_[i].turning + factor * (states_[i].turning - before_[i].turning);
+    }
+}
+
+void NetworkSolver::hand_over(std::span<NetworkBody> bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        bodies[i].velocity = states_[i].velocity;
+        if (bodies[i].radius > 0.0) bodies[i].spin = states_[i].turning / bodies[i].radius;
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const NetworkRow& row = rows_[i];
+        NetworkImpulse& impulse = impulses_[coloring_.order()[i]];
+        impulse.normal = row.push.normal;
+        impulse.tangential = row.push.tangential;
+        if (row.rolling != NetworkRow::kNone) impulse.moment = rolling_[row.rolling].moment;
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,233 @@
+#include "ricochet/response/network/network_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
+constexpr std::size_t kBlock = 512;
+
+}  // namespace
+
+NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<const NetworkContact> contacts,
+                                   const NetworkSettings& settings) {
+    NetworkReport report;
+    set_up(bodies, contacts, settings.duration);
+    apply_start();
+    iterate(settings, report);
+    rebound(contacts, settings, report);
+    take_back_gains(report);
+    hand_over(bodies);
+    return report;
+}
+
+void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts,
+                           double duration) {
+    coloring_.assign(bodies.size(), contacts);
+    bodies_ = bodies.size();
+    before_.clear();
+    for (const NetworkBody& body : bodies) {
+        const double turnability = body.radius * body.radius * body.inverse_inertia;
+        before_.push_back({body.velocity, body.radius * body.spin, body.inverse_mass, turnability});
+    }
+    before_.push_back({});  // all walls at rest
+    rows_.clear();
+    rolling_.clear();
+    for (const std::uint32_t i : coloring_.order()) {
+        rows_.push_back(row_of(contacts[i], duration));
+        if (contacts[i].rolling_friction > 0.0) add_rolling(contacts[i], bodies);
+    }
+    states_ = before_;
+    changes_.assign(rows_.size(), {});
+    directions_.assign(rows_.size(), {});
+    impulses_.assign(contacts.size(), {});
+}
+
+NetworkRow NetworkSolver::row_of(const NetworkContact& contact, double duration) {
+    NetworkRow row;
+    row.a = contact.a;
+    row.b = contact.b;
+    if (contact.b == NetworkContact::kWall) {
+        row.b = static_cast<std::uint32_t>(bodies_);
+        if (contact.wall_velocity != Vec3{}) {
+            row.b = static_cast<std::uint32_t>(before_.size());
+            before_.push_back({contact.wall_velocity, {}, 0.0, 0.0});
+        }
+    }
+    row.normal = contact.normal;
+    row.parting = std::max(0.0, -kNetworkPushOut * contact.gap / duration);
+    row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
+    row.friction = contact.friction;
+    const NetworkState& a = before_[row.a];
+    const NetworkState& b = before_[row.b];
+    const double mobility = a.mobility + b.mobility;
+    row.normal_mass = mobility > 0.0 ? 1.0 / mobility : 0.0;
+    row.slip_mass = mobility > 0.0 ? 1.0 / (mobility + a.turnability + b.turnability) : 0.0;
+    row.push.normal = std::max(0.0, contact.start.normal);
+    const Vec3& friction = contact.start.tangential;
+    row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
+    row.rolling = NetworkRow::kNone;
+    return row;
+}
+
+void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies) {
+    NetworkRow& row = rows_.back();
+    RollingRow rolling;
+    rolling.row = static_cast<std::uint32_t>(rows_.size() - 1);
+    rolling.friction = contact.rolling_friction;
+    const auto per_radius = [&](std::uint32_t body) {
+        return body < bodies.size() && bodies[body].radius > 0.0 ? 1.0 / bodies[body].radius : 0.0;
+    };
+    rolling.per_radius_a = per_radius(row.a);
+    rolling.per_radius_b = per_radius(row.b);
+    const auto looseness = [&](std::uint32_t body, double inverse_radius) {
+        return before_[body].turnability * inverse_radius * inverse_radius;
+    };
+    const double loose = looseness(row.a, rolling.per_radius_a) + looseness(row.b, rolling.per_radius_b);
+    if (!(loose > 0.0)) return;
+    rolling.inertia = 1.0 / loose;
+    const Vec3& moment = contact.start.moment;
+    rolling.moment = shortened(moment - dot(moment, row.normal) * row.normal, rolling.friction * row.push.normal);
+    row.rolling = static_cast<std::uint32_t>(rolling_.size());
+    rolling_.push_back(rolling);
+}
+
+/// With as much of the start's impulses as lets energy fall most: none of them where they do not fit any more.
+void NetworkSolver::apply_start() {
+    const double before = gain_of_impulses();
+    for (NetworkRow& row : rows_) {
+        if (row.push.normal == 0.0) continue;
+        apply(row, row.push, states_[row.a], states_[row.b]);
+        if (row.rolling != NetworkRow::kNone)
+            apply_moment(rolling_[row.rolling], rolling_[row.rolling].moment, states_[row.a], states_[row.b]);
+    }
+    const double curvature = gain_of_impulses() - before;
+    if (!(curvature > 0.0)) return;
+    const double factor = std::clamp(-before / curvature, 0.0, 1.0);
+    if (factor == 1.0) return;
+    for (std::size_t i = 0; i < bodies_; ++i) {
+        states_[i].velocity = before_[i].velocity + factor * (states_[i].velocity - before_[i].velocity);
+        states_[i].turning = before_[i].turning + factor * (states_[i].turning - before_[i].turning);
+    }
+    for (NetworkRow& row : rows_) {
+        row.push.normal *= factor;
+        row.push.tangential *= factor;
+    }
+    for (RollingRow& rolling : rolling_) rolling.moment *= factor;
+}
+
+/// J, of all impulses times what they act against.
+double NetworkSolver::gain_of_impulses() const {
+    double sum = 0.0;
+    for (const NetworkRow& row : rows_) {
+        if (row.push.normal == 0.0) continue;
+        const NetworkState& a = states_[row.a];
+        const NetworkState& b = states_[row.b];
+        sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
+        if (row.rolling != NetworkRow::kNone) {
+            const RollingRow& rolling = rolling_[row.rolling];
+            sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
+        }
+    }
+    return sum;
+}
+
+/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before.
+void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& report) {
+    double before = 0.0;
+    for (int k = 1;; ++k) {
+        const SweepChange change = sweep();
+        ++report.sweeps;
+        report.residual = change.worst;
+        const double enough = k < settings.sweeps ? settings.tolerance : std::max(settings.tolerance, settings.enough);
+        report.is_converged = change.worst <= std::max(settings.tolerance, settings.enough);
+        if (change.worst <= enough || k >= settings.most_sweeps) return;
+        if (before > 0.0 && change.squared <= before) {
+            go_on(static_cast<double>(momentum_) / (momentum_ + 3));
+        } else {
+            begin_anew();
+        }
+        before = change.squared;
+    }
+}
+
+template <class Work>
+void NetworkSolver::for_each_color(const Work& work) {
+    for (std::size_t color = 0; color < coloring_.colors(); ++color) {
+        const std::size_t first = coloring_.begin_of(color);
+        const std::size_t count = coloring_.end_of(color) - first;
+        const std::size_t block = coloring_.is_serial(color) ? count : kBlock;
+        parallel_for_blocks(count, block, [&](std::size_t k, std::size_t begin, std::size_t end) {
+            work(k, first + begin, first + end);
+        });
+    }
+}
+
+SweepChange NetworkSolver::sweep() {
+    SweepChange all;
+    for (std::size_t color = 0; color < coloring_.colors(); ++color) {
+        const std::size_t first = coloring_.begin_of(color);
+        const std::size_t count = coloring_.end_of(color) - first;
+        if (count <= kBlock || coloring_.is_serial(color)) {
+            all.add(sweep_rows(first, first + count));
+            continue;
+        }
+        blocks_.assign((count + kBlock - 1) / kBlock, {});
+        parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
+            blocks_[k] = sweep_rows(first + begin, first + end);
+        });
+        for (const SweepChange& block : blocks_) all.add(block);
+    }
+    return all;
+}
+
+SweepChange NetworkSolver::sweep_rows(std::size_t begin, std::size_t end) {
+    SweepChange change;
+    for (std::size_t i = begin; i < end; ++i) {
+        NetworkRow& row = rows_[i];
+        NetworkState& a = states_[row.a];
+        NetworkState& b = states_[row.b];
+        changes_[i] = relax(row, a, b, change);
+        if (row.rolling != NetworkRow::kNone) relax(row, rolling_[row.rolling], a, b, change);
+    }
+    return change;
+}
+
+/// By a factor of what the last sweep and the momentum before it have changed.
+void NetworkSolver::go_on(double factor) {
+    ++momentum_;
+    for_each_color([&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            NetworkRow& row = rows_[i];
+            NetworkPush& direction = directions_[i];
+            NetworkState& a = states_[row.a];
+            NetworkState& b = states_[row.b];
+            const NetworkPush step{factor * direction.normal, factor * direction.tangential};
+            direction = {step.normal + changes_[i].normal, step.tangential + changes_[i].tangential};
+            if (step.normal != 0.0 || step.tangential != Vec3{}) {
+                row.push.normal += step.normal;
+                row.push.tangential += step.tangential;
+                apply(row, step, a, b);
+            }
+            if (row.rolling == NetworkRow::kNone) continue;
+            RollingRow& rolling = rolling_[row.rolling];
+            const Vec3 turn = factor * rolling.direction;
+            rolling.direction = turn + rolling.change;
+            rolling.moment += turn;
+            apply_moment(rolling, turn, a, b);
+        }
+    });
+}
+
+void NetworkSolver::begin_anew() {
+    momentum_ = 1;
+    directions_ = changes_;
+    for (RollingRow& rolling : rolling_) rolling.direction = rolling.change;
+}
+
+}  // namespace ricochet

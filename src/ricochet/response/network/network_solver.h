@@ -1,0 +1,68 @@
+/// \file
+/// Private to the responses: solves a contact network, see contact_network.h.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ricochet/response/network/connected_impacts.h"
+#include "ricochet/response/network/contact_coloring.h"
+#include "ricochet/response/network/contact_network.h"
+#include "ricochet/response/network/network_rows.h"
+
+namespace ricochet {
+
+/// Keeps its memory from one network to the next. Large networks are worked on by all threads; the result has the same
+/// bits for any number of them. It depends on the order of the contacts within the tolerance only.
+class NetworkSolver {
+public:
+    /// Updates the bodies' velocities and spins. Contacts name bodies by their index.
+    NetworkReport solve(std::span<NetworkBody> bodies, std::span<const NetworkContact> contacts,
+                        const NetworkSettings& settings);
+    /// Of the contacts of the last network, in their order.
+    [[nodiscard]] std::span<const NetworkImpulse> impulses() const { return impulses_; }
+
+private:
+    /// Of a connected impact: with the part f of its impulses energy changes by f (against + f curvature / 2), J.
+    struct Gain {
+        double against = 0.0;
+        double curvature = 0.0;
+        double size = 0.0;  ///< J, of which rounding is a part
+
+        [[nodiscard]] bool is_gain() const;
+        /// The largest part of the impulses that gains nothing.
+        [[nodiscard]] double factor() const;
+    };
+
+    void set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts, double duration);
+    [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, double duration);
+    void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
+    void apply_start();
+    [[nodiscard]] double gain_of_impulses() const;
+    void iterate(const NetworkSettings& settings, NetworkReport& report);
+    [[nodiscard]] SweepChange sweep();
+    [[nodiscard]] SweepChange sweep_rows(std::size_t begin, std::size_t end);
+    void go_on(double factor);
+    void begin_anew();
+    template <class Work>
+    void for_each_color(const Work& work);
+    void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
+    [[nodiscard]] std::vector<Gain> gains_of_impacts();
+    void take_back_gains(NetworkReport& report);
+    void hand_over(std::span<NetworkBody> bodies);
+
+    ContactColoring coloring_;
+    std::vector<NetworkState> before_;  // of bodies, then walls
+    std::vector<NetworkState> states_;
+    std::size_t bodies_ = 0;
+    std::vector<NetworkRow> rows_;  // in the order of the colours
+    std::vector<RollingRow> rolling_;
+    std::vector<NetworkPush> changes_;     // of the rows, by the last sweep
+    std::vector<NetworkPush> directions_;  // in which the sweeps go on
+    int momentum_ = 0;                     // sweeps since it last began anew
+    std::vector<SweepChange> blocks_;
+    ConnectedImpacts impacts_;
+    std::vector<NetworkImpulse> impulses_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,385 @@
+#include "ricochet/response/network/network_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kStep = 1e-3;
+const Vec3 kUp{0, 0, 1};
+
+NetworkBody ball(double mass, double radius, const Vec3& velocity = {}, const Vec3& spin = {}) {
+    return {velocity, spin, 1.0 / mass, 2.5 / (mass * radius * radius), radius};
+}
+
+NetworkContact on_wall(std::uint32_t a, const Vec3& normal, double friction = 0.0) {
+    NetworkContact contact;
+    contact.a = a;
+    contact.normal = normal;
+    contact.friction = friction;
+    return contact;
+}
+
+NetworkContact between(std::uint32_t a, std::uint32_t b, const Vec3& normal, double friction = 0.0) {
+    NetworkContact contact = on_wall(a, normal, friction);
+    contact.b = b;
+    return contact;
+}
+
+NetworkSettings exactly(double tolerance = 1e-15) {
+    NetworkSettings settings;
+    settings.duration = kStep;
+    settings.tolerance = tolerance;
+    return settings;
+}
+
+double kinetic_energy(const std::vector<NetworkBody>& bodies) {
+    double sum = 0.0;
+    for (const NetworkBody& body : bodies) {
+        sum += 0.5 * length_squared(body.velocity) / body.inverse_mass;
+        if (body.inverse_inertia > 0.0) sum += 0.5 * length_squared(body.spin) / body.inverse_inertia;
+    }
+    return sum;
+}
+
+Vec3 momentum(const std::vector<NetworkBody>& bodies) {
+    Vec3 sum;
+    for (const NetworkBody& body : bodies) sum += body.velocity / body.inverse_mass;
+    return sum;
+}
+
+/// Balls at random places that overlap little, which fly anyhow; those that are near each other touch or nearly do.
+struct Heap {
+    std::vector<NetworkBody> bodies;
+    std::vector<Vec3> centers;
+    std::vector<NetworkContact> contacts;
+};
+
+Heap random_heap(std::uint64_t seed, std::size_t count, bool with_walls) {
+    RandomSequence random(seed, 0, 0);
+    Heap heap;
+    const double size = 2.1 * std::cbrt(static_cast<double>(count));
+    while (heap.centers.size() < count) {
+        const double radius = 0.5 + random.uniform();
+        const Vec3 center{size * random.uniform(), size * random.uniform(), size * random.uniform()};
+        bool is_free = true;
+        for (std::size_t k = 0; k < heap.centers.size(); ++k) {
+            is_free = is_free && length(heap.centers[k] - center) > 0.95 * (heap.bodies[k].radius + radius);
+        }
+        if (!is_free) continue;
+        const Vec3 velocity = 2.0 * random.unit_vector() - Vec3{0, 0, 1};
+        heap.bodies.push_back(ball(radius * radius * radius, radius, velocity, 3.0 * random.unit_vector()));
+        heap.centers.push_back(center);
+    }
+    const double friction = random.uniform() < 0.3 ? 0.0 : random.uniform();
+    for (std::uint32_t a = 0; a < count; ++a) {
+        for (std::uint32_t b = 0; b < a; ++b) {
+            const Vec3 apart = heap.centers[a] - heap.centers[b];
+            const double gap = length(apart) - heap.bodies[a].radius - heap.bodies[b].radius;
+            if (gap > 0.3) continue;
+            NetworkContact contact = between(a, b, normalized(apart), friction);
+            contact.gap = std::max(gap, 0.0) * random.uniform();
+            if (random.uniform() < 0.5) contact.gap = 0.0;
+            contact.rolling_friction = random.uniform() < 0.3 ? 0.1 * heap.bodies[b].radius : 0.0;
+            contact.restitution = random.uniform();
+            contact.touched = random.uniform() < 0.2;
+            heap.contacts.push_back(contact);
+        }
+        if (with_walls && heap.centers[a].z < 1.5) {
+            NetworkContact floor = on_wall(a, kUp, friction);
+            floor.restitution = random.uniform();
+            heap.contacts.push_back(floor);
+        }
+    }
+    return heap;
+}
+
+/// The largest violation of the conditions that a contact has to meet without a rebound, m/s.
+double defect(const NetworkContact& contact, const NetworkImpulse& impulse, const std::vector<NetworkBody>& bodies) {
+    const NetworkBody& a = bodies[contact.a];
+    Vec3 u = a.velocity - a.radius * cross(a.spin, contact.normal) - contact.wall_velocity;
+    double mobility = a.inverse_mass;
+    if (contact.b != NetworkContact::kWall) {
+        const NetworkBody& b = bodies[contact.b];
+        u -= b.velocity + b.radius * cross(b.spin, contact.normal);
+        mobility += b.inverse_mass;
+    }
+    const double opening = dot(u, contact.normal) + contact.gap / kStep;
+    const Vec3 slip = u - dot(u, contact.normal) * contact.normal;
+    double worst = std::max(0.0, -opening);
+    worst = std::max(worst, std::min(opening, impulse.normal * mobility));
+    const double most = contact.friction * impulse.normal;
+    EXPECT_GE(impulse.normal, 0.0);
+    EXPECT_LE(length(impulse.tangential), most * (1.0 + 1e-12));
+    // Slip: friction is at its bound and against it; else there is none.
+    const Vec3 wish = impulse.tangential - slip / mobility;
+    const Vec3 cut = length(wish) > most ? (most / length(wish)) * wish : wish;
+    return std::max(worst, length(cut - impulse.tangential) * mobility);
+}
+
+TEST(NetworkSolver, BallOnAFloorIsHeldByItsWeight) {
+    std::vector<NetworkBody> bodies{ball(2.0, 0.1, {0, 0, -kGravity * kStep})};
+    const std::vector<NetworkContact> contacts{on_wall(0, kUp)};
+    NetworkSolver solver;
+    const NetworkReport report = solver.solve(bodies, contacts, exactly());
+    EXPECT_TRUE(report.is_converged);
+    EXPECT_NEAR(solver.impulses()[0].normal, 2.0 * kGravity * kStep, 1e-15);
+    EXPECT_LT(max_abs(bodies[0].velocity), 1e-15);
+}
+
+TEST(NetworkSolver, WhatIsLeftOfAGapIsFallenThrough) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -3})};
+    std::vector<NetworkContact> contacts{on_wall(0, kUp)};
+    contacts[0].gap = 2e-3;
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.z, -2.0, 1e-13);
+    contacts[0].gap = 4e-3;
+    bodies[0].velocity = {0, 0, -3};
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_EQ(bodies[0].velocity.z, -3.0);
+    EXPECT_EQ(solver.impulses()[0].normal, 0.0);
+}
+
+TEST(NetworkSolver, ForcesInAColumnAreTheWeightsAbove) {
+    constexpr std::uint32_t kCount = 20;
+    std::vector<NetworkBody> bodies(kCount, ball(0.3, 0.05, {0, 0, -kGravity * kStep}));
+    std::vector<NetworkContact> contacts{on_wall(0, kUp, 0.4)};
+    for (std::uint32_t i = 1; i < kCount; ++i) contacts.push_back(between(i, i - 1, kUp, 0.4));
+    NetworkSolver solver;
+    EXPECT_TRUE(solver.solve(bodies, contacts, exactly(1e-15)).is_converged);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const double weights = (kCount - i) * 0.3 * kGravity * kStep;
+        EXPECT_NEAR(solver.impulses()[i].normal, weights, 1e-9 * weights);
+    }
+}
+
+TEST(NetworkSolver, WallsOfAGrooveShareABall) {
+    // Walls at angles A and B to the horizontal: N_A sin A = N_B sin B, N_A cos A + N_B cos B = m g.
+    const double a = 0.6;
+    const double b = 1.1;
+    std::vector<NetworkBody> bodies{ball(1.5, 0.1, {0, 0, -kGravity * kStep})};
+    const std::vector<NetworkContact> contacts{on_wall(0, {std::sin(a), 0, std::cos(a)}),
+                                               on_wall(0, {-std::sin(b), 0, std::cos(b)})};
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    const double weight = 1.5 * kGravity * kStep;
+    EXPECT_NEAR(solver.impulses()[0].normal, weight * std::sin(b) / std::sin(a + b), 1e-12);
+    EXPECT_NEAR(solver.impulses()[1].normal, weight * std::sin(a) / std::sin(a + b), 1e-12);
+}
+
+/// A ball on an incline rolls where friction is 2/7 of the slope's tangent, and slips below.
+TEST(NetworkSolver, FrictionOnAnInclineAtTheEdgeOfItsCone) {
+    const double angle = 0.5;
+    const Vec3 normal{std::sin(angle), 0, std::cos(angle)};
+    const Vec3 down{std::cos(angle), 0, -std::sin(angle)};
+    const double edge = 2.0 / 7.0 * std::tan(angle);
+    for (const double part : {0.0, 0.5, 1.0 - 1e-9, 1.0 + 1e-9, 2.0}) {
+        std::vector<NetworkBody> bodies{ball(1.0, 0.2, {0, 0, -kGravity * kStep})};
+        const std::vector<NetworkContact> contacts{on_wall(0, normal, part * edge)};
+        NetworkSolver solver;
+        static_cast<void>(solver.solve(bodies, contacts, exactly()));
+        const double fall = kGravity * std::sin(angle) * kStep;
+        const double expected = part < 1.0 ? fall * (1.0 - 2.0 / 7.0 * part) : 5.0 / 7.0 * fall;
+        EXPECT_NEAR(dot(bodies[0].velocity, down), expected, 1e-14) << part;
+        EXPECT_NEAR(dot(bodies[0].velocity, normal), 0.0, 1e-15);
+    }
+}
+
+TEST(NetworkSolver, RollingFrictionHoldsABallOnAnInclineUpToItsTangent) {
+    const double angle = 0.1;
+    const Vec3 normal{std::sin(angle), 0, std::cos(angle)};
+    for (const double part : {0.99, 1.01}) {
+        std::vector<NetworkBody> bodies{ball(1.0, 0.2, {0, 0, -kGravity * kStep})};
+        std::vector<NetworkContact> contacts{on_wall(0, normal, 1.0)};
+        contacts[0].rolling_friction = part * 0.2 * std::tan(angle);
+        NetworkSolver solver;
+        static_cast<void>(solver.solve(bodies, contacts, exactly()));
+        // Beyond: m g sin r - moment = 7/5 m r^2 alpha.
+        const double rolls =
+            kGravity * kStep * (std::sin(angle) - part * std::tan(angle) * std::cos(angle)) * 5.0 / 7.0;
+        EXPECT_NEAR(length(bodies[0].velocity), std::max(0.0, rolls), 1e-13) << part;
+    }
+}
+
+TEST(NetworkSolver, MaterialThatMovesCarriesWhatLiesOnIt) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.2, {0, 0, -kGravity * kStep})};
+    std::vector<NetworkContact> contacts{on_wall(0, kUp, 0.1)};
+    contacts[0].wall_velocity = {3, 0, 0};
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.x, 0.1 * kGravity * kStep, 1e-15);
+    contacts[0].wall_velocity = {0, 0, 0.5};  // a wall that comes
+    bodies[0] = ball(1.0, 0.2, {0, 0, -kGravity * kStep});
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.z, 0.5, 1e-15);
+}
+
+TEST(NetworkSolver, AnImpactReboundsByItsRestitution) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.1, {2, 0, 0}), ball(3.0, 0.1, {-1, 0, 0})};
+    std::vector<NetworkContact> contacts{between(0, 1, {-1, 0, 0})};
+    contacts[0].restitution = 0.7;
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.x - bodies[1].velocity.x, -0.7 * 3.0, 1e-13);
+    EXPECT_NEAR(momentum({bodies[0], bodies[1]}).x, -1.0, 1e-13);
+    contacts[0].touched = true;  // it presses
+    bodies = {ball(1.0, 0.1, {2, 0, 0}), ball(3.0, 0.1, {-1, 0, 0})};
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.x, -0.25, 1e-13);
+    EXPECT_NEAR(bodies[1].velocity.x, -0.25, 1e-13);
+}
+
+/// Moreau's law with e = 1: what is touched by the ball that is hit goes on with it as one body, and no energy is lost.
+TEST(NetworkSolver, ARowThatIsHitAtOneEndAnswersAsOneBody) {
+    constexpr std::uint32_t kCount = 6;
+    std::vector<NetworkBody> bodies(kCount, ball(0.2, 0.1));
+    bodies[0].velocity = {1, 0, 0};
+    std::vector<NetworkContact> contacts;
+    for (std::uint32_t i = 1; i < kCount; ++i) {
+        contacts.push_back(between(i - 1, i, {-1, 0, 0}));
+        contacts.back().restitution = 1.0;
+        contacts.back().touched = i > 1;
+    }
+    NetworkSolver solver;
+    const double before = kinetic_energy(bodies);
+    EXPECT_TRUE(solver.solve(bodies, contacts, exactly(1e-15)).is_converged);
+    EXPECT_NEAR(bodies[0].velocity.x, 2.0 / kCount - 1.0, 1e-12);
+    for (std::uint32_t i = 1; i < kCount; ++i) EXPECT_NEAR(bodies[i].velocity.x, 2.0 / kCount, 1e-12);
+    EXPECT_NEAR(kinetic_energy(bodies), before, 1e-12 * before);
+}
+
+TEST(NetworkSolver, TheSmallestRestitutionCountsInEachConnectedImpactAlone) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1})};
+    std::vector<NetworkContact> contacts{on_wall(0, kUp), on_wall(1, kUp), between(2, 1, kUp)};
+    contacts[0].restitution = 0.9;
+    contacts[1].restitution = 0.5;
+    contacts[2].restitution = 0.8;
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_NEAR(bodies[0].velocity.z, 0.9, 1e-12);
+    EXPECT_NEAR(bodies[1].velocity.z, 0.5, 1e-12);
+    EXPECT_NEAR(bodies[2].velocity.z, 0.5, 1e-12);  // it did not approach the other, which comes
+}
+
+TEST(NetworkSolver, PartsWhatOverlapsByHalfOfIt) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.1), ball(1.0, 0.1)};
+    std::vector<NetworkContact> contacts{between(0, 1, kUp)};
+    contacts[0].gap = -1e-6;
+    NetworkSolver solver;
+    const NetworkReport report = solver.solve(bodies, contacts, exactly());
+    EXPECT_NEAR(kStep * (bodies[0].velocity.z - bodies[1].velocity.z), kNetworkPushOut * 1e-6, 1e-18);
+    EXPECT_TRUE(report.is_converged);
+}
+
+TEST(NetworkSolver, MeetsTheConditionsOfRandomHeaps) {
+    NetworkSolver solver;
+    for (int seed = 0; seed < test::scaled(200); ++seed) {
+        SCOPED_TRACE(seed);
+        Heap heap = random_heap(static_cast<std::uint64_t>(seed), 60, true);
+        for (NetworkContact& contact : heap.contacts) contact.rolling_friction = contact.restitution = 0.0;
+        const NetworkReport report = solver.solve(heap.bodies, heap.contacts, exactly(1e-11));
+        EXPECT_TRUE(report.is_converged) << report.residual;
+        for (std::size_t i = 0; i < heap.contacts.size(); ++i) {
+            EXPECT_LT(defect(heap.contacts[i], solver.impulses()[i], heap.bodies), 1e-10);
+        }
+    }
+}
+
+TEST(NetworkSolver, NeverAddsEnergyEvenWhereSweepsEndEarly) {
+    NetworkSolver solver;
+    for (int seed = 0; seed < test::scaled(600); ++seed) {
+        SCOPED_TRACE(seed);
+        Heap heap = random_heap(static_cast<std::uint64_t>(seed), 40, true);
+        RandomSequence random(static_cast<std::uint64_t>(seed), 1, 0);
+        for (NetworkContact& contact : heap.contacts) {  // starts that fit to nothing
+            contact.start.normal = random.uniform() < 0.5 ? 0.0 : 3.0 * random.uniform();
+            contact.start.tangential = 3.0 * random.unit_vector();
+        }
+        NetworkSettings settings = exactly(1e-10);
+        settings.most_sweeps = seed % 3 == 0 ? 1 + seed % 7 : 2000;
+        const double before = kinetic_energy(heap.bodies);
+        const NetworkReport report = solver.solve(heap.bodies, heap.contacts, settings);
+        EXPECT_LE(kinetic_energy(heap.bodies), before * (1.0 + 1e-12));
+        EXPECT_NEAR(kinetic_energy(heap.bodies) - before, report.energy_change, 1e-11 * before);
+    }
+}
+
+TEST(NetworkSolver, KeepsMomentum) {
+    NetworkSolver solver;
+    for (int seed = 0; seed < test::scaled(100); ++seed) {
+        SCOPED_TRACE(seed);
+        Heap heap = random_heap(static_cast<std::uint64_t>(seed), 60, false);
+        double size = 0.0;
+        for (const NetworkBody& body : heap.bodies) size += length(body.velocity) / body.inverse_mass;
+        const Vec3 before = momentum(heap.bodies);
+        static_cast<void>(solver.solve(heap.bodies, heap.contacts, exactly(1e-10)));
+        EXPECT_LT(length(momentum(heap.bodies) - before), 1e-12 * size);
+    }
+}
+
+TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
+    const Heap heap = random_heap(5, 3000, true);
+    ASSERT_GT(heap.contacts.size(), 3000U);
+    std::vector<NetworkBody> expected;
+    for (const int threads : {1, 2, 7}) {
+        const ThreadLimit limit(threads);
+        std::vector<NetworkBody> bodies = heap.bodies;
+        NetworkSolver solver;
+        NetworkSettings settings = exactly(1e-6);
+        settings.most_sweeps = 60;
+        static_cast<void>(solver.solve(bodies, heap.contacts, settings));
+        if (expected.empty()) expected = bodies;
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            EXPECT_EQ(bodies[i].velocity, expected[i].velocity);
+            EXPECT_EQ(bodies[i].spin, expected[i].spin);
+        }
+    }
+}
+
+/// Without friction the velocities are unique; how rigid contacts share their load is not.
+TEST(NetworkSolver, OrderOfContactsChangesVelocitiesWithinTheToleranceOnly) {
+    NetworkSolver solver;
+    for (int seed = 0; seed < test::scaled(30); ++seed) {
+        SCOPED_TRACE(seed);
+        const Heap heap = random_heap(static_cast<std::uint64_t>(seed), 60, true);
+        std::vector<NetworkContact> contacts = heap.contacts;
+        for (NetworkContact& contact : contacts) {
+            contact.friction = contact.rolling_friction = contact.restitution = 0.0;
+        }
+        std::vector<NetworkBody> bodies = heap.bodies;
+        static_cast<void>(solver.solve(bodies, contacts, exactly(1e-12)));
+        std::reverse(contacts.begin(), contacts.end());
+        std::rotate(contacts.begin(), contacts.begin() + 7, contacts.end());
+        std::vector<NetworkBody> others = heap.bodies;
+        static_cast<void>(solver.solve(others, contacts, exactly(1e-12)));
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            EXPECT_LT(length(bodies[i].velocity - others[i].velocity), 1e-9);
+        }
+    }
+}
+
+TEST(NetworkSolver, AWarmStartThatFitsNeedsOneSweep) {
+    Heap heap = random_heap(8, 100, true);
+    for (NetworkContact& contact : heap.contacts) contact.restitution = 0.0;
+    std::vector<NetworkBody> bodies = heap.bodies;
+    NetworkSolver solver;
+    const int cold = solver.solve(bodies, heap.contacts, exactly(1e-10)).sweeps;
+    for (std::size_t i = 0; i < heap.contacts.size(); ++i) heap.contacts[i].start = solver.impulses()[i];
+    bodies = heap.bodies;
+    EXPECT_EQ(solver.solve(bodies, heap.contacts, exactly(1e-9)).sweeps, 1);
+    EXPECT_GT(cold, 10);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,168 @@
+#include "ricochet/response/network/network_island.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/network/planned_move.h"
+
+namespace ricochet {
+namespace {
+
+/// Sweeps over the contacts of an island that are made at most, where a small error is left and where a large one is.
+constexpr int kSweeps = 30;
+constexpr int kMostSweeps = 300;
+
+/// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
+constexpr double kSlow = 0.1;
+
+/// Part of a radius beside it in which contacts are looked for even where nothing moves.
+constexpr double kReach = 0.05;
+
+Vec3 velocity_of(const NetworkMember& member) { return member.is_fixed ? Vec3{} : member.moving->state.velocity; }
+
+}  // namespace
+
+NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
+                                  std::span<const std::array<std::uint32_t, 2>> pairs, double duration,
+                                  const NetworkMemory& memory, MoveScratch& scratch) {
+    duration_ = duration;
+    contacts_.clear();
+    keys_.clear();
+    add_bodies(members);
+    add_pairs(members, pairs, memory);
+    add_walls(members, memory, scratch);
+    return solver_.solve(bodies_, contacts_, settings(members));
+}
+
+void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
+    bodies_.clear();
+    for (const NetworkMember& member : members) {
+        const ForceInput& state = member.moving->state;
+        NetworkBody body;
+        body.radius = member.radius;
+        if (member.is_fixed) {
+            body.inverse_mass = 0.0;
+        } else {
+            body.velocity = state.velocity + duration_ * rules_.forces.acceleration(state);
+            body.spin = (state.radius / member.radius) * member.moving->spin;
+            body.inverse_mass = 1.0 / state.mass;
+            body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
+        }
+        bodies_.push_back(body);
+    }
+}
+
+void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
+                              std::span<const std::array<std::uint32_t, 2>> pairs, const NetworkMemory& memory) {
+    for (const auto& [first, second] : pairs) {
+        if (members[first].is_fixed && members[second].is_fixed) continue;
+        const bool in_order = members[first].moving->id < members[second].moving->id;
+        NetworkContact contact;
+        contact.a = in_order ? first : second;
+        contact.b = in_order ? second : first;
+        const NetworkMember& a = members[contact.a];
+        const NetworkMember& b = members[contact.b];
+        const Vec3 apart = a.moving->state.position - b.moving->state.position;
+        const double distance = length(apart);
+        if (!(distance > 0.0)) continue;  // no direction parts them
+        contact.gap = distance - a.radius - b.radius;
+        const double near = reach(bodies_[contact.a].velocity, a.radius, duration_) +
+                            reach(bodies_[contact.b].velocity, b.radius, duration_);
+        if (contact.gap > near) continue;
+        contact.normal = apart / distance;
+        contact.friction = law_.friction;
+        contact.rolling_friction = law_.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
+        const Vec3 arriving = velocity_of(a) - velocity_of(b);
+        const double approach = -dot(arriving, contact.normal);
+        contact.restitution = rebound(law_.restitution, approach);
+        warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id), memory);
+    }
+}
+
+void NetworkIsland::add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory,
+                              MoveScratch& scratch) {
+    const SurfaceGeometry geometry(rules_.world, scratch.contacts.plane_cache);
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+        if (members[i].is_fixed) continue;
+        const ForceInput& state = members[i].moving->state;
+        walls_.clear();
+        find_wall_contacts(geometry, state.position, state.radius, reach(bodies_[i].velocity, state.radius, duration_),
+                           walls_);
+        for (const WallContact& wall : walls_) add_wall(i, members[i], wall, memory);
+    }
+}
+
+void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
+                             const NetworkMemory& memory) {
+    const ForceInput& state = member.moving->state;
+    const Material& material = rules_.materials[rules_.world.material_of(wall.surface)];
+    NetworkContact contact;
+    contact.a = index;
+    contact.normal = wall.normal;
+    contact.gap = wall.gap;
+    contact.friction = material.friction;
+    contact.rolling_friction = material.rolling_friction * state.radius;
+    if (material.drives()) {
+        const Vec3 foot = state.position - (state.radius + wall.gap) * wall.normal;
+        contact.wall_velocity = material.motion.at(foot, wall.normal);
+    }
+    const double approach = -dot(state.velocity, wall.normal);
+    contact.restitution = rebound(material.restitution_at(approach), approach);
+    warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface), memory);
+}
+
+void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory) {
+    if (const NetworkImpulse* const before = memory.find(key)) {
+        contact.start = *before;
+        contact.touched = before->normal > 0.0;
+    }
+    contacts_.push_back(contact);
+    keys_.push_back(key);
+}
+
+/// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
+/// of an impact.
+double NetworkIsland::rebound(double restitution, double approach) const {
+    return restitution * approach >= rules_.settings.resting_speed ? restitution : 0.0;
+}
+
+/// What moves fast may be less exact; what comes to rest is solved ever more closely.
+NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) const {
+    double fastest = 0.0;
+    double smallest = INFINITY;
+    for (const NetworkMember& member : members) {
+        if (member.is_fixed) continue;
+        fastest = std::max(fastest, length(member.moving->state.velocity));
+        smallest = std::min(smallest, member.radius);
+    }
+    NetworkSettings settings;
+    settings.duration = duration_;
+    const double still = kNetworkStill * smallest / duration_;
+    settings.enough = std::min(kNetworkOverlap * smallest / duration_, std::max(kSlow * fastest, still));
+    settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * fastest, still));
+    settings.sweeps = kSweeps;
+    settings.most_sweeps = kMostSweeps;
+    return settings;
+}
+
+void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const {
+    if (member.is_fixed) return;
+    const double core = member.moving->state.radius;  // which turns faster than the whole sphere
+    const Vec3 spin = core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{};
+    member.outcome = move_as_planned(rules_, *member.moving, bodies_[index].velocity, spin, duration_, scratch);
+}
+
+std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
+    std::vector<NetworkMemory::Entry> entries;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        if (solver_.impulses()[i].normal > 0.0) entries.push_back({keys_[i], solver_.impulses()[i]});
+    }
+    return entries;
+}
+
+double NetworkIsland::reach(const Vec3& velocity, double radius, double duration) {
+    return 2.0 * duration * length(velocity) + kReach * radius;
+}
+
+}  // namespace ricochet

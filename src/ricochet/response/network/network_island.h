@@ -1,0 +1,75 @@
+/// \file
+/// Private to the responses: spheres that are moved over a step together, by the problem of all their contacts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ricochet/response/network/network_memory.h"
+#include "ricochet/response/network/network_solver.h"
+#include "ricochet/response/network/wall_contacts.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// What spheres do to each other.
+struct PairLaw {
+    double restitution = 1.0;       ///< 0..1
+    double friction = 0.0;          ///< Coulomb's coefficient
+    double rolling_friction = 0.0;  ///< moment over reduced radius times normal impulse
+};
+
+/// One of the spheres.
+struct NetworkMember {
+    MovingParticle* moving = nullptr;
+    double radius = 0.0;    ///< m, as others meet it
+    bool is_fixed = false;  ///< nothing moves it
+    // Out:
+    MoveOutcome outcome{};
+};
+
+/// Plans with the velocities that forces give the spheres within the step (symplectic Euler's), finds their contacts
+/// with each other and with walls, solves them, and moves each sphere along its plan. Keeps its memory from one island
+/// to the next. Among colliders at rest.
+class NetworkIsland {
+public:
+    /// rules must outlive it.
+    NetworkIsland(const ResponseRules& rules, const PairLaw& law) : rules_(rules), law_(law) {}
+
+    /// Plans a step of `duration` seconds. pairs: those that may touch within it, by their numbers. memory: of the last
+    /// step.
+    NetworkReport plan(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
+                       double duration, const NetworkMemory& memory, MoveScratch& scratch);
+    /// Moves one of the members, by its number, as it has been planned. Several threads may move different ones.
+    void move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const;
+
+    /// What the contacts of the last plan do, for the memory of the next step.
+    [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
+    /// m, how far beside its surface a sphere's contacts are looked for: whatever pushes it, it hardly comes farther.
+    [[nodiscard]] static double reach(const Vec3& velocity, double radius, double duration);
+
+private:
+    void add_bodies(std::span<const NetworkMember> members);
+    void add_pairs(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
+                   const NetworkMemory& memory);
+    void add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory, MoveScratch& scratch);
+    void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
+                  const NetworkMemory& memory);
+    void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
+    [[nodiscard]] double rebound(double restitution, double approach) const;
+    [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
+
+    const ResponseRules& rules_;
+    PairLaw law_;
+    double duration_ = 0.0;
+    std::vector<NetworkBody> bodies_;
+    std::vector<NetworkContact> contacts_;
+    std::vector<NetworkKey> keys_;  // of the contacts
+    std::vector<WallContact> walls_;
+    NetworkSolver solver_;
+};
+
+}  // namespace ricochet

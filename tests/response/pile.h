@@ -1,0 +1,121 @@
+/// \file
+/// Spheres that are moved together by the problem of their contacts, step by step, without a simulation.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "response/course.h"
+#include "ricochet/response/network/network_island.h"
+
+namespace ricochet::testing {
+
+class Pile {
+public:
+    static constexpr double kGravity = 9.81;
+
+    Pile(std::vector<ColliderDescription> colliders, const Material& material, const PairLaw& law)
+        : course_(std::move(colliders), material, {0, 0, -kGravity}), island_(course_.response->rules(), law) {}
+
+    /// Of density 2500 kg/m^3.
+    void add(const Vec3& center, double radius, const Vec3& velocity = {}) {
+        course_.world.prepare_radius(radius);
+        MovingParticle particle;
+        particle.state.position = center;
+        particle.state.velocity = velocity;
+        particle.state.mass = 2500.0 * 4.18879020478639 * radius * radius * radius;
+        particle.state.radius = radius;
+        particle.id = particles_.size();
+        particles_.push_back(particle);
+    }
+
+    void step(double duration) {
+        std::vector<NetworkMember> members;
+        for (MovingParticle& particle : particles_) members.push_back({&particle, particle.state.radius, false, {}});
+        course_.scratch.segments.clear();
+        course_.scratch.record_segments = true;
+        const NetworkReport report = island_.plan(members, pairs(duration), duration, memory_, course_.scratch);
+        unsolved += report.is_converged ? 0 : 1;
+        sweeps += report.sweeps;
+        memory_.replace(island_.entries());
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            island_.move(i, members[i], course_.scratch);
+            unsimulated += members[i].outcome.unsimulated_time;
+        }
+        measure();
+    }
+    void run(double time, double duration) {
+        for (int k = 0; k * duration < time; ++k) step(duration);
+    }
+
+    [[nodiscard]] std::vector<MovingParticle>& particles() { return particles_; }
+    [[nodiscard]] std::vector<Vec3> centers() const {
+        std::vector<Vec3> all;
+        for (const MovingParticle& particle : particles_) all.push_back(particle.state.position);
+        return all;
+    }
+    [[nodiscard]] double fastest() const {
+        double most = 0.0;
+        for (const MovingParticle& particle : particles_) most = std::max(most, length(particle.state.velocity));
+        return most;
+    }
+    [[nodiscard]] double energy() const {
+        double sum = 0.0;
+        for (const MovingParticle& p : particles_) {
+            const double turning = 0.4 * p.state.radius * p.state.radius * length_squared(p.spin);
+            sum += p.state.mass * (0.5 * (length_squared(p.state.velocity) + turning) + kGravity * p.state.position.z);
+        }
+        return sum;
+    }
+
+    double overlap = 0.0;  ///< the largest after the last step, over the smaller radius
+    int unsolved = 0;
+    int sweeps = 0;
+    double unsimulated = 0.0;
+
+private:
+    /// By columns along x.
+    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> pairs(double duration) const {
+        std::vector<std::pair<double, std::uint32_t>> begins;
+        const auto half = [&](const MovingParticle& p) {
+            return p.state.radius + NetworkIsland::reach(p.state.velocity, p.state.radius, duration);
+        };
+        for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+            begins.emplace_back(particles_[i].state.position.x - half(particles_[i]), i);
+        }
+        std::sort(begins.begin(), begins.end());
+        std::vector<std::array<std::uint32_t, 2>> found;
+        for (std::size_t n = 0; n < begins.size(); ++n) {
+            const std::uint32_t i = begins[n].second;
+            const double end = particles_[i].state.position.x + half(particles_[i]);
+            for (std::size_t m = n + 1; m < begins.size() && begins[m].first <= end; ++m) {
+                const std::uint32_t j = begins[m].second;
+                const Vec3 apart = particles_[i].state.position - particles_[j].state.position;
+                if (length(apart) < half(particles_[i]) + half(particles_[j])) {
+                    found.push_back({std::min(i, j), std::max(i, j)});
+                }
+            }
+        }
+        std::sort(found.begin(), found.end());
+        return found;
+    }
+    void measure() {
+        overlap = 0.0;
+        for (const auto& [i, j] : pairs(0.0)) {
+            const ForceInput& a = particles_[i].state;
+            const ForceInput& b = particles_[j].state;
+            const double deep = a.radius + b.radius - length(a.position - b.position);
+            overlap = std::max(overlap, deep / std::min(a.radius, b.radius));
+        }
+    }
+
+    Course course_;
+    NetworkIsland island_;
+    NetworkMemory memory_;
+    std::vector<MovingParticle> particles_;
+};
+
+}  // namespace ricochet::testing

@@ -40,6 +40,7 @@ install(FILES docs/scene.schema.json DESTINATION ${ricochet_data_dir})
 install(DIRECTORY scenes DESTINATION ${ricochet_data_dir})
 # What documents link to lies beside them.
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES third_party/three/LICENSE third_party/three/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party/three)
 install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
 # Scenes name meshes beside their folder.
 install(DIRECTORY meshes DESTINATION ${ricochet_data_dir} FILES_MATCHING PATTERN *.obj PATTERN README.md PATTERN generators EXCLUDE)

@@ -8,6 +8,7 @@ packages_build=(
     libfmt-dev libcli11-dev nlohmann-json3-dev # text, command line, scene files
     libstb-dev                                 # PNG
     libboost-dev                               # whole numbers of any length, for the verifier
+    zlib1g-dev                                 # pages for browsers
     libeigen3-dev                              # sparse matrices, for the implicit integrator
 )
 packages_test=(libgtest-dev libbenchmark-dev pkgconf)
@@ -15,7 +16,7 @@ packages_format=(clang-format)
 packages_tidy=(clang-tidy)
 packages_clang=(clang)
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
-packages_optional=(ffmpeg gnuplot-nox python3-vtk9)
+packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium)
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.
 

@@ -29,4 +29,7 @@ void add_run_command(cli::Command program, int& exit_code);
 /// `schema [--markdown]`: the scene format for editors and for people.
 void add_schema_command(cli::Command program, int& exit_code);
 
+/// `view DIR|SCENE [--output FILE.html]`: one file that shows a run in a browser; runs a scene first.
+void add_view_command(cli::Command program, int& exit_code);
+
 }  // namespace ricochet

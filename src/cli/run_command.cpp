@@ -15,6 +15,7 @@
 
 #include "cli/arguments.h"
 #include "cli/interrupts.h"
+#include "cli/run_scene.h"
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
@@ -29,19 +30,8 @@ namespace ricochet {
 namespace {
 
 using cli::InterruptGuard;
+using cli::RunArguments;
 using Clock = std::chrono::steady_clock;
-
-// The arguments as they stand on the command line.
-struct RunArguments {
-    cli::SceneArguments scene;
-    std::string output;
-    std::string output_state;
-    std::string threads;
-    std::string response;
-    bool quiet = false;
-    bool resume = false;
-    bool verify = false;
-};
 
 // Not below 0: a clock may be put back under a run that goes on for days.
 double seconds_since(Clock::time_point start) {
@@ -240,7 +230,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, const OutputDire
     return checkpoint;
 }
 
-SceneDescription load_scene(const RunArguments& arguments) {
+SceneDescription scene_of(const RunArguments& arguments) {
     cli::SceneArguments wanted = arguments.scene;
     if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
     SceneDescription scene = cli::load_scene(wanted);
@@ -263,9 +253,31 @@ void complete(RunSummary& summary, const RunInfo& info, const RunPlan& plan) {
     summary.wall_seconds = plan.seconds();
 }
 
-int run(const RunArguments& arguments) {
+void add_options(cli::Command command, RunArguments& a) {
+    cli::add_scene_arguments(command, a.scene);
+    command.add_option("--output", a.output, "Folder for frames and summary: new, empty, or an earlier run's")
+        .type_name("DIR")
+        .required();
+    command
+        .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
+        .type_name("FILE.csv");
+    command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
+    command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
+        .type_name("exact|rollback|project|penalty");
+    command.add_flag("--quiet", a.quiet, "No progress, no report");
+    command.add_flag(
+        "--verify", a.verify,
+        "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
+        "with 1");
+    command.add_flag("--resume", a.resume,
+                     "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
+}
+
+}  // namespace
+
+int cli::run_scene(const RunArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
-    SceneDescription scene = load_scene(arguments);
+    SceneDescription scene = scene_of(arguments);
     check_target(arguments.output_state, scene, arguments.output);
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
@@ -302,33 +314,11 @@ int run(const RunArguments& arguments) {
     return summary.interrupted ? cli::kSignalled + InterruptGuard::signal() : 0;
 }
 
-void add_options(cli::Command command, RunArguments& a) {
-    cli::add_scene_arguments(command, a.scene);
-    command.add_option("--output", a.output, "Folder for frames and summary: new, empty, or an earlier run's")
-        .type_name("DIR")
-        .required();
-    command
-        .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
-        .type_name("FILE.csv");
-    command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
-    command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
-        .type_name("exact|rollback|project|penalty");
-    command.add_flag("--quiet", a.quiet, "No progress, no report");
-    command.add_flag(
-        "--verify", a.verify,
-        "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
-        "with 1");
-    command.add_flag("--resume", a.resume,
-                     "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
-}
-
-}  // namespace
-
 void add_run_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<RunArguments>();
     cli::Command command = program.add_command("run", "Simulate a scene; write frames and a summary");
     add_options(command, *arguments);
-    command.on_call([arguments, &exit_code] { exit_code = run(*arguments); });
+    command.on_call([arguments, &exit_code] { exit_code = cli::run_scene(*arguments); });
 }
 
 }  // namespace ricochet

@@ -36,6 +36,8 @@ TEST(StrangeNames, AreShownAsEscapesByEveryCommand) {
         {"run", scene, "--output", output, "--threads", strange},
         {"render", output, "--output", output + ".png", "--size", "32x32"},
         {"render", output + "x", "--output", output + ".png"},
+        {"view", output, "--output", output + ".html"},
+        {"view", output + "x"},
         {"compare", scene, "--output", output + "c"},
         {strange}};
     for (const auto& command : commands) {

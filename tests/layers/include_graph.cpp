@@ -30,9 +30,10 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         {"generators", {"core", "geometry"}},  // the mesh generator's library
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
+        {"page", {"core", "geometry", "dynamics", "io", "render"}},
         {"cli",
          {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare",
-          "bench"}},
+          "bench", "page"}},
     };
     return table;
 }
@@ -62,10 +63,11 @@ constexpr std::array kDoors = {
          "native_ray\\.h"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
-    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|cli)/.*\\.cpp|tests/.*"},
+    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|page|cli)/.*\\.cpp|tests/.*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // its print() checks formats as fmt does
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
+    Door{"zlib\\.h", "src/page/packing\\.cpp|tests/page/.*\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"Eigen/", "src/ricochet/dynamics/implicit_euler\\.cpp"},
@@ -84,6 +86,7 @@ std::optional<std::string> layer_of(const std::string& path) {
     if (path == kUmbrella) return std::nullopt;
     if (path.starts_with("src/cli/")) return "cli";
     if (path.starts_with("src/bench/")) return "bench";
+    if (path.starts_with("src/page/")) return "page";
     if (path.starts_with("meshes/generators/")) return "generators";
     if (!path.starts_with(kLibrary)) return std::nullopt;
     const std::string below = path.substr(kLibrary.size());

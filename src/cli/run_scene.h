@@ -1,0 +1,27 @@
+/// \file
+/// A run of a scene, as `ricochet run` makes it and other commands that need one.
+#pragma once
+
+#include <string>
+
+#include "cli/arguments.h"
+
+namespace ricochet::cli {
+
+/// The arguments of a run as they stand on the command line.
+struct RunArguments {
+    SceneArguments scene;
+    std::string output;        ///< folder
+    std::string output_state;  ///< file; empty: none
+    std::string threads;
+    std::string response;
+    bool quiet = false;
+    bool resume = false;
+    bool verify = false;
+};
+
+/// Runs the scene, writes its folder and reports. Returns the exit code: 0, 1 after violations, 128 + signal. Throws
+/// InputError and RunError.
+[[nodiscard]] int run_scene(const RunArguments& arguments);
+
+}  // namespace ricochet::cli

@@ -1,0 +1,41 @@
+// Unpacks the modules of the page and starts them. Stands in the page as it is; everything else is packed.
+'use strict';
+window.ricochet = {
+  errors: [],
+  // Bytes of a text in base64, unpacked.
+  async unpack(text) {
+    const packed = atob(text);
+    const bytes = new Uint8Array(packed.length);
+    for (let i = 0; i < bytes.length; ++i) bytes[i] = packed.charCodeAt(i);
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  },
+  fail(error) {
+    const text = error && error.message ? error.message : String(error);
+    window.ricochet.errors.push(text);
+    document.getElementById('message').textContent = 'This page cannot be shown: ' + text;
+  },
+};
+window.ricochet.started = (async () => {
+  if (!('DecompressionStream' in window)) {
+    throw new Error('the browser is too old (it lacks DecompressionStream); any of 2023 or later will do');
+  }
+  const addresses = new Map();
+  for (const element of document.querySelectorAll('script[data-module]')) {
+    const bytes = await window.ricochet.unpack(element.textContent);
+    // Modules that come from memory have no folder: each name becomes the address of a module made before.
+    const source = new TextDecoder().decode(bytes).replace(/from '([^'\n]+)'/g,
+        (all, name) => addresses.has(name) ? `from '${addresses.get(name)}'` : all);
+    addresses.set(element.dataset.module, URL.createObjectURL(new Blob([source], {type: 'text/javascript'})));
+    element.remove();
+  }
+  const main = await import(addresses.get('./main.js'));
+  for (const address of addresses.values()) URL.revokeObjectURL(address);
+  await main.start(JSON.parse(document.getElementById('description').textContent));
+})();
+window.ricochet.started.catch(window.ricochet.fail);
+// Shows a frame, by its number on the page; resolves when it is drawn.
+window.show = async (frame) => {
+  await window.ricochet.started;
+  return window.ricochet.show(frame);
+};

@@ -1,0 +1,57 @@
+// Colour maps, their bar, and the light that everything stands in.
+import * as THREE from 'three';
+
+// Of a map's text in hexadecimal digits: sRGB bytes.
+function samples_of(text) {
+  const samples = [];
+  for (let i = 0; i < text.length; i += 6) {
+    samples.push([0, 2, 4].map((k) => parseInt(text.slice(i + k, i + k + 2), 16)));
+  }
+  return samples;
+}
+
+export function map_texture(text) {
+  const samples = samples_of(text);
+  const bytes = new Uint8Array(4 * samples.length);
+  samples.forEach((rgb, i) => bytes.set([...rgb, 255], 4 * i));
+  const texture = new THREE.DataTexture(bytes, samples.length, 1, THREE.RGBAFormat);
+  texture.colorSpace = THREE.SRGBColorSpace;
+  texture.minFilter = texture.magFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+export function map_gradient(text) {
+  return `linear-gradient(to right, ${samples_of(text).map((rgb) => `rgb(${rgb.join(',')})`).join(', ')})`;
+}
+
+// A number as people read it.
+export function number_text(value, digits = 4) {
+  if (!Number.isFinite(value)) return 'none';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-3) return value.toExponential(Math.max(0, digits - 2)).replace('e+', 'e');
+  return String(Number(value.toPrecision(digits)));
+}
+
+// Everything that is drawn is lit by this: the sky, what the ground throws back, and a sun.
+export const LIGHT = /* glsl */ `
+  uniform vec3 sun;
+  uniform vec3 up;
+  vec3 lit(vec3 albedo, vec3 normal, vec3 to_eye) {
+    float sky = 0.5 + 0.5 * dot(normal, up);
+    float direct = max(dot(normal, sun), 0.0);
+    float shine = pow(max(dot(normal, normalize(sun + to_eye)), 0.0), 40.0);
+    return albedo * (mix(vec3(0.30, 0.28, 0.27), vec3(0.58, 0.62, 0.68), sky) + 0.62 * direct * vec3(1.0, 0.97, 0.92))
+        + 0.06 * shine;
+  }
+`;
+
+// Uniforms of LIGHT, for a scene with this direction upwards.
+export function light_uniforms(up) {
+  const upward = new THREE.Vector3(...up).normalize();
+  const side = Math.abs(upward.x) < 0.9 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
+  const across = new THREE.Vector3().crossVectors(upward, side).normalize();
+  const sun = upward.clone().multiplyScalar(1.3).addScaledVector(side, 0.55).addScaledVector(across, 0.75).normalize();
+  return {sun: {value: sun}, up: {value: upward}};
+}

@@ -1,0 +1,234 @@
+// Particles as spheres: a square for each that faces the eye, in which a ray meets the sphere itself.
+import * as THREE from 'three';
+import {LIGHT, light_uniforms} from './colors.js';
+
+const VERTEX = /* glsl */ `
+  in vec4 place;  // levels of x, y, z and of the value
+  in float size;
+  in vec4 tint;
+  uniform vec3 lower;
+  uniform float grid_step;
+  uniform vec2 value_scale;  // low, step
+  uniform vec2 shown;
+  uniform float gap_level;   // from which on a level is no number
+  uniform sampler2D map;
+  uniform bool own_colors;
+  uniform float radius;      // of all; 0: their own
+  uniform float enlarge;
+  uniform float pixel;       // of the picture, over its distance
+  out vec3 at;
+  flat out vec3 center;
+  flat out float ball;
+  flat out vec4 color;
+  void main() {
+    center = (modelViewMatrix * vec4(lower + grid_step * place.xyz, 1.0)).xyz;
+    float far = length(center);
+    ball = enlarge * (radius > 0.0 ? radius : size);
+    ball = ball > 0.0 ? max(ball, 0.8 * pixel * far) : 0.0;
+    vec3 ahead = center / max(far, 1e-30);
+    vec3 right = normalize(cross(abs(ahead.y) < 0.99 ? vec3(0, 1, 0) : vec3(1, 0, 0), ahead));
+    vec3 over = cross(ahead, right);
+    // The outline of a sphere is wider than the sphere.
+    float wide = (ball + pixel * far) * far / sqrt(max(far * far - ball * ball, 1e-6 * far * far));
+    at = center + wide * (position.x * right + position.y * over);
+    float t = (value_scale.x + value_scale.y * place.w - shown.x) / max(shown.y - shown.x, 1e-30);
+    vec3 mapped = place.w >= gap_level ? vec3(0.3) : texture(map, vec2(clamp(t, 0.0, 1.0) * 64.0 / 65.0 + 0.5 / 65.0, 0.5)).rgb;
+    color = vec4(own_colors ? pow(tint.rgb, vec3(2.2)) : mapped, tint.a);
+    gl_Position = ball > 0.0 && far > ball ? projectionMatrix * vec4(at, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+  }
+`;
+
+const FRAGMENT = /* glsl */ `
+  in vec3 at;
+  flat in vec3 center;
+  flat in float ball;
+  flat in vec4 color;
+  uniform mat3 world_from_view;
+  uniform bool soft;
+  uniform mat4 projectionMatrix;
+  ${LIGHT}
+  void main() {
+    vec3 ray = normalize(at);
+    float along = dot(center, ray);
+    vec3 beside = center - along * ray;
+    float room = 1.0 - dot(beside, beside) / (ball * ball);
+    float edge = clamp(room / max(fwidth(room), 1e-6) + 0.5, 0.0, 1.0);
+    float covered = soft ? color.a * max(room, 0.0) : color.a * edge;
+    if (covered < 0.02) discard;
+    vec3 hit = ray * (along - ball * sqrt(max(room, 0.0)));
+    vec3 normal = world_from_view * normalize(hit - center);
+    gl_FragColor = vec4(soft ? color.rgb : lit(0.92 * color.rgb, normal, world_from_view * -ray), covered);
+    vec4 clip = projectionMatrix * vec4(hit, 1.0);
+    gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
+    #include <colorspace_fragment>
+  }
+`;
+
+export class Particles {
+  constructor(run) {
+    this.run = run;
+    const {description} = run;
+    const find = (name) => run.attributes.findIndex((a) => a.name === name);
+    this.radius_attribute = find('radius');
+    if (find('size') >= 0) this.radius_attribute = find('size');
+    this.opacity_attribute = find('opacity');
+    this.geometry = new THREE.InstancedBufferGeometry();
+    this.geometry.setAttribute('position', new THREE.Float32BufferAttribute([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 3));
+    this.geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    this.geometry.instanceCount = 0;
+    const room = run.most;
+    this.place = this.add_attribute('place', new Uint16Array(4 * room), 4, false);
+    this.size = this.add_attribute('size', new Float32Array(this.has_sizes() ? room : 1), 1, false);
+    this.tint = this.add_attribute('tint', new Uint8Array(4 * (this.has_tint() ? room : 1)).fill(255), 4, true);
+    if (!this.has_sizes()) this.size.meshPerAttribute = room;
+    if (!this.has_tint()) this.tint.meshPerAttribute = room;
+    this.uniforms = {
+      ...light_uniforms(description.up), lower: {value: new THREE.Vector3(...description.grid.lower)},
+      grid_step: {value: description.grid.step}, value_scale: {value: new THREE.Vector2(0, 1)},
+      shown: {value: new THREE.Vector2(0, 1)}, gap_level: {value: 1e9}, map: {value: null}, own_colors: {value: false},
+      radius: {value: 0}, enlarge: {value: 1}, pixel: {value: 0.001}, world_from_view: {value: new THREE.Matrix3()},
+      soft: {value: false},
+    };
+    const material = new THREE.ShaderMaterial({
+      vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: this.uniforms, alphaToCoverage: true,
+      side: THREE.DoubleSide,
+    });
+    this.object = new THREE.Mesh(this.geometry, material);
+    this.object.frustumCulled = false;
+    this.object.onBeforeRender = (renderer, scene, camera) => {
+      const height = renderer.getDrawingBufferSize(new THREE.Vector2()).y;
+      this.uniforms.pixel.value = 2 * Math.tan(camera.fov * Math.PI / 360) / height / camera.zoom;
+      this.uniforms.world_from_view.value.setFromMatrix4(camera.matrixWorld);
+    };
+    this.bound_radius = this.visible_radius();
+  }
+
+  add_attribute(name, array, size, normalized) {
+    const attribute = new THREE.InstancedBufferAttribute(array, size, normalized);
+    attribute.setUsage(THREE.DynamicDrawUsage);
+    this.geometry.setAttribute(name, attribute);
+    return attribute;
+  }
+
+  // spheres; soft: discs that cover what is behind; glow: discs of light that adds up, in any order.
+  draw_as(drawing) {
+    const {material} = this.object;
+    const is_soft = drawing !== 'spheres';
+    if (this.drawing === drawing) return;
+    this.drawing = drawing;
+    this.uniforms.soft.value = is_soft;
+    material.alphaToCoverage = !is_soft;
+    material.transparent = is_soft;
+    material.depthWrite = !is_soft;
+    material.blending = drawing === 'glow' ? THREE.AdditiveBlending : THREE.NormalBlending;
+    material.needsUpdate = true;
+    this.object.renderOrder = is_soft ? 3 : 0;
+  }
+
+  varies(attribute) { return attribute >= 0 && !this.run.attributes[attribute].constant; }
+  has_sizes() { return this.varies(this.radius_attribute) || this.run.description.springs; }
+  has_tint() { return this.run.description.colors || this.opacity_attribute >= 0; }
+
+  // Points have no size: they get one that can be seen, the smaller the more there are.
+  visible_radius() {
+    const {camera} = this.run.description;
+    const away = Math.hypot(...camera.position.map((x, axis) => x - camera.target[axis]));
+    const size = Math.min(Math.max(0.8 / Math.sqrt(this.run.most), 0.0029), 0.02);
+    return Math.tan(camera.fov * Math.PI / 360) * away * size;
+  }
+
+  // What radius a row is drawn with.
+  drawn_radius(frame, row) {
+    const own = this.radius_attribute >= 0 ? this.run.value(frame, this.radius_attribute, row) : 0;
+    return this.uniforms.enlarge.value * (this.uniforms.radius.value || own || this.visible_radius());
+  }
+
+  // attribute: index, or -1 for the particles' own colours.
+  show(frame, attribute) {
+    const count = frame.count;
+    const levels = attribute >= 0 ? frame.values[attribute] : null;
+    const place = this.place.array;
+    for (let i = 0, from = 0, to = 0; i < count; ++i, from += 3, to += 4) {
+      place[to] = frame.positions[from];
+      place[to + 1] = frame.positions[from + 1];
+      place[to + 2] = frame.positions[from + 2];
+      place[to + 3] = levels === null ? 0 : levels[i];
+    }
+    this.sent(this.place, 4 * count);
+    this.show_sizes(frame);
+    this.show_tints(frame);
+    this.uniforms.own_colors.value = attribute < 0 && this.run.description.colors;
+    const scale = attribute >= 0 ? this.run.attributes[attribute] : {low: 0, step: 1, gaps: false};
+    this.uniforms.value_scale.value.set(scale.low, scale.constant ? 0 : scale.step);
+    this.uniforms.gap_level.value = scale.gaps ? scale.largest + 0.5 : 1e9;
+    this.geometry.instanceCount = count;
+  }
+
+  sent(attribute, count) {
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, count);
+    attribute.needsUpdate = true;
+  }
+
+  show_sizes(frame) {
+    const visible = this.visible_radius();
+    const sizes = this.run.attributes[this.radius_attribute];
+    this.uniforms.radius.value = 0;
+    if (!this.has_sizes()) {
+      this.uniforms.radius.value = sizes !== undefined && sizes.low > 0 ? sizes.low : visible;
+      return;
+    }
+    const vanish = sizes !== undefined && sizes.name === 'size';
+    for (let i = 0; i < frame.count; ++i) {
+      const own = sizes === undefined ? 0 : this.run.value(frame, this.radius_attribute, i);
+      this.size.array[i] = own > 0 ? own : vanish ? 0 : visible;
+    }
+    if (frame.lines.length + frame.triangles.length > 0) this.hide_woven(frame);
+    this.sent(this.size, frame.count);
+  }
+
+  // Particles at the ends of springs are shown by their ropes and cloth, unless they are thicker.
+  hide_woven(frame) {
+    const sizes = this.size.array;
+    const threads = new Float32Array(frame.count);
+    for (let i = 0; i < frame.lines.length; i += 2) {
+      const [a, b] = [frame.lines[i], frame.lines[i + 1]];
+      const thread = Math.min(sizes[a], sizes[b]);
+      threads[a] = Math.max(threads[a], thread);
+      threads[b] = Math.max(threads[b], thread);
+    }
+    for (let i = 0; i < frame.count; ++i) if (threads[i] > 0 && sizes[i] <= 1.5 * threads[i]) sizes[i] = 0;
+    for (const corner of frame.triangles) sizes[corner] = 0;
+  }
+
+  show_tints(frame) {
+    if (!this.has_tint()) return;
+    const tint = this.tint.array;
+    for (let i = 0; i < frame.count; ++i) {
+      if (frame.tints !== null) tint.set(frame.tints.subarray(3 * i, 3 * i + 3), 4 * i);
+      const opacity = this.opacity_attribute < 0 ? 1 : this.run.value(frame, this.opacity_attribute, i);
+      tint[4 * i + 3] = Math.round(255 * Math.min(Math.max(opacity, 0), 1));
+    }
+    this.sent(this.tint, 4 * frame.count);
+  }
+
+  // The row whose sphere a ray meets first, and how far away: {row, distance}; row -1 where it meets none.
+  pick(frame, ray, slack) {
+    const positions = this.run.positions(frame);
+    const {origin, direction} = ray;
+    let found = {row: -1, distance: Infinity};
+    for (let row = 0; row < frame.count; ++row) {
+      const x = positions[3 * row] - origin.x;
+      const y = positions[3 * row + 1] - origin.y;
+      const z = positions[3 * row + 2] - origin.z;
+      const along = x * direction.x + y * direction.y + z * direction.z;
+      if (along <= 0 || along > found.distance * 1.5) continue;
+      const beside = x * x + y * y + z * z - along * along;
+      const reach = Math.max(this.drawn_radius(frame, row), slack * along);
+      if (beside > reach * reach) continue;
+      const distance = along - Math.sqrt(Math.max(reach * reach - beside, 0));
+      if (distance < found.distance) found = {row, distance};
+    }
+    return found;
+  }
+}

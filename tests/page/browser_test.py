@@ -1,0 +1,146 @@
+"""A page in a headless Chromium, from the file system: browser_test.py RICOCHET FOLDER
+
+No console error, no request but the page itself, a picture that is not empty; turning and scrubbing change it as they
+should, a click says which particle it met, keys play and step. Exit code 77 where there is no Chromium.
+"""
+
+import json
+import os
+import subprocess
+import sys
+
+from browser import Browser, find_browser, pixels
+
+SCENE = {
+    "ricochet": 1,
+    "simulation": {"time_step": 0.05, "duration": 2},
+    "camera": {"position": [0, -8, 1], "target": [0, 0, 1], "field_of_view": 40},
+    "output": {"every": 2},
+    "colliders": [
+        {"name": "floor", "type": "plane", "normal": [0, 0, 1], "point": [0, 0, -1]},
+        {"name": "block", "type": "box", "size": [0.6, 0.6, 0.6], "position": [-2, 0, 0]},
+        {"name": "gate</script>", "type": "box", "size": [0.2, 0.2, 1], "motion": [
+            {"time": 0, "position": [2, 1, 0]}, {"time": 2, "position": [2, 1, 2]}]},
+    ],
+    "particles": [
+        {"position": [0, 0, 1], "radius": 0.5},
+        {"position": [-1.5, 0, 2], "velocity": [1.5, 0, 0], "radius": 0.2},
+    ],
+}
+
+
+def check(what, is_true, *shown):
+    """Ends the test with 1 where something is not as it should be."""
+    if not is_true:
+        print("FAILED:", what, *shown)
+        sys.exit(1)
+
+
+def changed_part(a, b):
+    """Part of the pixels of two pictures that differ by more than noise."""
+    width, height, channels, rows_a = pixels(a)
+    rows_b = pixels(b)[3]
+    changed = 0
+    for row_a, row_b in zip(rows_a, rows_b):
+        if row_a != row_b:
+            for x in range(0, len(row_a), channels):
+                changed += max(abs(row_a[x + k] - row_b[x + k]) for k in range(3)) > 12
+    return changed / (width * height)
+
+
+def color_at(png, x, y):
+    _, _, channels, rows = pixels(png)
+    return tuple(rows[int(y)][channels * int(x):channels * int(x) + 3])
+
+
+def window_place(browser, row):
+    """Where a particle of the frame that is shown is in the window."""
+    return browser.run(f"""(() => {{ const {{app, camera}} = ricochet;
+        const place = app.particles.object.position.clone().set(...app.run.position(app.run.frames[app.number], {row}));
+        place.project(camera); const area = app.stage.canvas.getBoundingClientRect();
+        return [area.left + (place.x + 1) / 2 * area.width, area.top + (1 - place.y) / 2 * area.height]; }})()""")
+
+
+def look(browser, page, folder):
+    browser.open(page)
+    browser.run("ricochet.loaded")
+    check("all frames are unpacked", browser.run("ricochet.app.run.frames.length") == 21)
+    browser.run("document.body.classList.add('bare')")
+    browser.run("show(0)")
+    first = browser.screenshot(os.path.join(folder, "first.png"))
+    check("the picture is not empty", len(set(b"".join(pixels(first)[3]))) > 60)
+
+    x, y = window_place(browser, 0)
+    resting = color_at(first, x, y)
+    check("a particle at rest has the first colour of the map", resting[2] > 70 and resting[2] > resting[1] + 50, resting)
+    x, y = window_place(browser, 1)
+    fast = color_at(first, x, y)
+    check("the fastest particle has the last colour of the map", fast[0] > 120 and fast[1] > 120 and fast[2] < 80, fast)
+
+    check("frames are shown where they are asked for", browser.run("show(20)") == 20)
+    last = browser.screenshot(os.path.join(folder, "last.png"))
+    check("what moved is elsewhere", 0.001 < changed_part(first, last) < 0.2, changed_part(first, last))
+    moved = window_place(browser, 1)
+    check("the particle has moved to the right", moved[0] > x + 100, moved, x)
+    check("and is drawn there", changed_part(last, first) > 0 and color_at(last, *moved) != color_at(first, *moved))
+    browser.run("show(0)")
+    check("the first frame looks as before", changed_part(first, browser.screenshot()) == 0)
+
+    browser.drag((480, 300), (620, 300))
+    turned = browser.screenshot(os.path.join(folder, "turned.png"))
+    check("dragging turns the picture", changed_part(first, turned) > 0.02, changed_part(first, turned))
+    check("and keeps the distance", abs(browser.run("camera = ricochet.camera, camera.position.distanceTo("
+                                                    "ricochet.app.stage.controls.target)") - 8) < 1e-3)
+    browser.run("ricochet.app.stage.reset_view(), ricochet.app.stage.draw()")
+    check("the first view comes back", changed_part(first, browser.screenshot()) == 0)
+
+    browser.run("document.body.classList.remove('bare')")
+    x, y = window_place(browser, 0)
+    browser.drag((x, y), (x, y), steps=1)
+    check("a click picks the particle", browser.run("ricochet.app.picked") == 0, browser.run("ricochet.app.picked"))
+    card = browser.run("document.getElementById('picked').textContent")
+    check("and its values are told", "radius, m0.5" in card and "speed, m/s0" in card, card)
+    browser.screenshot(os.path.join(folder, "picked.png"))
+    check("no particle where there is none", browser.run("ricochet.pick(480, 20)") is None)
+
+    browser.run("ricochet.app.change({trails: true, body_map: 'hits'}), show(12)")
+    browser.key("ArrowRight")
+    check("a key goes one frame on", browser.run("show(ricochet.app.number)") == 13)
+    browser.key(" ", "Space")
+    browser.run("new Promise((resolve) => setTimeout(resolve, 1500))")
+    check("it plays", browser.run("ricochet.app.is_playing && ricochet.app.number !== 13"))
+    browser.key(" ", "Space")
+    browser.run("show(20)")
+    gate = browser.run("ricochet.app.rigid[0].object.matrix.elements[14]")
+    check("colliders that move have moved", abs(gate - 2) < 1e-6, gate)
+    browser.key("d")
+    browser.screenshot(os.path.join(folder, "dark.png"))
+    check("the theme has changed", browser.run("document.documentElement.dataset.theme") == "dark")
+
+
+def main():
+    program, folder = sys.argv[1:3]
+    path = find_browser()
+    if path is None:
+        print("SKIPPED: there is no chromium here (apt install chromium)")
+        sys.exit(77)
+    os.makedirs(folder, exist_ok=True)
+    scene, page = os.path.join(folder, "scene.json"), os.path.join(folder, "page.html")
+    with open(scene, "w", encoding="utf-8") as stream:
+        json.dump(SCENE, stream)
+    subprocess.run([program, "view", scene, "--output", page, "--run-output", os.path.join(folder, "run"), "--quiet"],
+                   check=True)
+    browser = Browser(path)
+    try:
+        look(browser, page, folder)
+        check("the console stays empty", browser.console == [], browser.console)
+        outside = [url for url in browser.requests if not url.startswith(("blob:", "file://" + os.path.abspath(page)))]
+        check("nothing is asked of anyone", outside == [], outside)
+        check("no error", browser.run("ricochet.errors") == [])
+    finally:
+        browser.close()
+    print("passed")
+
+
+if __name__ == "__main__":
+    main()

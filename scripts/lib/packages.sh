@@ -10,13 +10,14 @@ packages_build=(
     libboost-dev                               # whole numbers of any length, for the verifier
     zlib1g-dev                                 # pages for browsers
     libeigen3-dev                              # sparse matrices, for the implicit integrator
+    pybind11-dev python3-dev python3-numpy     # the Python package
 )
 packages_test=(libgtest-dev libbenchmark-dev pkgconf)
 packages_format=(clang-format)
 packages_tidy=(clang-tidy)
 packages_clang=(clang)
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
-packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium)
+packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv)
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.
 

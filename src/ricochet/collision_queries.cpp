@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -83,27 +82,6 @@ double length_to_limits(const Vec3& origin, const Vec3& along) {
         if (along[axis] != 0.0) length = std::min(length, room / std::fabs(along[axis]));
     }
     return length;
-}
-
-/// Every edge has an even number of triangles.
-bool is_closed(const TriangleMesh& mesh) {
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = t[k];
-            const std::uint32_t b = t[(k + 1) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b)});
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t k = 0; k < edges.size();) {
-        std::size_t end = k;
-        while (end < edges.size() && edges[end] == edges[k]) ++end;
-        if ((end - k) % 2 != 0) return false;
-        k = end;
-    }
-    return !edges.empty();
 }
 
 std::shared_ptr<const CollisionWorld> world_of(std::vector<ColliderDescription> colliders) {

@@ -36,6 +36,7 @@
 #include "ricochet/io/frames.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/vtk.h"
+#include "ricochet/queries/mesh_queries.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/settings.h"

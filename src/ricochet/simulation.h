@@ -183,6 +183,10 @@ public:
     bool remove_particle(std::uint64_t id);
     /// Returns how many of the ids were those of living particles.
     std::size_t remove_particles(std::span<const std::uint64_t> ids);
+    /// Gives out the arrays of the particles, with the memory that particles() has shown, and goes on with copies of
+    /// them, to the same bits: for callers that have lent out what lies there. Not while a
+    /// step runs.
+    [[nodiscard]] Particles release_particles();
     /// Replaces all forces from the next step on; wakes all sleeping particles. Forces are no part of a saved state:
     /// to be set again after restore(). Throws InputError for a null pointer, and for forces where a flow carries the
     /// particles.

@@ -20,6 +20,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
     static const std::map<std::string, std::set<std::string>> table = {
         {"core", {}},
         {"geometry", {"core"}},
+        {"queries", {"core", "geometry"}},
         {"collision", {"core", "geometry"}},
         {"dynamics", {"core", "geometry"}},
         {"response", {"core", "geometry", "collision", "dynamics"}},
@@ -31,6 +32,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"generators", {"core", "geometry"}},  // the mesh generator's library
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"page", {"core", "geometry", "dynamics", "io", "render"}},
+        {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
          {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare",
           "bench", "page"}},
@@ -70,8 +72,9 @@ constexpr std::array kDoors = {
     Door{"zlib\\.h", "src/page/packing\\.cpp|tests/page/.*\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
+    Door{"(pybind11/|Python\\.h)", "src/python/.*"},
     Door{"Eigen/", "src/ricochet/dynamics/implicit_euler\\.cpp"},
-    Door{"boost/", "src/ricochet/verify/[^/]*\\.cpp|tests/.*"},
+    Door{"boost/", "src/ricochet/verify/[^/]*\\.cpp|src/ricochet/geometry/predicates/exact_ratio\\.cpp|tests/.*"},
     Door{"(unistd|fcntl|signal|spawn|malloc)\\.h|sys/", ".*\\.cpp|tests/.*"},
     Door{"(poll|time|dlfcn|ucontext)\\.h|linux/", "tests/.*"},
 };
@@ -87,6 +90,7 @@ std::optional<std::string> layer_of(const std::string& path) {
     if (path.starts_with("src/cli/")) return "cli";
     if (path.starts_with("src/bench/")) return "bench";
     if (path.starts_with("src/page/")) return "page";
+    if (path.starts_with("src/python/")) return "python";
     if (path.starts_with("meshes/generators/")) return "generators";
     if (!path.starts_with(kLibrary)) return std::nullopt;
     const std::string below = path.substr(kLibrary.size());

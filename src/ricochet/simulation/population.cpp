@@ -198,6 +198,12 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
     return ids;
 }
 
+Particles Simulation::release_particles() {
+    Particles released = impl().particles();
+    std::swap(released, impl().store.particles());
+    return released;
+}
+
 bool Simulation::remove_particle(std::uint64_t id) { return remove_particles(std::span(&id, 1)) == 1; }
 
 std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {

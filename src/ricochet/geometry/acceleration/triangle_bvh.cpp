@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <type_traits>
 
@@ -171,6 +172,19 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
     return true;
 }
 
+/// The one that hierarchies share, for as long as there are such.
+std::shared_ptr<const embree::Device> shared_device() {
+    static std::mutex mutex;
+    static std::weak_ptr<const embree::Device> shared;
+    const std::lock_guard lock(mutex);
+    std::shared_ptr<const embree::Device> device = shared.lock();
+    if (!device) {
+        device = std::make_shared<const embree::Device>(embree::make_device(embree_config()));
+        shared = device;
+    }
+    return device;
+}
+
 }  // namespace
 
 struct TriangleBvh::Impl {
@@ -181,7 +195,8 @@ struct TriangleBvh::Impl {
     double padding = 0.0;  ///< in the float frame: rounding, slack and margin
     Box3 clip_box;         ///< world; generously larger than the padded boxes
     MemoryCount memory;
-    embree::Device device;
+    std::shared_ptr<const embree::Device> device;
+    bool shares_device = false;
     embree::Scene scene;
 
     /// What Embree's threads are given while they build.
@@ -193,7 +208,7 @@ struct TriangleBvh::Impl {
     Impl() = default;
     // Where memory has run out, Embree's threads may keep the device beyond this object: they must not count then.
     ~Impl() {
-        if (device.get() != nullptr) rtcSetDeviceMemoryMonitorFunction(device.get(), nullptr, nullptr);
+        if (device && !shares_device) rtcSetDeviceMemoryMonitorFunction(device->get(), nullptr, nullptr);
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
@@ -232,11 +247,15 @@ void TriangleBvh::Impl::write_bounds(std::uint32_t number, RTCBounds& bounds) co
 
 void TriangleBvh::Impl::build() {
     set_frame();
-    device = embree::make_device(embree_config());
-    rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
-    scene = embree::Scene(rtcNewScene(device.get()));
+    if (shares_device) {
+        device = shared_device();
+    } else {
+        device = std::make_shared<const embree::Device>(embree::make_device(embree_config()));
+        rtcSetDeviceMemoryMonitorFunction(device->get(), count_memory, &memory);
+    }
+    scene = embree::Scene(rtcNewScene(device->get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+    RTCGeometry geometry = rtcNewGeometry(device->get(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters->size()));
     rtcSetGeometryMask(geometry, 0xFFFFFFFFU);
     rtcSetGeometryBoundsFunction(
@@ -266,13 +285,14 @@ void TriangleBvh::Impl::build() {
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene.get());
     }
-    embree::check_device(device.get(), "building the hierarchy of a collider");
+    embree::check_device(device->get(), "building the hierarchy of a collider");
 }
 
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin)
     : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), margin) {}
 
-TriangleBvh::TriangleBvh(Clusters clusters, double margin) : impl_(std::make_unique<Impl>()) {
+TriangleBvh::TriangleBvh(Clusters clusters, double margin, Device device) : impl_(std::make_unique<Impl>()) {
+    impl_->shares_device = device == Device::shared;
     impl_->clusters = std::move(clusters);
     impl_->margin = margin;
     if (!impl_->clusters->empty()) impl_->build();

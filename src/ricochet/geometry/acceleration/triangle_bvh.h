@@ -33,8 +33,11 @@ public:
     /// margin (m, >= 0): AABB margin, by which paths may leave the segments of queries. Throws RunError when memory is
     /// short.
     TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin);
+    /// Whether a hierarchy has an Embree device of its own, which counts its memory, or one with all others that share:
+    /// for thousands of hierarchies, since Embree makes some 1000 devices at most.
+    enum class Device : std::uint8_t { own, shared };
     /// The same over clusters that several hierarchies share.
-    TriangleBvh(Clusters clusters, double margin);
+    TriangleBvh(Clusters clusters, double margin, Device device = Device::own);
     ~TriangleBvh();
     TriangleBvh(TriangleBvh&&) noexcept;
     TriangleBvh& operator=(TriangleBvh&&) noexcept;
@@ -92,7 +95,8 @@ public:
     [[nodiscard]] double margin() const;
     /// m, what the boxes allow for positions beside the segment (see kBoxSlack).
     [[nodiscard]] double slack() const;
-    /// Bytes that the hierarchy holds (without the vertices and triangles).
+    /// Bytes that the hierarchy holds (without the vertices and triangles); 0 with a shared device, which does not
+    /// know.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:

@@ -413,4 +413,18 @@ std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::
     return clusters;
 }
 
+std::vector<TriangleCluster> refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
+                                      std::span<const Triangle> triangles) {
+    std::vector<TriangleCluster> moved(clusters.size());
+    parallel_for_blocks(clusters.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto& lanes = clusters[k].triangle;
+            const auto count =
+                static_cast<std::size_t>(std::find(lanes.begin(), lanes.end(), kNoTriangle) - lanes.begin());
+            moved[k] = cluster_of(vertices, triangles, std::span(lanes).first(count));
+        }
+    });
+    return moved;
+}
+
 }  // namespace ricochet

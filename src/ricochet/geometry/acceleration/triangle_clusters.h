@@ -89,4 +89,9 @@ static_assert(sizeof(TriangleCluster) == 128);
 [[nodiscard]] std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices,
                                                          std::span<const Triangle> triangles);
 
+/// Clusters of the same triangles after vertices have moved. Where neighbours do not stay neighbours queries cost more.
+[[nodiscard]] std::vector<TriangleCluster> refitted(std::span<const TriangleCluster> clusters,
+                                                    std::span<const Vec3> vertices,
+                                                    std::span<const Triangle> triangles);
+
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include "ricochet/geometry/mesh/mesh_interior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,26 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 }
 
 }  // namespace
+
+bool is_closed(const TriangleMesh& mesh) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k];
+            const std::uint32_t b = t[(k + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b)});
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t k = 0; k < edges.size();) {
+        std::size_t end = k;
+        while (end < edges.size() && edges[end] == edges[k]) ++end;
+        if ((end - k) % 2 != 0) return false;
+        k = end;
+    }
+    return !edges.empty();
+}
 
 MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
     cells_ =

@@ -18,6 +18,9 @@
 
 namespace ricochet {
 
+/// True when every edge has an even number of triangles, so that there is an inside.
+[[nodiscard]] bool is_closed(const TriangleMesh& mesh);
+
 /// Thread-safe. For closed meshes only (TopologyReport::closed). A point inside an even number of nested shells is
 /// outside.
 class MeshInterior {

@@ -1,0 +1,188 @@
+"""Simulations: scenes in, steps, arrays out."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, List, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _core
+from ._core import InputError, Mesh
+from ._mesh import as_mesh
+
+SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+
+# Where a scene that is no file seems to lie, for its messages.
+_NAME = "scene"
+# Stands for the folder that meshes are written to while a scene is read.
+_MESHES = "/ricochet-meshes"
+
+
+class Simulation(_core.Simulation):
+    """A running simulation.
+
+    scene
+        A scene file's name; a dictionary with the keys of a scene file; or a :class:`ricochet.scene.Scene`. Paths in a
+        dictionary are relative to the working folder, and wherever a mesh file is named a mesh may stand instead: a
+        :class:`ricochet.Mesh` or anything with vertices and faces.
+    overrides
+        Changes as the tool's --set takes them, such as ``{"simulation.time_step": 0.01}``.
+    contacts
+        Keep every contact for :meth:`take_contacts`.
+    verify
+        Check every step by code of its own, as the tool's --verify.
+
+    Raises :class:`ricochet.InputError` with all that is wrong, one line each, as the tool prints it.
+    """
+
+    def __init__(
+        self,
+        scene: SceneLike,
+        overrides: Optional[Mapping[str, Any]] = None,
+        *,
+        contacts: bool = False,
+        verify: bool = False,
+    ) -> None:
+        changes = _changes(overrides)
+        meshes: List[Mesh] = []
+        text, file = _text_of(scene, meshes)
+        self._begin(text, file, meshes, changes, bool(contacts), bool(verify))
+
+    def _begin(
+        self, text: str, file: str, meshes: List[Mesh], changes: List[str], contacts: bool, verify: bool
+    ) -> None:
+        self._made_from = (text, file, meshes, changes, contacts, verify)
+        if not meshes:
+            super().__init__(text, file, changes, contacts, verify)
+            return
+        with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
+            for number, mesh in enumerate(meshes):
+                _write(mesh, Path(folder) / f"{number}.off")
+            super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify)
+
+    def step(self) -> None:
+        """Makes one step."""
+        self.advance(1)
+
+    def advance(self, steps: int, progress: bool = False) -> None:
+        """Makes so many steps, or as many as are left. Other threads of Python run meanwhile, and Ctrl-C ends it after
+        a step. progress: show a bar, where tqdm is installed."""
+        steps = _count(steps)
+        if not progress:
+            self._advance(steps, None)
+            return
+        with _bar(min(steps, self.step_count - self.step_index)) as bar:
+            start = self.step_index
+            self._advance(steps, bar.refresh)
+            bar.update(self.step_index - start)
+
+    def run(self, until: Optional[float] = None, progress: bool = False) -> None:
+        """Runs to a time in seconds, or to the end."""
+        steps = self.step_count - self.step_index if until is None else self._steps_to(float(until))
+        self.advance(steps, progress)
+
+    def __reduce__(self) -> Any:
+        return _restored, (*self._made_from, self.save())
+
+
+def _changes(overrides: Any) -> List[str]:
+    if overrides is None:
+        return []
+    if not isinstance(overrides, Mapping):
+        raise InputError(f"overrides: found {type(overrides).__name__}, expected a dictionary")
+    return [
+        f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"
+        for key, value in overrides.items()
+    ]
+
+
+def _restored(*state: Any) -> Simulation:
+    simulation = Simulation.__new__(Simulation)
+    simulation._begin(*state[:-1])
+    simulation.restore(state[-1])
+    return simulation
+
+
+def _count(steps: Any) -> int:
+    if isinstance(steps, (int, np.integer)) and not isinstance(steps, bool) and 0 <= steps < 2**64:
+        return int(steps)
+    raise InputError(f"steps: found {steps!r}, expected a whole number of at least 0")
+
+
+class _NoBar:
+    def __enter__(self) -> "_NoBar":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        pass
+
+    def refresh(self) -> None:
+        pass
+
+    def update(self, steps: int) -> None:
+        pass
+
+
+def _bar(total: int) -> Any:
+    try:
+        return importlib.import_module("tqdm.auto").tqdm(total=total, unit=" steps")
+    except ImportError:
+        return _NoBar()
+
+
+def _text_of(scene: Any, meshes: List[Mesh]) -> Tuple[str, str]:
+    if isinstance(scene, Mapping):
+        return json.dumps(_with_mesh_files(scene, meshes), indent=1, default=_plain), _NAME
+    if isinstance(scene, (str, os.PathLike)):
+        file = os.fspath(scene)
+        try:
+            return Path(file).read_text(encoding="utf-8"), file
+        except (OSError, UnicodeDecodeError, ValueError) as error:
+            raise InputError(f"{file}: cannot be read ({error})") from None
+    raise InputError(f"scene: found {type(scene).__name__}, expected a file's name or a dictionary")
+
+
+def _plain(value: Any) -> Any:
+    """What json cannot write of itself."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise InputError(f"scene: found {type(value).__name__}, expected numbers, texts, lists and dictionaries")
+
+
+def _with_mesh_files(value: Any, meshes: List[Mesh]) -> Any:
+    """A copy in which meshes are names of files that are written when the scene is read."""
+    if isinstance(value, Mapping):
+        return {_key(key): _with_mesh_files(entry, meshes) for key, entry in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
+        return [_with_mesh_files(entry, meshes) for entry in value]
+    if isinstance(value, Mesh) or hasattr(value, "faces") or hasattr(value, "cells_dict"):
+        # A mesh answers with the vertices that it has now.
+        mesh = as_mesh(value)
+        meshes.append(Mesh(mesh.vertices, mesh.faces) if mesh is value else mesh)
+        return f"{_MESHES}/{len(meshes) - 1}.off"
+    if isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"scene: found {value}, expected finite numbers")
+    return value
+
+
+def _write(mesh: Mesh, file: Path) -> None:
+    """With all digits of every double."""
+    with open(file, "w", encoding="ascii") as stream:
+        stream.write(f"OFF\n{len(mesh.vertices)} {len(mesh)} 0\n")
+        stream.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
+        stream.writelines(f"3 {a} {b} {c}\n" for a, b, c in mesh.faces.tolist())
+
+
+def _key(key: Any) -> str:
+    if isinstance(key, str):
+        return key
+    raise InputError(f"scene: found the key {key!r}, expected texts as keys")

@@ -1,0 +1,218 @@
+import gc
+import json
+import os
+import pickle
+import signal
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import ricochet
+from ricochet import scene as things
+from support import ROOT, ball, bouncing
+
+
+class Simulation(unittest.TestCase):
+    def test_a_ball_falls_as_the_formula_says(self):
+        simulation = ricochet.Simulation(bouncing())
+        simulation.run(until=0.25)
+        self.assertAlmostEqual(simulation.time, 0.25)
+        self.assertEqual(simulation.step_index, 25)
+        height = simulation.particles.position[:, 2]
+        np.testing.assert_allclose(height, [1 - 0.5 * 9.81 * 0.0625, 2 - 0.5 * 9.81 * 0.0625], rtol=1e-12)
+        simulation.run()
+        self.assertTrue(simulation.finished)
+        self.assertGreater(simulation.statistics["contacts"], 0)
+
+    def test_steps_and_runs_come_to_the_same_bits(self):
+        one, other = ricochet.Simulation(bouncing()), ricochet.Simulation(bouncing())
+        one.advance(100)
+        for _ in range(100):
+            other.step()
+        self.assertEqual(one.state_hash, other.state_hash)
+
+    def test_arrays_keep_their_values_and_memory_when_the_simulation_goes_on(self):
+        simulation = ricochet.Simulation(bouncing())
+        twin = ricochet.Simulation(bouncing())
+        particles = simulation.particles
+        kept = particles.position.copy()
+        address = particles.position.ctypes.data
+        with self.assertRaises(ValueError):
+            particles.position[0, 0] = 1.0
+        simulation.advance(50)
+        later = simulation.particles.position
+        np.testing.assert_array_equal(particles.position, kept)
+        self.assertEqual(particles.position.ctypes.data, address)
+        self.assertFalse(np.array_equal(later, kept))
+        simulation.add_particles([[0, 0, 9.0]])
+        simulation.advance(10)
+        del simulation
+        gc.collect()
+        np.testing.assert_array_equal(particles.position, kept)
+        self.assertEqual(particles.id.tolist(), [0, 1])
+        twin.advance(50)
+        np.testing.assert_array_equal(twin.particles.position, later)
+
+    def test_the_arrays_are_the_simulations_own_memory(self):
+        simulation = ricochet.Simulation(bouncing())
+        self.assertEqual(simulation.particles.position.ctypes.data, simulation.particles.position.ctypes.data)
+
+    def test_particles_come_and_go(self):
+        simulation = ricochet.Simulation(bouncing())
+        ids = simulation.add_particles([[0, 0, 5.0], [0, 1, 5.0]], velocity=[[1, 0, 0]] * 2, radius=0.2, mass=[1.0, 2.0])
+        self.assertEqual(ids.tolist(), [2, 3])
+        self.assertEqual(simulation.particles.mass.tolist(), [1, 1, 1, 2])
+        self.assertEqual(simulation.remove_particles([3, 99]), 1)
+        self.assertEqual(len(simulation), 3)
+        with self.assertRaises(ricochet.InputError):
+            simulation.add_particles([[0, 0, 5.0]], mass=-1.0)
+        with self.assertRaises(ricochet.InputError):
+            simulation.add_particles([[0, 0, 5.0]], velocity=[[1, 0, 0]] * 2)
+
+    def test_contacts_are_a_structured_array(self):
+        simulation = ricochet.Simulation(bouncing(), contacts=True)
+        simulation.run()
+        contacts = simulation.take_contacts()
+        self.assertEqual(len(contacts), simulation.statistics["contacts"])
+        first = contacts[contacts["particle"] == 1][0]
+        self.assertAlmostEqual(first["time"], np.sqrt(4 / 9.81), places=12)
+        self.assertAlmostEqual(first["velocity_after"][2], -0.8 * first["velocity_before"][2], places=12)
+        self.assertEqual(len(simulation.take_contacts()), 0)
+        with self.assertRaises(ricochet.InputError):
+            ricochet.Simulation(bouncing()).take_contacts()
+
+    def test_totals_add_up_to_the_contacts(self):
+        vertices, faces = ball(2)
+        scene = bouncing(colliders=[{"name": "ball", "type": "mesh", "file": ricochet.Mesh(vertices, faces)}])
+        simulation = ricochet.Simulation(scene, contacts=True)
+        simulation.run()
+        totals = simulation.triangle_totals("ball")
+        self.assertEqual(totals.hits.shape, (len(faces),))
+        contacts = simulation.take_contacts()
+        np.testing.assert_array_equal(totals.hits, np.bincount(contacts["triangle"], minlength=len(faces)))
+        self.assertEqual(totals.impulse.shape, (len(faces), 3))
+        self.assertEqual(simulation.colliders, ["ball"])
+        np.testing.assert_array_equal(simulation.collider_mesh(0).vertices, vertices)
+
+    def test_scenes_come_from_files_dictionaries_and_objects(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.json"
+            file.write_text(json.dumps(bouncing()))
+            objects = things.Scene(
+                simulation=things.SimulationOptions(time_step=0.01, duration=2.0),
+                forces=[things.GravityForce(acceleration=np.array([0, 0, -9.81]))],
+                materials={"rubber": things.Material(restitution=0.8)},
+                colliders=[things.PlaneCollider(name="floor", point=[0, 0, 0], normal=[0, 0, 1], material="rubber")],
+                particles=[things.Particle(position=[0, 0, 1], radius=0.1),
+                           things.Particle(position=[1, 0, 2], velocity=(1, 0, 0))],
+            )
+            hashes = set()
+            for scene in (file, str(file), bouncing(), objects):
+                simulation = ricochet.Simulation(scene)
+                simulation.run()
+                hashes.add(simulation.state_hash)
+            self.assertEqual(len(hashes), 1)
+
+    def test_a_typo_is_answered_as_the_tool_answers_it(self):
+        with self.assertRaisesRegex(ricochet.InputError, "materials.rubber.*restitutoin.*restitution"):
+            ricochet.Simulation(bouncing(materials={"rubber": things.Material(restitutoin=0.8)}))
+        with self.assertRaisesRegex(ValueError, "simulation.time_step"):
+            ricochet.Simulation(bouncing(), {"simulation.time_step": -1})
+
+    def test_overrides_are_those_of_the_tool(self):
+        simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 0.5})
+        self.assertEqual(simulation.step_count, 50)
+
+    def test_a_pickled_simulation_goes_on_to_the_same_bits(self):
+        for collider in (bouncing()["colliders"][0], {"type": "mesh", "file": ricochet.Mesh(*ball(2))}):
+            scene = bouncing(materials={"rubber": {"restitution": 0.5}}, colliders=[collider])
+            simulation = ricochet.Simulation(scene, contacts=True)
+            simulation.advance(60)
+            twin = pickle.loads(pickle.dumps(simulation))
+            self.assertEqual(twin.step_index, 60)
+            simulation.run()
+            twin.run()
+            self.assertEqual(twin.state_hash, simulation.state_hash)
+
+    def test_a_state_that_is_damaged_is_refused(self):
+        simulation = ricochet.Simulation(bouncing())
+        state = simulation.save()
+        for damaged in (b"", state[:-9], b"x" * len(state)):
+            with self.assertRaises(ricochet.InputError):
+                ricochet.Simulation(bouncing()).restore(damaged)
+
+    def test_two_threads_of_python_both_advance(self):
+        simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 1e6})
+        stop = threading.Event()
+        looks = []
+
+        def look():
+            looks.append(time.monotonic())
+            if stop.is_set():
+                raise StopIteration
+
+        def run():
+            with self.assertRaises(StopIteration):
+                simulation._advance(10**12, look)
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        # While that one steps in C++, this one runs, steps another, and comes to its end.
+        other = ricochet.Simulation(bouncing())
+        other.run()
+        while len(looks) < 2 and thread.is_alive():
+            time.sleep(0.01)
+        stop.set()
+        thread.join()
+        self.assertTrue(other.finished)
+        self.assertGreater(simulation.step_index, 1000)
+
+    def test_a_simulation_that_is_stepped_refuses_other_threads(self):
+        simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 1e6})
+        refused = []
+
+        def look():
+            # Within the run, while it waits for this: another thread of Python asks.
+            def ask():
+                try:
+                    simulation.particles
+                except ricochet.RunError as error:
+                    refused.append(str(error))
+
+            thread = threading.Thread(target=ask)
+            thread.start()
+            thread.join()
+            raise StopIteration
+
+        with self.assertRaises(StopIteration):
+            simulation._advance(10**12, look)
+        self.assertEqual(len(refused), 1)
+        self.assertGreater(len(simulation.particles.id), 0)
+
+    def test_control_c_ends_a_run_cleanly(self):
+        simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 1e6})
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            simulation.advance(10**12)
+        timer.join()
+        before = simulation.step_index
+        simulation.step()
+        self.assertEqual(simulation.step_index, before + 1)
+
+    def test_progress_needs_no_tqdm(self):
+        simulation = ricochet.Simulation(bouncing())
+        simulation.run(until=0.1, progress=True)
+        self.assertEqual(simulation.step_index, 10)
+
+    def test_the_scenes_of_the_project_run(self):
+        simulation = ricochet.Simulation(ROOT / "scenes" / "bouncing_ball.json")
+        simulation.step()
+        self.assertEqual(simulation.step_index, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

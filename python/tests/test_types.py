@@ -1,0 +1,58 @@
+"""The package and its stubs as a type checker sees them."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import ricochet
+from support import ROOT
+
+USE = """
+import numpy as np
+import ricochet
+from ricochet import scene
+from ricochet.trimesh import RayMeshIntersector
+
+mesh = ricochet.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
+hits = mesh.first_hits([[0, 0, 1]], [[0, 0, -1]])
+distance: float = float(hits.distance[0])
+simulation = ricochet.Simulation(scene.Scene(simulation=scene.SimulationOptions(time_step=0.01)))
+simulation.run(until=1.0)
+total: float = float(simulation.particles.position.sum())
+ray = RayMeshIntersector(mesh)
+"""
+
+WRONG = """
+from ricochet import scene
+scene.Material(restitutoin=0.5)
+"""
+
+
+@unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+class Types(unittest.TestCase):
+    def check(self, *arguments):
+        environment = dict(os.environ, MYPYPATH=str(Path(ricochet.__file__).parents[1]))
+        with tempfile.TemporaryDirectory() as cache:
+            return subprocess.run(
+                [sys.executable, "-m", "mypy", "--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", cache,
+                 *arguments],
+                env=environment, capture_output=True, text=True,
+            )
+
+    def test_the_package_and_its_stubs_are_sound(self):
+        checked = self.check("-p", "ricochet")
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_right_uses_pass_and_typos_do_not(self):
+        checked = self.check("-c", USE)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        checked = self.check("-c", WRONG)
+        self.assertIn("restitutoin", checked.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,128 @@
+#include "python/arrays.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+
+namespace ricochet::python {
+namespace {
+
+std::string shape_of(const py::array& array) {
+    std::string text = "(";
+    for (py::ssize_t k = 0; k < array.ndim(); ++k) text += fmt::format("{}{}", k > 0 ? ", " : "", array.shape(k));
+    return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+std::string expected_shape(py::ssize_t columns) {
+    return columns == 0 ? "one row of numbers" : fmt::format("numbers of shape (n, {})", columns);
+}
+
+/// As NumPy sees it; an object of Python's own kinds (None, a dictionary, ragged lists) is no array of numbers.
+py::array as_array(const py::handle& object, const char* name, const std::string& expected) {
+    py::array array;
+    try {
+        array = py::module_::import("numpy").attr("asarray")(object);
+    } catch (py::error_already_set& error) {
+        if (error.matches(PyExc_MemoryError) || error.matches(PyExc_KeyboardInterrupt)) throw;
+        throw InputError(fmt::format("{}: found {}, expected {}", name,
+                                     std::string(py::str(py::type::handle_of(object).attr("__name__"))), expected));
+    }
+    const char kind = array.dtype().kind();
+    if (kind == 'f' || kind == 'i' || kind == 'u' || kind == 'b') return array;
+    throw InputError(fmt::format("{}: found {}, expected {}", name, std::string(py::str(array.dtype())), expected));
+}
+
+bool has_shape(const py::array& array, py::ssize_t columns) {
+    if (columns == 0) return array.ndim() == 1;
+    // An empty list has no second axis.
+    return (array.ndim() == 2 && array.shape(1) == columns) || (array.ndim() == 1 && array.shape(0) == 0);
+}
+
+Doubles as_doubles(const py::array& array, const char* name) {
+    Doubles doubles = Doubles::ensure(array);
+    if (doubles) return doubles;
+    throw InputError(fmt::format("{}: these numbers cannot be made doubles", name));
+}
+
+std::unique_ptr<ThreadLimit>& thread_limit() {
+    static std::unique_ptr<ThreadLimit> limit;
+    return limit;
+}
+
+}  // namespace
+
+Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns) {
+    const py::array array = as_array(object, name, expected_shape(columns));
+    if (!has_shape(array, columns)) {
+        throw InputError(
+            fmt::format("{}: found shape {}, expected {}", name, shape_of(array), expected_shape(columns)));
+    }
+    return as_doubles(array, name);
+}
+
+Doubles numbers_or_one(const py::handle& object, const char* name) {
+    if (object.is_none()) return Doubles(py::ssize_t{0});
+    const py::array array = as_array(object, name, "a number or one row of numbers");
+    if (array.ndim() > 1) {
+        throw InputError(
+            fmt::format("{}: found shape {}, expected a number or one row of numbers", name, shape_of(array)));
+    }
+    return as_doubles(array, name).reshape({array.size()});
+}
+
+std::vector<std::uint64_t> whole_numbers(const py::handle& object, const char* name, py::ssize_t columns) {
+    const std::string expected = columns == 0 ? "one row of whole numbers of at least 0"
+                                              : fmt::format("whole numbers of shape (n, {})", columns);
+    const py::array array = as_array(object, name, expected);
+    const char kind = array.dtype().kind();
+    const bool is_empty = array.size() == 0;
+    if (!has_shape(array, columns) || (!is_empty && kind != 'i' && kind != 'u')) {
+        throw InputError(fmt::format("{}: found {} of shape {}, expected {}", name, std::string(py::str(array.dtype())),
+                                     shape_of(array), expected));
+    }
+    using Signed = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+    using Unsigned = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
+    std::vector<std::uint64_t> result(static_cast<std::size_t>(array.size()));
+    if (is_empty) return result;
+    const std::uint64_t most = columns == 0 ? ~std::uint64_t{0} : 0xFFFFFFFFU;
+    const auto take = [&](const auto* data) {
+        for (std::size_t k = 0; k < result.size(); ++k) {
+            if (data[k] < 0 || static_cast<std::uint64_t>(data[k]) > most) {
+                throw InputError(fmt::format("{}: found {}, expected {}", name, data[k], expected));
+            }
+            result[k] = static_cast<std::uint64_t>(data[k]);
+        }
+    };
+    if (kind == 'u') {
+        const Unsigned of = Unsigned::ensure(array);
+        std::copy(of.data(), of.data() + of.size(), result.begin());
+        for (const std::uint64_t number : result) {
+            if (number > most) throw InputError(fmt::format("{}: found {}, expected {}", name, number, expected));
+        }
+    } else {
+        const Signed of = Signed::ensure(array);
+        take(of.data());
+    }
+    return result;
+}
+
+py::array lent_flags(const std::uint8_t* data, std::size_t count, std::shared_ptr<const void> keeper) {
+    return lent(data, count, std::move(keeper)).attr("view")(py::dtype::of<bool>());
+}
+
+py::array given_flags(std::vector<std::uint8_t>&& flags) {
+    return given(std::move(flags)).attr("view")(py::dtype::of<bool>());
+}
+
+void set_threads(int threads) {
+    auto limit = std::make_unique<ThreadLimit>(threads);  // refuses what is senseless before anything changes
+    thread_limit() = std::move(limit);
+}
+
+}  // namespace ricochet::python

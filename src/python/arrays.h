@@ -1,0 +1,84 @@
+/// \file
+/// Arrays in and out: what users hand in is checked and named in messages, what they get keeps its memory alive.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+
+namespace ricochet::python {
+
+namespace py = pybind11;
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Numbers of shape (count, columns) as doubles; columns 0: of shape (count). An array that is so already is not
+/// copied. Throws InputError "name: found ..., expected ..." for anything else, also for text and complex numbers.
+[[nodiscard]] Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns);
+/// The same with one number for all, or none.
+[[nodiscard]] Doubles numbers_or_one(const py::handle& object, const char* name);
+/// Whole numbers of shape (count, columns), from 0 to below 2^32; columns 0: of shape (count), to below 2^64.
+[[nodiscard]] std::vector<std::uint64_t> whole_numbers(const py::handle& object, const char* name, py::ssize_t columns);
+
+/// The rows of an array of three columns.
+[[nodiscard]] inline std::span<const Vec3> points(const Doubles& array) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    return {reinterpret_cast<const Vec3*>(array.data()), static_cast<std::size_t>(array.shape(0))};
+}
+[[nodiscard]] inline std::span<const double> values(const Doubles& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// The array of memory that `keeper` keeps alive. Vec3 gives a second axis of 3.
+template <class T>
+[[nodiscard]] py::array array_over(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
+    const py::capsule owner(new std::shared_ptr<const void>(std::move(keeper)),
+                            [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+    const auto rows = static_cast<py::ssize_t>(count);
+    if constexpr (std::is_same_v<T, Vec3>) {
+        return py::array_t<double>({rows, py::ssize_t{3}}, reinterpret_cast<const double*>(data), owner);
+    } else {
+        return py::array_t<T>({rows}, data, owner);
+    }
+}
+
+/// The same, read-only.
+template <class T>
+[[nodiscard]] py::array lent(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
+    py::array array = array_over(data, count, std::move(keeper));
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+/// The same of flags, as booleans.
+[[nodiscard]] py::array lent_flags(const std::uint8_t* data, std::size_t count, std::shared_ptr<const void> keeper);
+
+/// The array of a vector, whose memory it takes over; the user may write into it.
+template <class T>
+[[nodiscard]] py::array given(std::vector<T>&& vector) {
+    auto keeper = std::make_shared<std::vector<T>>(std::move(vector));
+    const T* data = keeper->data();
+    const std::size_t count = keeper->size();
+    return array_over(data, count, std::move(keeper));
+}
+/// The same of flags, as booleans.
+[[nodiscard]] py::array given_flags(std::vector<std::uint8_t>&& flags);
+
+/// The thread limit of questions and steps (ricochet.set_threads).
+void set_threads(int threads);
+
+// What the module is made of.
+void bind_mesh(py::module_& module);
+void bind_simulation(py::module_& module);
+
+}  // namespace ricochet::python

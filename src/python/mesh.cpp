@@ -1,0 +1,236 @@
+// ricochet.Mesh: exact questions about a mesh.
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "python/arrays.h"
+#include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/queries/mesh_queries.h"
+
+namespace ricochet::python {
+namespace {
+
+TriangleMesh mesh_of(const py::handle& vertices, const py::handle& faces) {
+    const Doubles positions = numbers(vertices, "vertices", 3);
+    const auto corners = whole_numbers(faces, "faces", 3);
+    TriangleMesh mesh;
+    mesh.vertices.assign(points(positions).begin(), points(positions).end());
+    mesh.triangles.resize(corners.size() / 3);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        mesh.triangles[k / 3][k % 3] = static_cast<std::uint32_t>(corners[k]);
+    }
+    return mesh;
+}
+
+/// The questions are put while other threads of Python run. A copy answers them, so that set_vertices() may run beside.
+template <class Ask>
+auto ask(const MeshQueries& mesh, const Ask& question) {
+    const MeshQueries asked = mesh;
+    const py::gil_scoped_release released;
+    return question(asked);
+}
+
+py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
+
+py::object hits_of(MeshHits&& hits) {
+    return result("Hits")(given(std::move(hits.triangle)), given(std::move(hits.distance)),
+                          given(std::move(hits.point)));
+}
+
+/// Rays as Python hands them in.
+struct Rays {
+    Doubles origins;
+    Doubles directions;
+    Doubles most;
+
+    Rays(const py::handle& from, const py::handle& along, const py::handle& reach)
+        : origins(numbers(from, "origins", 3)),
+          directions(numbers(along, "directions", 3)),
+          most(numbers_or_one(reach, "most")) {}
+    [[nodiscard]] RayBatch batch() const { return {points(origins), points(directions), values(most)}; }
+};
+
+py::object first_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                      const py::object& most) {
+    const Rays rays(origins, directions, most);
+    const RayBatch batch = rays.batch();
+    return hits_of(ask(mesh, [&](const MeshQueries& m) { return m.first_hits(batch); }));
+}
+
+py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                    const py::object& most) {
+    const Rays rays(origins, directions, most);
+    const RayBatch batch = rays.batch();
+    std::vector<std::int64_t> ray;
+    AllMeshHits all = ask(mesh, [&](const MeshQueries& m) {
+        AllMeshHits found = m.all_hits(batch);
+        ray.reserve(found.first.back());
+        for (std::size_t i = 0; i + 1 < found.first.size(); ++i) {
+            ray.insert(ray.end(), found.first[i + 1] - found.first[i], static_cast<std::int64_t>(i));
+        }
+        return found;
+    });
+    return result("AllHits")(given(std::move(ray)), given(std::move(all.hits.triangle)),
+                             given(std::move(all.hits.distance)), given(std::move(all.hits.point)),
+                             given(std::move(all.crossing)), given(std::move(all.first)));
+}
+
+py::array count_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                     const py::object& most) {
+    const Rays rays(origins, directions, most);
+    const RayBatch batch = rays.batch();
+    return given(ask(mesh, [&](const MeshQueries& m) { return m.count_hits(batch); }));
+}
+
+py::array occluded(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                   const py::object& most) {
+    const Rays rays(origins, directions, most);
+    const RayBatch batch = rays.batch();
+    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.occluded(batch); }));
+}
+
+py::array inside(const MeshQueries& mesh, const py::object& where) {
+    const Doubles places = numbers(where, "points", 3);
+    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.inside(points(places)); }));
+}
+
+py::object closest_points(const MeshQueries& mesh, const py::object& where, double within) {
+    const Doubles places = numbers(where, "points", 3);
+    NearestPoints found = ask(mesh, [&](const MeshQueries& m) { return m.closest_points(points(places), within); });
+    return result("Hits")(given(std::move(found.triangle)), given(std::move(found.distance)),
+                          given(std::move(found.point)));
+}
+
+py::array signed_distances(const MeshQueries& mesh, const py::object& where) {
+    const Doubles places = numbers(where, "points", 3);
+    return given(ask(mesh, [&](const MeshQueries& m) { return m.signed_distances(points(places)); }));
+}
+
+py::object sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
+                 const py::object& vertices_after) {
+    const Doubles starts = numbers(from, "from_points", 3);
+    const Doubles ends = numbers(to, "to_points", 3);
+    const Doubles radii = numbers_or_one(radius, "radius");
+    if (vertices_after.is_none()) {
+        return hits_of(
+            ask(mesh, [&](const MeshQueries& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
+    }
+    const Doubles after = numbers(vertices_after, "vertices_after", 3);
+    return hits_of(ask(mesh, [&](const MeshQueries& m) {
+        return m.sweep_moving(points(starts), points(ends), values(radii), points(after));
+    }));
+}
+
+void set_vertices(MeshQueries& mesh, const py::object& vertices) {
+    const Doubles positions = numbers(vertices, "vertices", 3);
+    MeshQueries moved = mesh;
+    {
+        const py::gil_scoped_release released;
+        moved.set_vertices(points(positions));
+    }
+    mesh = moved;
+}
+
+py::array vertices_of(const MeshQueries& mesh) {
+    const auto keeper = std::make_shared<const MeshQueries>(mesh);
+    const auto& vertices = keeper->mesh().vertices;
+    return lent(vertices.data(), vertices.size(), keeper);
+}
+
+py::array faces_of(const MeshQueries& mesh) {
+    const auto keeper = std::make_shared<const MeshQueries>(mesh);
+    const auto& triangles = keeper->mesh().triangles;
+    const py::array flat = lent(reinterpret_cast<const std::uint32_t*>(triangles.data()), 3 * triangles.size(), keeper);
+    py::array faces = flat.attr("reshape")(-1, 3);
+    return faces;
+}
+
+py::array bounds_of(const MeshQueries& mesh) {
+    const Box3 box = bounds(mesh.mesh());
+    return given(std::vector<Vec3>{box.lower, box.upper});
+}
+
+MeshQueries read(const std::filesystem::path& file) {
+    const py::gil_scoped_release released;
+    return MeshQueries(read_mesh(file.string()).mesh);
+}
+
+constexpr const char* kMeshText = R"(A mesh of triangles, and exact questions about it.
+
+vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 3).
+
+Whether a ray hits, and what it hits first, is decided exactly for the doubles given: also at edges and vertices, also far
+from the origin. Answers are the same bits for any number of threads and any order. Questions run on all threads and let
+other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.)";
+
+void bind_rays(py::class_<MeshQueries>& type) {
+    using py::arg;
+    type.def("first_hits", &first_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             "The first hit of each ray. Directions have any length above 0; most: how far rays reach, in metres, one "
+             "number or one each.")
+        .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
+             "and a way along the surface is where it begins.")
+        .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             "How many places all_hits() finds for each ray.")
+        .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
+             "Whether each ray hits anything; cheaper than first_hits().");
+}
+
+void bind_points(py::class_<MeshQueries>& type) {
+    using py::arg;
+    type.def("inside", &inside, arg("points"),
+             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed.")
+        .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
+             "The point of the mesh nearest to each point, where one is within that distance.")
+        .def("signed_distances", &signed_distances, arg("points"),
+             "Distance of each point from the surface, negative inside. The mesh must be closed.")
+        .def("sweep", &sweep, arg("from_points"), arg("to_points"), arg("radius") = 0.0,
+             arg("vertices_after") = py::none(),
+             "What points, or spheres of a radius (one number or one each), meet first on straight ways. "
+             "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
+}
+
+}  // namespace
+
+void bind_mesh(py::module_& module) {
+    using py::arg;
+    py::class_<MeshQueries> type(module, "Mesh", kMeshText);
+    type.def(py::init([](const py::object& vertices, const py::object& faces) {
+                 TriangleMesh mesh = mesh_of(vertices, faces);
+                 const py::gil_scoped_release released;
+                 return MeshQueries(std::move(mesh));
+             }),
+             arg("vertices"), arg("faces"))
+        .def_static("read", &read, arg("file"), "A mesh from an OBJ, PLY, STL or OFF file, in doubles.")
+        .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
+        .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
+        .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")
+        .def_property_readonly("area", [](const MeshQueries& m) { return surface_area(m.mesh()); })
+        .def_property_readonly(
+            "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
+            "Of a closed mesh; above 0 where it is wound outward.")
+        .def_property_readonly("is_closed", &MeshQueries::is_closed,
+                               "Whether every edge has an even number of triangles.")
+        .def("set_vertices", &set_vertices, arg("vertices"),
+             "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
+        .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })
+        .def("__repr__",
+             [](const MeshQueries& m) {
+                 return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
+                                    m.mesh().vertices.size());
+             })
+        .def(py::pickle([](const MeshQueries& m) { return py::make_tuple(vertices_of(m), faces_of(m)); },
+                        [](const py::tuple& state) {
+                            if (state.size() != 2) throw InputError("Mesh: this is not what one is pickled as");
+                            return MeshQueries(mesh_of(state[0], state[1]));
+                        }));
+    bind_rays(type);
+    bind_points(type);
+}
+
+}  // namespace ricochet::python

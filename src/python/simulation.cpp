@@ -1,0 +1,341 @@
+// ricochet._core.Simulation: scenes, steps, and what a simulation shows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "python/arrays.h"
+#include "python/simulation_handle.h"
+#include "ricochet/core/error.h"
+#include "ricochet/queries/mesh_queries.h"
+
+namespace ricochet::python {
+namespace {
+
+using Handle = SimulationHandle;
+
+py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
+
+// Particles.
+
+py::object particles_of(const Handle& handle) {
+    const std::shared_ptr<LentParticles> lent = handle.lend();
+    const Particles& p = *lent->shown;
+    const std::size_t n = p.size();
+    const auto flags = [&](const std::vector<std::uint8_t>& list) { return lent_flags(list.data(), n, lent); };
+    return result("Particles")(python::lent(p.id.data(), n, lent), python::lent(p.position.data(), n, lent),
+                               python::lent(p.velocity.data(), n, lent), python::lent(p.spin.data(), n, lent),
+                               python::lent(p.mass.data(), n, lent), python::lent(p.radius.data(), n, lent),
+                               python::lent(p.birth_time.data(), n, lent), python::lent(p.lifetime.data(), n, lent),
+                               python::lent(p.contacts.data(), n, lent), flags(p.resting), flags(p.frozen));
+}
+
+py::dict attributes_of(const Handle& handle) {
+    return handle.read([](const Simulation& simulation) {
+        const AttributeTable shown = simulation.shown_attributes();
+        py::dict columns;
+        for (std::size_t c = 0; c < shown.columns().size(); ++c) {
+            std::vector<Vec3> list(shown.size());
+            for (std::size_t i = 0; i < list.size(); ++i) list[i] = shown.value(c, i);
+            py::object column = given(std::move(list));
+            if (shown.columns()[c].components == 1) column = column[py::make_tuple(py::ellipsis(), 0)];
+            columns[py::str(shown.columns()[c].name)] = column;
+        }
+        return columns;
+    });
+}
+
+/// One value for all, or one each.
+double value_of(const Doubles& list, std::size_t i) { return list.size() == 1 ? *list.data() : list.data()[i]; }
+
+Doubles one_or_each(const py::handle& object, const char* name, std::size_t count) {
+    Doubles list = numbers_or_one(object, name);
+    if (list.size() != 1) require_same_length(static_cast<std::size_t>(list.size()), count, name);
+    return list;
+}
+
+std::vector<Vec3> vectors_or_zero(const py::handle& object, const char* name, std::size_t count) {
+    if (object.is_none()) return std::vector<Vec3>(count);
+    const Doubles list = numbers(object, name, 3);
+    require_same_length(static_cast<std::size_t>(list.shape(0)), count, name);
+    return {points(list).begin(), points(list).end()};
+}
+
+py::array add_particles(Handle& handle, const py::object& position, const py::object& velocity, const py::object& mass,
+                        const py::object& radius, const py::object& spin, const py::object& lifetime) {
+    const Doubles places = numbers(position, "position", 3);
+    const auto count = static_cast<std::size_t>(places.shape(0));
+    const std::vector<Vec3> velocities = vectors_or_zero(velocity, "velocity", count);
+    const std::vector<Vec3> spins = vectors_or_zero(spin, "spin", count);
+    const Doubles masses = one_or_each(mass, "mass", count);
+    const Doubles radii = one_or_each(radius, "radius", count);
+    const Doubles lives = one_or_each(lifetime, "lifetime", count);
+    std::vector<Particle> particles(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        particles[i].position = points(places)[i];
+        particles[i].velocity = velocities[i];
+        particles[i].spin = spins[i];
+        particles[i].mass = value_of(masses, i);
+        particles[i].radius = value_of(radii, i);
+        particles[i].lifetime = value_of(lives, i);
+    }
+    return given(handle.change([&](Simulation& simulation) { return simulation.add_particles(particles); }));
+}
+
+std::size_t remove_particles(Handle& handle, const py::object& ids) {
+    const std::vector<std::uint64_t> list = whole_numbers(ids, "ids", 0);
+    return handle.change([&](Simulation& simulation) { return simulation.remove_particles(list); });
+}
+
+// Contacts and totals.
+
+/// A contact as a structured array holds it.
+struct Contact {
+    double time;
+    std::uint64_t particle;
+    std::uint32_t collider;
+    std::uint32_t triangle;
+    Vec3 position;
+    Vec3 normal;
+    Vec3 velocity_before;
+    Vec3 velocity_after;
+    double mass;
+    double radius;
+};
+
+py::dtype contact_type() {
+    py::list names;
+    py::list formats;
+    py::list offsets;
+    const auto add = [&](const char* name, const char* format, std::size_t offset) {
+        names.append(name);
+        formats.append(format);
+        offsets.append(offset);
+    };
+    add("time", "f8", offsetof(Contact, time));
+    add("particle", "u8", offsetof(Contact, particle));
+    add("collider", "u4", offsetof(Contact, collider));
+    add("triangle", "u4", offsetof(Contact, triangle));
+    add("position", "(3,)f8", offsetof(Contact, position));
+    add("normal", "(3,)f8", offsetof(Contact, normal));
+    add("velocity_before", "(3,)f8", offsetof(Contact, velocity_before));
+    add("velocity_after", "(3,)f8", offsetof(Contact, velocity_after));
+    add("mass", "f8", offsetof(Contact, mass));
+    add("radius", "f8", offsetof(Contact, radius));
+    py::dict description;
+    description["names"] = names;
+    description["formats"] = formats;
+    description["offsets"] = offsets;
+    description["itemsize"] = sizeof(Contact);
+    return py::dtype::from_args(description);
+}
+
+py::array take_contacts(Handle& handle) {
+    const std::vector<ContactRecord> records = handle.take_contacts();
+    auto contacts = std::make_shared<std::vector<Contact>>();
+    contacts->reserve(records.size());
+    handle.read([&](const Simulation& simulation) {
+        for (const ContactRecord& r : records) {
+            const SurfaceName surface = simulation.surface_name(r.surface);
+            contacts->push_back({r.time, r.particle, surface.collider, surface.triangle, r.position, r.normal,
+                                 r.velocity_before, r.velocity_after, r.mass, r.radius});
+        }
+    });
+    const py::capsule owner(new std::shared_ptr<const void>(contacts),
+                            [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+    return py::array(contact_type(), {static_cast<py::ssize_t>(contacts->size())}, {}, contacts->data(), owner);
+}
+
+/// The number of a collider that is named by its number or its name.
+std::size_t collider_of(const Simulation& simulation, const py::handle& which) {
+    const auto& colliders = simulation.colliders();
+    if (py::isinstance<py::str>(which)) {
+        const std::string name = py::cast<std::string>(which);
+        for (std::size_t i = 0; i < colliders.size(); ++i) {
+            if (colliders[i].name == name) return i;
+        }
+        throw InputError(fmt::format("collider: found \"{}\", expected one of the colliders' names", name));
+    }
+    long long number = -1;
+    try {
+        number = py::cast<long long>(which);
+    } catch (const py::cast_error&) {
+        throw InputError("collider: expected a number or a name");
+    }
+    if (number < 0) throw InputError(fmt::format("collider: found {}, expected a number of at least 0", number));
+    require_index(static_cast<std::size_t>(number), colliders.size(), "collider");
+    return static_cast<std::size_t>(number);
+}
+
+py::object triangle_totals(const Handle& handle, const py::object& collider) {
+    return handle.read([&](const Simulation& simulation) {
+        TriangleTotals totals = simulation.triangle_totals(collider_of(simulation, collider));
+        return result("TriangleTotals")(given(std::move(totals.hits)), given(std::move(totals.impulse)));
+    });
+}
+
+py::object collider_mesh(const Handle& handle, const py::object& collider) {
+    return handle.read([&](const Simulation& simulation) -> py::object {
+        auto mesh = simulation.collider_mesh(collider_of(simulation, collider));
+        return mesh ? py::cast(MeshQueries(std::move(*mesh))) : py::none();
+    });
+}
+
+py::list colliders_of(const Handle& handle) {
+    return handle.read([](const Simulation& simulation) {
+        py::list names;
+        for (const ColliderDescription& collider : simulation.colliders()) names.append(collider.name);
+        return names;
+    });
+}
+
+py::tuple vector_of(const Vec3& v) { return py::make_tuple(v.x, v.y, v.z); }
+
+py::list bodies_of(const Handle& handle) {
+    return handle.read([](const Simulation& simulation) {
+        py::list list;
+        for (const BodyState& body : simulation.bodies()) {
+            py::dict entry;
+            entry["frame"] = body.frame;
+            entry["center"] = vector_of(body.center);
+            entry["velocity"] = vector_of(body.velocity);
+            entry["angular_velocity"] = vector_of(body.angular_velocity);
+            entry["angular_momentum"] = vector_of(body.angular_momentum);
+            entry["mass"] = body.mass;
+            entry["coordinate"] = body.coordinate;
+            entry["rate"] = body.rate;
+            entry["kinetic_energy"] = body.kinetic_energy;
+            list.append(entry);
+        }
+        return list;
+    });
+}
+
+py::dict statistics_of(const Handle& handle) {
+    const SimulationStatistics s = handle.read([](const Simulation& simulation) { return simulation.statistics(); });
+    py::dict d;
+    d["steps"] = s.steps, d["particle_steps"] = s.particle_steps, d["emitted"] = s.emitted;
+    d["expired"] = s.expired, d["absorbed"] = s.absorbed, d["shattered"] = s.shattered, d["children"] = s.children;
+    d["out_of_bounds"] = s.out_of_bounds, d["removed"] = s.removed, d["contacts"] = s.contacts;
+    d["bounces_per_step_max"] = s.bounces_per_step_max, d["resting"] = s.resting, d["asleep"] = s.asleep;
+    d["unsimulated_time"] = s.unsimulated_time, d["budget_exhausted"] = s.budget_exhausted;
+    d["started_inside"] = s.started_inside, d["started_in_overlap"] = s.started_in_overlap;
+    d["stayed"] = s.stayed, d["squeezed"] = s.squeezed, d["frozen"] = s.frozen;
+    d["violations"] = s.violations, d["energy_violations"] = s.energy_violations;
+    d["penetrations"] = s.penetrations, d["springs_broken"] = s.springs_broken;
+    return d;
+}
+
+// Steps.
+
+/// How many steps it takes to come to a time, s, from where the simulation is.
+std::uint64_t steps_to(const Simulation& simulation, double time) {
+    if (!(time >= 0.0)) throw InputError(fmt::format("time: found {}, expected at least 0 s", time));
+    const double steps = std::ceil(time / simulation.options().time_step - 1e-6);
+    const auto last = static_cast<double>(simulation.step_count());
+    const auto wanted = static_cast<std::uint64_t>(std::min(steps, last));
+    return wanted > simulation.step_index() ? wanted - simulation.step_index() : 0;
+}
+
+template <class Value>
+auto reader(Value (Simulation::*function)() const) {
+    return [function](const Handle& handle) {
+        return handle.read([function](const Simulation& simulation) { return (simulation.*function)(); });
+    };
+}
+
+std::unique_ptr<Handle> restored(const py::tuple& state) {
+    if (state.size() != 6) throw InputError("Simulation: this is not what one is pickled as");
+    auto handle = std::make_unique<Handle>(state[0].cast<std::string>(), state[1].cast<std::string>(),
+                                           state[2].cast<std::vector<std::string>>(), state[3].cast<bool>(),
+                                           state[4].cast<bool>());
+    handle->restore(state[5].cast<std::string>());
+    return handle;
+}
+
+void bind_state(py::class_<Handle>& type) {
+    type.def_property_readonly("time", reader(&Simulation::time), "Seconds.")
+        .def_property_readonly("step_index", reader(&Simulation::step_index), "Steps done.")
+        .def_property_readonly("step_count", reader(&Simulation::step_count), "Steps in all.")
+        .def_property_readonly("finished", reader(&Simulation::finished))
+        .def_property_readonly("kinetic_energy", reader(&Simulation::kinetic_energy), "Joule.")
+        .def_property_readonly("potential_energy", reader(&Simulation::potential_energy),
+                               "Joule; None where a force has no potential.")
+        .def_property_readonly(
+            "state_hash",
+            [](const Handle& handle) {
+                return fmt::format("{:016x}", handle.read([](const Simulation& s) { return s.state_hash(); }));
+            },
+            "Of id, position and velocity of all particles: the same for the same bits, as the tool prints it.")
+        .def_property_readonly("warnings",
+                               [](const Handle& handle) {
+                                   std::vector<std::string> all = handle.scene().warnings;
+                                   const auto own = handle.read([](const Simulation& s) { return s.warnings(); });
+                                   all.insert(all.end(), own.begin(), own.end());
+                                   return all;
+                               })
+        .def_property_readonly("particles", &particles_of,
+                               "The particles as read-only arrays, without a copy; they keep their values when the "
+                               "simulation goes on.")
+        .def_property_readonly("attributes", &attributes_of, "The particles' attributes as they are shown, by name.")
+        .def_property_readonly("statistics", &statistics_of, "Counts over the run so far.")
+        .def_property_readonly("colliders", &colliders_of, "Their names.")
+        .def_property_readonly("bodies", &bodies_of, "How the bodies that particles push stand and move.")
+        .def("__len__",
+             [](const Handle& handle) { return handle.read([](const Simulation& s) { return s.particles().size(); }); })
+        .def("__repr__", [](const Handle& handle) {
+            return handle.read([](const Simulation& s) {
+                return fmt::format("<ricochet.Simulation: {} particles at {:g} s, step {} of {}>", s.particles().size(),
+                                   s.time(), s.step_index(), s.step_count());
+            });
+        });
+}
+
+void bind_changes(py::class_<Handle>& type) {
+    using py::arg;
+    type.def("_advance", &Handle::advance, arg("steps"), arg("progress"))
+        .def(
+            "_steps_to",
+            [](const Handle& handle, double time) {
+                return handle.read([&](const Simulation& simulation) { return steps_to(simulation, time); });
+            },
+            arg("time"))
+        .def("add_particles", &add_particles, arg("position"), arg("velocity") = py::none(), arg("mass") = 1.0,
+             arg("radius") = 0.0, arg("spin") = py::none(), arg("lifetime") = std::numeric_limits<double>::infinity(),
+             "Takes in particles as they are now, all or none. Vectors of shape (n, 3); numbers one for all or one "
+             "each. Returns their ids.")
+        .def("remove_particles", &remove_particles, arg("ids"), "Returns how many of the ids were those of particles.")
+        .def("take_contacts", &take_contacts,
+             "The contacts since the last call as a structured array, in the order of their times; with contacts=True.")
+        .def("triangle_totals", &triangle_totals, arg("collider"),
+             "Hits and impulses on each triangle of a collider, by its number or name.")
+        .def("collider_mesh", &collider_mesh, arg("collider"),
+             "The mesh of a collider, by its number or name; None for planes.")
+        .def(
+            "save", [](const Handle& handle) { return py::bytes(handle.save()); },
+            "All that steps have left behind, for restore() in a simulation of the same scene.")
+        .def(
+            "restore", [](Handle& handle, const py::bytes& state) { handle.restore(state); }, arg("state"))
+        .def(py::pickle(
+            [](const Handle& handle) {
+                return py::make_tuple(handle.text(), handle.file(), handle.overrides(), handle.keeps_contacts(),
+                                      handle.verifies(), py::bytes(handle.save()));
+            },
+            &restored));
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+    using py::arg;
+    py::class_<Handle> type(module, "Simulation", "A simulation of a scene that is given as text.");
+    type.def(py::init<std::string, std::string, std::vector<std::string>, bool, bool>(), arg("text"), arg("file"),
+             arg("overrides"), arg("contacts"), arg("verify"));
+    bind_state(type);
+    bind_changes(type);
+}
+
+}  // namespace ricochet::python

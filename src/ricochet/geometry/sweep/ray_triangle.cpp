@@ -1,0 +1,287 @@
+#include "ricochet/geometry/sweep/ray_triangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// Relative error up to which a determinant in double-double serves for the place of a meeting.
+constexpr double kAccuracy = 0x1p-60;
+/// Quotients of two such numbers that differ by more are certainly in that order.
+constexpr double kSeparated = 0x1p-48;
+
+const Vec3& corner(const Corners& triangle, std::size_t k) { return triangle[k % 3]; }
+TriangleFeature edge(std::size_t k) {
+    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kEdgeAB) + k % 3);
+}
+TriangleFeature vertex(std::size_t k) {
+    return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kVertexA) + k % 3);
+}
+/// The first corner of an edge, or the corner.
+std::size_t number_of(TriangleFeature feature) {
+    const auto first = rank(feature) == 2 ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB;
+    return static_cast<std::size_t>(feature) - static_cast<std::size_t>(first);
+}
+
+ExactDifference exact(const Vec3& direction) { return {direction, Vec3{}}; }
+
+/// Sign of (u x v) . w beyond the filter.
+int exact_sign(const ExactDifference& u, const ExactDifference& v, const ExactDifference& w) {
+    const BoundedValue bounded = BoundedCross(u, v).dot(w);
+    return bounded.sign_is_known() ? sign(bounded.value) : detail::exact_determinant(u, v, w).sign();
+}
+
+bool are_opposite(int x, int y) { return x * y < 0; }
+
+DoubleDouble quotient(const DoubleDouble& x, const DoubleDouble& y) {
+    if (x.hi == 0.0) return {};
+    const int x_exponent = std::ilogb(x.hi);
+    const int y_exponent = std::ilogb(y.hi);
+    return scaled(scaled(x, -x_exponent) / scaled(y, -y_exponent), x_exponent - y_exponent);
+}
+
+// A ray in the plane of a triangle, or one that meets a triangle without area, seen along an axis along which nothing
+// that matters falls together.
+
+/// Sign of component `axis` of u x v.
+int cross_sign(const ExactDifference& u, const ExactDifference& v, int axis) {
+    return detail::exact_cross_component(u, v, axis).sign();
+}
+
+/// Of the corner of a triangle from the ray's line.
+std::array<int, 3> sides_of(const Ray& ray, const Corners& triangle, int axis) {
+    std::array<int, 3> sides{};
+    const ExactDifference along = exact(ray.direction);
+    for (std::size_t k = 0; k < 3; ++k) {
+        sides[k] = cross_sign(along, ExactDifference(triangle[k], ray.origin), axis);
+    }
+    return sides;
+}
+
+/// An axis along which not all corners are on the line; the dominant one of the direction where all are on it.
+int axis_of(const Ray& ray, const Corners& triangle) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto sides = sides_of(ray, triangle, axis);
+        if (sides[0] != 0 || sides[1] != 0 || sides[2] != 0) return axis;
+    }
+    return 0;
+}
+
+int dominant_axis(const Vec3& v) {
+    const Vec3 size = abs(v);
+    if (size.x >= size.y && size.x >= size.z) return 0;
+    return size.y >= size.z ? 1 : 2;
+}
+
+/// t of a corner on the line, or of an edge that crosses it, as a quotient.
+ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
+    const std::size_t k = number_of(feature);
+    const ExactDifference from_origin(triangle[k], ray.origin);
+    if (rank(feature) == 2) {
+        const int along = dominant_axis(ray.direction);
+        return {widened(Expansion<2>(two_diff(triangle[k][along], ray.origin[along]))),
+                widened(Expansion<2>(DoubleDouble{ray.direction[along], 0.0}))};
+    }
+    const ExactDifference side(corner(triangle, k + 1), triangle[k]);
+    return {widened(detail::exact_cross_component(from_origin, side, axis)),
+            widened(detail::exact_cross_component(exact(ray.direction), side, axis))};
+}
+
+int sign_of(const ExactRatio& ratio) { return ratio.numerator.sign() * ratio.denominator.sign(); }
+
+/// The common part of ray and triangle in the order along the ray, at most five places.
+struct Places {
+    std::array<TriangleFeature, 5> feature{};
+    std::array<ExactRatio, 5> t;
+    std::size_t count = 0;
+
+    void add(const Ray& ray, const Corners& triangle, TriangleFeature part, int axis) {
+        feature[count] = part;
+        t[count] = place_in_plane(ray, triangle, part, axis);
+        ++count;
+    }
+};
+
+/// The part of the triangle on which the ray's origin lies, which is strictly between two places of the line.
+TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return edge(k);
+    }
+    return TriangleFeature::kFace;
+}
+
+/// All determinants of line and edges are zero: the line lies in the triangle's plane, or meets the line of one without
+/// area.
+std::optional<RayMeeting> meet_in_plane(const Ray& ray, const Corners& triangle) {
+    const int axis = axis_of(ray, triangle);
+    const auto sides = sides_of(ray, triangle, axis);
+    Places places;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (sides[k] == 0) places.add(ray, triangle, vertex(k), axis);
+        if (are_opposite(sides[k], sides[(k + 1) % 3])) places.add(ray, triangle, edge(k), axis);
+    }
+    RayMeeting meeting;
+    meeting.in_plane = true;
+    meeting.axis = axis;
+    std::optional<std::size_t> first;
+    bool is_behind = false;
+    for (std::size_t i = 0; i < places.count; ++i) {
+        if (sign_of(places.t[i]) < 0) {
+            is_behind = true;
+            continue;
+        }
+        meeting.features.add(places.feature[i]);
+        if (!first || compare(places.t[i], places.t[*first]) < 0) first = i;
+    }
+    if (!first) return std::nullopt;
+    meeting.feature = places.feature[*first];
+    const ExactRatio& t = places.t[*first];
+    if (is_behind && sign_of(t) > 0) {
+        meeting.feature = feature_of_origin(sides);
+        meeting.from_origin = true;
+        meeting.t = {};
+        return meeting;
+    }
+    meeting.t = quotient(rounded(t.numerator), rounded(t.denominator));
+    return meeting;
+}
+
+/// t where the line crosses the plane of a triangle with an area.
+DoubleDouble crossing(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const ExactDifference u(b, a);
+    const ExactDifference v(c, a);
+    const ExactDifference w(a, ray.origin);
+    const BoundedCross normal(u, v);
+    const auto accurate = [&](const ExactDifference& x) {
+        const BoundedValue bounded = normal.dot(x);
+        return bounded.is_accurate(kAccuracy) ? bounded.value : rounded(detail::exact_determinant(u, v, x));
+    };
+    return quotient(accurate(w), accurate(exact(ray.direction)));
+}
+
+/// The part of the triangle whose edges the line passes on these sides.
+TriangleFeature feature_of_sides(const std::array<int, 3>& sides) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (sides[k] != 0) continue;
+        if (sides[(k + 1) % 3] == 0) return vertex(k + 1);
+        if (sides[(k + 2) % 3] == 0) return vertex(k);
+        return edge(k);
+    }
+    return TriangleFeature::kFace;
+}
+
+/// t of a meeting, exactly.
+ExactRatio place_of(const Ray& ray, const MetTriangle& met) {
+    const auto& [a, b, c] = met.corners;
+    if (met.meeting.from_origin) return {{}, widened(Expansion<2>(DoubleDouble{1.0, 0.0}))};
+    if (met.meeting.in_plane) return place_in_plane(ray, met.corners, met.meeting.feature, met.meeting.axis);
+    const ExactDifference u(b, a);
+    const ExactDifference v(c, a);
+    return {detail::exact_determinant(u, v, ExactDifference(a, ray.origin)),
+            detail::exact_determinant(u, v, exact(ray.direction))};
+}
+
+int order_of(const Vec3& p, const Vec3& q) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (p[axis] != q[axis]) return p[axis] < q[axis] ? -1 : 1;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Ray::Ray(const Vec3& from, const Vec3& along) : origin(flush_tiny(from)) {
+    const int exponent = -std::ilogb(max_abs(along));
+    const auto scale = [&](double x) { return std::ldexp(x, exponent); };
+    direction = flush_tiny({scale(along.x), scale(along.y), scale(along.z)});
+}
+
+Vec3 Ray::at(const DoubleDouble& t) const {
+    const auto along = [&](double from, double by) { return (t * by + from).hi; };
+    return {along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)};
+}
+
+double Ray::distance(const DoubleDouble& t) const {
+    const auto square = [](double x) { return two_product(x, x); };
+    return (t * sqrt(square(direction.x) + square(direction.y) + square(direction.z))).hi;
+}
+
+std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+    // Cheap filters reject nearly everything before anything is computed exactly.
+    const Vec3& d = ray.direction;
+    const Vec3 oa = a - ray.origin;
+    const Vec3 ob = b - ray.origin;
+    const Vec3 oc = c - ray.origin;
+    std::array<int, 3> sides{detail::filtered_sign(detail::filtered_cross(oa, ob), d),
+                             detail::filtered_sign(detail::filtered_cross(ob, oc), d),
+                             detail::filtered_sign(detail::filtered_cross(oc, oa), d)};
+    const auto misses = [&] {
+        return are_opposite(sides[0], sides[1]) || are_opposite(sides[1], sides[2]) || are_opposite(sides[2], sides[0]);
+    };
+    if (misses()) return std::nullopt;
+    const detail::FilteredCross normal = detail::filtered_cross(b - a, c - a);
+    int height = detail::filtered_sign(normal, oa);  // of the plane above the origin, along the normal
+    int speed = detail::filtered_sign(normal, d);
+    if (are_opposite(height, speed)) return std::nullopt;
+    const Corners corners{a, b, c};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (sides[k] != 0) continue;
+        sides[k] = exact_sign(ExactDifference(corners[k], ray.origin),
+                              ExactDifference(corner(corners, k + 1), ray.origin), exact(d));
+        if (misses()) return std::nullopt;
+    }
+    if (sides[0] == 0 && sides[1] == 0 && sides[2] == 0) return meet_in_plane(ray, corners);
+    const ExactDifference u(b, a);
+    const ExactDifference v(c, a);
+    if (speed == 0) speed = exact_sign(u, v, exact(d));
+    if (speed == 0) return std::nullopt;
+    if (height == 0) height = exact_sign(u, v, ExactDifference(a, ray.origin));
+    if (are_opposite(height, speed)) return std::nullopt;
+    RayMeeting meeting;
+    meeting.feature = feature_of_sides(sides);
+    meeting.speed = speed;
+    meeting.t = height == 0 ? DoubleDouble{} : crossing(ray, a, b, c);
+    return meeting;
+}
+
+FeatureKey::FeatureKey(const Corners& triangle, TriangleFeature feature) : count(3 - rank(feature)), corners(triangle) {
+    if (feature == TriangleFeature::kFace) {
+        std::sort(corners.begin(), corners.end(), [](const Vec3& p, const Vec3& q) { return order_of(p, q) < 0; });
+        return;
+    }
+    const std::size_t k = number_of(feature);
+    corners = {triangle[k], {}, {}};
+    if (count == 2) corners[1] = corner(triangle, k + 1);
+    if (count == 2 && order_of(corners[1], corners[0]) < 0) std::swap(corners[0], corners[1]);
+}
+
+int FeatureKey::order(const FeatureKey& x, const FeatureKey& y) {
+    if (x.count != y.count) return x.count < y.count ? -1 : 1;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(x.count); ++k) {
+        if (const int order = order_of(x.corners[k], y.corners[k]); order != 0) return order;
+    }
+    return 0;
+}
+
+int compare_along(const Ray& ray, const MetTriangle& x, const MetTriangle& y) {
+    const double x_t = x.meeting.t.hi;
+    const double y_t = y.meeting.t.hi;
+    const double difference = x_t - y_t;
+    if (std::fabs(difference) > kSeparated * std::max(std::fabs(x_t), std::fabs(y_t))) {
+        return difference < 0.0 ? -1 : 1;
+    }
+    const bool from_origin = x.meeting.from_origin || y.meeting.from_origin;
+    if (!from_origin &&
+        FeatureKey::order(FeatureKey(x.corners, x.meeting.feature), FeatureKey(y.corners, y.meeting.feature)) == 0) {
+        return 0;
+    }
+    return compare(place_of(ray, x), place_of(ray, y));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,94 @@
+#include "ricochet/queries/mesh_index.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kBlock = 1 << 14;
+
+TriangleMesh checked(TriangleMesh mesh) {
+    if (mesh.triangles.empty()) throw InputError("mesh: found no triangles, expected at least one");
+    require_corners(mesh);
+    require_positions(mesh.vertices, "vertices");
+    for (Vec3& vertex : mesh.vertices) vertex = flush_tiny(vertex);
+    return mesh;
+}
+
+}  // namespace
+
+void require_positions(std::span<const Vec3> points, const char* name) {
+    const auto is_wrong = [](const Vec3& p) { return !is_finite(p) || max_abs(p) > kLargestCoordinate; };
+    const auto wrong = std::find_if(points.begin(), points.end(), is_wrong);
+    if (wrong == points.end()) return;
+    throw InputError(fmt::format("{}[{}]: found [{}, {}, {}], expected finite coordinates of at most {:g} m", name,
+                                 wrong - points.begin(), wrong->x, wrong->y, wrong->z, kLargestCoordinate));
+}
+
+MeshIndex::MeshIndex(TriangleMesh mesh) : mesh_(std::make_shared<const TriangleMesh>(checked(std::move(mesh)))) {
+    clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(mesh_->vertices, mesh_->triangles));
+    finish();
+}
+
+MeshIndex::MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices) {
+    require_same_length(vertices.size(), other.mesh().vertices.size(), "vertices");
+    mesh_ = std::make_shared<const TriangleMesh>(checked({{vertices.begin(), vertices.end()}, other.mesh().triangles}));
+    clusters_ = std::make_shared<const std::vector<TriangleCluster>>(
+        refitted(*other.clusters_, mesh_->vertices, mesh_->triangles));
+    {
+        const std::lock_guard lock(other.making_);
+        closed_ = other.closed_;  // of the triangles alone
+    }
+    finish();
+}
+
+void MeshIndex::finish() {
+    const std::size_t count = mesh_->triangles.size();
+    degenerate_.assign(count, 0);
+    parallel_for_blocks(count, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto [a, b, c] = corners(static_cast<std::uint32_t>(t));
+            degenerate_[t] = are_collinear(a, b, c) ? 1 : 0;
+        }
+    });
+    if (std::find(degenerate_.begin(), degenerate_.end(), 1) == degenerate_.end()) degenerate_ = {};
+    box_ = bounds(*mesh_);
+    for_points_ = std::make_unique<TriangleBvh>(clusters_, 0.0, TriangleBvh::Device::shared);
+}
+
+const TriangleBvh& MeshIndex::hierarchy(double radius) const {
+    if (radius <= 0.0) return *for_points_;
+    const int exponent = std::ilogb(radius) + 1;
+    const std::lock_guard lock(making_);
+    auto& found = for_spheres_[exponent];
+    if (!found)
+        found = std::make_unique<TriangleBvh>(clusters_, std::ldexp(1.0, exponent), TriangleBvh::Device::shared);
+    return *found;
+}
+
+bool MeshIndex::is_closed() const {
+    const std::lock_guard lock(making_);
+    if (!closed_) closed_ = ricochet::is_closed(*mesh_);
+    return *closed_;
+}
+
+const MeshInterior& MeshIndex::interior() const {
+    if (!is_closed()) {
+        throw InputError(
+            "mesh: found one that is open, expected a closed one: every edge with an even number of triangles");
+    }
+    const std::lock_guard lock(making_);
+    if (!interior_) interior_ = std::make_unique<MeshInterior>(mesh_);
+    return *interior_;
+}
+
+}  // namespace ricochet

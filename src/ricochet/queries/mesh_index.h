@@ -1,0 +1,70 @@
+/// \file
+/// Private: a mesh with what its questions need. What only some of them need is made when the first of them is asked.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+
+namespace ricochet {
+
+/// Questions are answered in blocks of so many.
+inline constexpr std::size_t kQuestionBlock = 256;
+
+/// Safe from any number of threads.
+class MeshIndex {
+public:
+    /// Throws as MeshQueries does.
+    explicit MeshIndex(TriangleMesh mesh);
+    /// The same triangles elsewhere, the hierarchy's shape kept.
+    MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices);
+
+    struct Corners {
+        const Vec3& a;
+        const Vec3& b;
+        const Vec3& c;
+    };
+    [[nodiscard]] Corners corners(std::uint32_t triangle) const {
+        const Triangle& t = mesh_->triangles[triangle];
+        return {mesh_->vertices[t[0]], mesh_->vertices[t[1]], mesh_->vertices[t[2]]};
+    }
+    /// True for triangles without area.
+    [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
+        return !degenerate_.empty() && degenerate_[triangle] != 0;
+    }
+    [[nodiscard]] bool has_degenerate() const { return !degenerate_.empty(); }
+    [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
+    [[nodiscard]] const Box3& box() const { return box_; }
+    /// For spheres up to that radius, m; there is one for each power of two.
+    [[nodiscard]] const TriangleBvh& hierarchy(double radius = 0.0) const;
+    [[nodiscard]] bool is_closed() const;
+    /// Throws InputError where the mesh is open.
+    [[nodiscard]] const MeshInterior& interior() const;
+
+private:
+    void finish();
+
+    std::shared_ptr<const TriangleMesh> mesh_;
+    std::vector<std::uint8_t> degenerate_;  ///< empty where none is
+    Box3 box_;
+    TriangleBvh::Clusters clusters_;
+    std::unique_ptr<TriangleBvh> for_points_;
+    mutable std::mutex making_;
+    mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
+    mutable std::optional<bool> closed_;
+    mutable std::unique_ptr<MeshInterior> interior_;
+};
+
+/// Throws InputError "name[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.
+void require_positions(std::span<const Vec3> points, const char* name);
+
+}  // namespace ricochet

@@ -1,0 +1,107 @@
+// What is inside, and what is nearest.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
+#include "ricochet/queries/mesh_index.h"
+#include "ricochet/queries/mesh_queries.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct Nearest {
+    std::uint32_t triangle;
+    ClosestPointOnTriangle point;
+};
+
+/// The order that makes one of several triangles the nearest: that of SignedDistance.
+bool comes_before(const Nearest& x, const Nearest& y) {
+    if (x.point.distance_squared != y.point.distance_squared) {
+        return x.point.distance_squared < y.point.distance_squared;
+    }
+    if (rank(x.point.feature) != rank(y.point.feature)) return rank(x.point.feature) < rank(y.point.feature);
+    return x.triangle < y.triangle;
+}
+
+std::optional<Nearest> nearest(const MeshIndex& mesh, const Vec3& p, double within) {
+    std::optional<Nearest> best;
+    mesh.hierarchy().query_point(p, within, [&](std::uint32_t triangle) {
+        if (mesh.is_degenerate(triangle)) return within;
+        const auto [a, b, c] = mesh.corners(triangle);
+        const Nearest found{triangle, closest_point_on_triangle(p, a, b, c)};
+        if (best && !comes_before(found, *best)) return within;
+        best = found;
+        // Rounded up, so that what is as near is still visited.
+        within = std::min(within, std::sqrt(found.point.distance_squared) * (1.0 + 0x1p-40));
+        return within;
+    });
+    return best;
+}
+
+/// Over a face the distance from its plane is the accurate one.
+double distance(const MeshIndex& mesh, const Nearest& nearest, const Vec3& p) {
+    if (nearest.point.feature != TriangleFeature::kFace) return length(nearest.point.offset);
+    const auto [a, b, c] = mesh.corners(nearest.triangle);
+    return std::fabs(signed_distance(p, a, b, c));
+}
+
+/// Calls answer(i) for every point, in parallel.
+template <class Answer>
+void for_each_point(std::span<const Vec3> points, const Answer& answer) {
+    require_positions(points, "points");
+    parallel_for_blocks(points.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) answer(i);
+    });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points) const {
+    const MeshInterior& interior = index_->interior();
+    std::vector<std::uint8_t> answers(points.size());
+    for_each_point(points, [&](std::size_t i) { answers[i] = interior.contains(points[i]) ? 1 : 0; });
+    return answers;
+}
+
+NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double within) const {
+    if (!(within >= 0.0))
+        throw InputError(fmt::format("within: found {}, expected a distance of at least 0 m", within));
+    NearestPoints result;
+    result.triangle.assign(points.size(), kNoHit);
+    result.distance.assign(points.size(), kInfinity);
+    result.point.assign(points.size(), Vec3{kNan, kNan, kNan});
+    for_each_point(points, [&](std::size_t i) {
+        const auto found = nearest(*index_, points[i], within);
+        if (!found) return;
+        const double far = distance(*index_, *found, points[i]);
+        if (far > within) return;
+        result.triangle[i] = found->triangle;
+        result.distance[i] = far;
+        result.point[i] = found->point.point;
+    });
+    return result;
+}
+
+std::vector<double> MeshQueries::signed_distances(std::span<const Vec3> points) const {
+    const MeshInterior& interior = index_->interior();
+    std::vector<double> answers(points.size());
+    for_each_point(points, [&](std::size_t i) {
+        const auto found = nearest(*index_, points[i], kInfinity);
+        const double far = found ? distance(*index_, *found, points[i]) : kInfinity;
+        answers[i] = interior.contains(points[i]) ? -far : far;
+    });
+    return answers;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,131 @@
+// What rays hit: first, everywhere, how often, at all.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep/ray_triangle.h"
+#include "ricochet/queries/mesh_index.h"
+#include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/ray_places.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+void require_rays(const RayBatch& rays) {
+    require_same_length(rays.directions.size(), rays.origins.size(), "directions");
+    if (rays.most.size() > 1) require_same_length(rays.most.size(), rays.origins.size(), "most");
+    require_positions(rays.origins, "origins");
+    for (std::size_t i = 0; i < rays.directions.size(); ++i) {
+        const Vec3& d = rays.directions[i];
+        if (is_finite(d) && max_abs(d) > 0.0) continue;
+        throw InputError(fmt::format(
+            "directions[{}]: found [{}, {}, {}], expected a finite direction of length above 0", i, d.x, d.y, d.z));
+    }
+    for (std::size_t i = 0; i < rays.most.size(); ++i) {
+        if (rays.most[i] >= 0.0) continue;
+        throw InputError(fmt::format("most[{}]: found {}, expected a distance of at least 0 m", i, rays.most[i]));
+    }
+}
+
+double most_of(const RayBatch& rays, std::size_t i) {
+    if (rays.most.empty()) return kInfinity;
+    return rays.most.size() == 1 ? rays.most[0] : rays.most[i];
+}
+
+/// Calls answer(i, ray, most distance) for every ray, in parallel, block by block.
+template <class Answer>
+void for_each_ray(const RayBatch& rays, const Answer& answer) {
+    require_rays(rays);
+    parallel_for_blocks(
+        rays.origins.size(), kQuestionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                answer(block, i, RayQuestion{Ray(rays.origins[i], rays.directions[i]), most_of(rays, i)});
+            }
+        });
+}
+
+MeshHits missed(std::size_t count) {
+    MeshHits hits;
+    hits.triangle.assign(count, kNoHit);
+    hits.distance.assign(count, kInfinity);
+    hits.point.assign(count, Vec3{kNan, kNan, kNan});
+    return hits;
+}
+
+}  // namespace
+
+MeshHits MeshQueries::first_hits(const RayBatch& rays) const {
+    MeshHits hits = missed(rays.origins.size());
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
+        const std::optional<RayPlace> place = first_place(*index_, question);
+        if (!place) return;
+        hits.triangle[i] = place->triangle;
+        hits.distance[i] = question.ray.distance(place->t);
+        hits.point[i] = question.ray.at(place->t);
+    });
+    return hits;
+}
+
+std::vector<std::uint8_t> MeshQueries::occluded(const RayBatch& rays) const {
+    std::vector<std::uint8_t> answers(rays.origins.size(), 0);
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
+        answers[i] = hits_anything(*index_, question) ? 1 : 0;
+    });
+    return answers;
+}
+
+std::vector<std::uint64_t> MeshQueries::count_hits(const RayBatch& rays) const {
+    std::vector<std::uint64_t> counts(rays.origins.size(), 0);
+    for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
+        thread_local std::vector<RayPlace> places;
+        all_places(*index_, question, places);
+        counts[i] = places.size();
+    });
+    return counts;
+}
+
+AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
+    const std::size_t count = rays.origins.size();
+    AllMeshHits all;
+    all.first.assign(count + 1, 0);
+    struct Found {
+        std::size_t ray;
+        RayPlace place;
+    };
+    std::vector<std::vector<Found>> blocks((count + kQuestionBlock - 1) / kQuestionBlock);
+    for_each_ray(rays, [&](std::size_t block, std::size_t i, const RayQuestion& question) {
+        thread_local std::vector<RayPlace> places;
+        all_places(*index_, question, places);
+        all.first[i + 1] = places.size();
+        for (const RayPlace& place : places) blocks[block].push_back({i, place});
+    });
+    std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
+    all.hits = missed(all.first.back());
+    all.crossing.assign(all.first.back(), 0);
+    parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
+        std::size_t k = all.first[block * kQuestionBlock];
+        for (const auto& [ray, place] : blocks[block]) {
+            const RayQuestion question{Ray(rays.origins[ray], rays.directions[ray]), kInfinity};
+            all.hits.triangle[k] = place.triangle;
+            all.hits.distance[k] = question.ray.distance(place.t);
+            all.hits.point[k] = question.ray.at(place.t);
+            all.crossing[k++] = place.crossing;
+        }
+        blocks[block] = {};
+    });
+    return all;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,211 @@
+// What moving points and spheres meet first, the mesh at rest or moving.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/acceleration/box_tree.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/moving_triangle.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
+#include "ricochet/geometry/sweep/sphere_sweep.h"
+#include "ricochet/queries/mesh_index.h"
+#include "ricochet/queries/mesh_queries.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Ways of points and spheres.
+struct Ways {
+    std::span<const Vec3> from;
+    std::span<const Vec3> to;
+    std::span<const double> radii;
+
+    [[nodiscard]] double radius(std::size_t i) const {
+        if (radii.empty()) return 0.0;
+        return radii.size() == 1 ? radii[0] : radii[i];
+    }
+    [[nodiscard]] double largest_radius() const {
+        return radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
+    }
+    void require() const {
+        require_same_length(to.size(), from.size(), "to");
+        if (radii.size() > 1) require_same_length(radii.size(), from.size(), "radii");
+        require_positions(from, "from");
+        require_positions(to, "to");
+        for (std::size_t i = 0; i < radii.size(); ++i) {
+            if (radii[i] >= 0.0 && radii[i] <= kLargestCoordinate) continue;
+            throw InputError(
+                fmt::format("radii[{}]: found {}, expected a length of 0 to {:g} m", i, radii[i], kLargestCoordinate));
+        }
+    }
+};
+
+/// The first contact of one way.
+struct Contact {
+    std::uint32_t triangle = 0;
+    double fraction = 0.0;
+    Vec3 point;
+};
+
+MeshHits missed(std::size_t count) {
+    return {std::vector<std::int64_t>(count, kNoHit), std::vector<double>(count, kInfinity),
+            std::vector<Vec3>(count, Vec3{kNan, kNan, kNan})};
+}
+
+template <class First>
+MeshHits first_contacts(const Ways& ways, const First& first) {
+    MeshHits hits = missed(ways.from.size());
+    parallel_for_blocks(ways.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::optional<Contact> contact = first(i);
+            if (!contact) continue;
+            hits.triangle[i] = contact->triangle;
+            hits.distance[i] = contact->fraction;
+            hits.point[i] = contact->point;
+        }
+    });
+    return hits;
+}
+
+void keep_first(std::optional<Contact>& best, const Contact& found) {
+    if (!best || found.fraction < best->fraction ||
+        (found.fraction == best->fraction && found.triangle < best->triangle)) {
+        best = found;
+    }
+}
+
+Path straight(const Vec3& from, const Vec3& to) {
+    Path path = line_path(from, to - from, 1.0);
+    path.end = to;
+    return path;
+}
+
+/// For the broad phase: everything within the radius of the way, and rounding.
+Tube tube_of(const Vec3& from, const Vec3& to, double radius) {
+    return {from, to, radius * (1.0 + kCandidateSlack) + 0x1p-48 * (max_abs(from) + max_abs(to))};
+}
+
+/// Beyond what is found so far, as a fraction of the way.
+double limit_of(const std::optional<Contact>& best) {
+    return best ? std::min(1.0, best->fraction * (1.0 + 0x1p-40) + 0x1p-60) : 1.0;
+}
+
+std::optional<Contact> point_contact(const MeshIndex& mesh, const Vec3& from, const Vec3& to) {
+    const Path path = straight(from, to);
+    std::optional<Contact> best;
+    mesh.hierarchy().query_tube(tube_of(from, to, 0.0), [&](std::uint32_t triangle, double, double) {
+        if (mesh.is_degenerate(triangle)) return limit_of(best);
+        const auto [a, b, c] = mesh.corners(triangle);
+        if (const auto crossing = first_crossing(path, a, b, c)) {
+            keep_first(best, {triangle, crossing->time, path.position(crossing->time)});
+        }
+        return limit_of(best);
+    });
+    return best;
+}
+
+std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& hierarchy, const Vec3& from,
+                                      const Vec3& to, double radius) {
+    SphereSweep sweep(straight(from, to), radius);
+    std::optional<Contact> best;
+    hierarchy.query_tube(tube_of(from, to, radius), [&](std::uint32_t triangle, double, double) {
+        if (mesh.is_degenerate(triangle)) return limit_of(best);
+        const auto [a, b, c] = mesh.corners(triangle);
+        if (const auto contact = sweep.first_contact(a, b, c)) {
+            keep_first(best, {triangle, contact->time, contact->point});
+            sweep.shorten_to(best->fraction);
+        }
+        return limit_of(best);
+    });
+    return best;
+}
+
+/// The mesh on its way from where it is to where it will be.
+class MovingMesh {
+public:
+    MovingMesh(const MeshIndex& mesh, std::span<const Vec3> after) : mesh_(mesh), after_(after) {
+        std::vector<Box3> boxes(mesh.mesh().triangles.size());
+        for (std::size_t t = 0; t < boxes.size(); ++t) {
+            for (const std::uint32_t v : mesh.mesh().triangles[t]) {
+                boxes[t].include(mesh.mesh().vertices[v]);
+                boxes[t].include(after[v]);
+            }
+        }
+        tree_.fit(boxes);
+    }
+
+    [[nodiscard]] std::optional<Contact> first(const MovingPoint& point, double radius) const {
+        Box3 box;
+        box.include(point.from);
+        box.include(point.to);
+        const double beside = radius * (1.0 + 0x1p-50) + 0x1p-50 * max_abs(max(abs(box.lower), abs(box.upper)));
+        const Vec3 by{beside, beside, beside};
+        std::vector<std::uint32_t> near;
+        tree_.near({box.lower - by, box.upper + by}, [&](std::uint32_t t) { near.push_back(t); });
+        std::optional<Contact> best;
+        for (const std::uint32_t triangle : near) {
+            const MovingTriangle moving = moving_triangle(triangle);
+            if (best && best->fraction < 1.0 && is_apart(point, radius, moving, 0.0, best->fraction)) continue;
+            const auto contact = first_contact(point, radius, moving);
+            if (contact) keep_first(best, {triangle, contact->time, place(moving, *contact)});
+        }
+        return best;
+    }
+
+private:
+    [[nodiscard]] MovingTriangle moving_triangle(std::uint32_t triangle) const {
+        MovingTriangle moving;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = mesh_.mesh().triangles[triangle][k];
+            moving.corners[k] = {mesh_.mesh().vertices[v], after_[v]};
+        }
+        return moving;
+    }
+    [[nodiscard]] static Vec3 place(const MovingTriangle& triangle, const MovingContact& contact) {
+        Vec3 point;
+        for (std::size_t k = 0; k < 3; ++k) {
+            point += contact.barycentric[static_cast<int>(k)] * triangle.corners[k].at(contact.time);
+        }
+        return point;
+    }
+
+    const MeshIndex& mesh_;
+    std::span<const Vec3> after_;
+    BoxTree tree_;
+};
+
+}  // namespace
+
+MeshHits MeshQueries::sweep(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> radii) const {
+    const Ways ways{from, to, radii};
+    ways.require();
+    const TriangleBvh& for_spheres = index_->hierarchy(ways.largest_radius());
+    return first_contacts(ways, [&](std::size_t i) {
+        const Vec3 start = flush_tiny(from[i]);
+        const Vec3 end = flush_tiny(to[i]);
+        const double radius = ways.radius(i);
+        return radius > 0.0 ? sphere_contact(*index_, for_spheres, start, end, radius)
+                            : point_contact(*index_, start, end);
+    });
+}
+
+MeshHits MeshQueries::sweep_moving(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> radii,
+                                   std::span<const Vec3> vertices_after) const {
+    const Ways ways{from, to, radii};
+    ways.require();
+    require_same_length(vertices_after.size(), mesh().vertices.size(), "vertices_after");
+    require_positions(vertices_after, "vertices_after");
+    const MovingMesh moving(*index_, vertices_after);
+    return first_contacts(ways, [&](std::size_t i) { return moving.first({from[i], to[i]}, ways.radius(i)); });
+}
+
+}  // namespace ricochet

@@ -197,7 +197,8 @@ std::optional<double> Simulation::potential_energy() const {
         return partial;
     });
     const double stored = impl().coupled.springs().potential_energy(particles().position);
-    return defined ? std::optional(sum + stored) : std::nullopt;
+    const std::optional<double> mutual = impl().coupled.mutual_energy(particles(), now);
+    return defined && mutual ? std::optional(sum + stored + *mutual) : std::nullopt;
 }
 
 std::uint64_t Simulation::state_hash() const {

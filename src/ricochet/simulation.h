@@ -23,6 +23,7 @@
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/dynamics/particles_force.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
@@ -47,6 +48,8 @@ struct SimulationSetup {
     std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
     std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
     std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
+    /// Forces between particles; they add up. Particles that are born within a step feel them from the next one on.
+    std::vector<ParticlesForceEntry> particles_forces = {};
     /// An own method for all particles together, instead of options.integrator, which then says only how particles go
     /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
     SystemSolver solver = {};

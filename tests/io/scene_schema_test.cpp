@@ -10,6 +10,7 @@
 #include "io/force_scene.h"
 #include "io/frame_scene.h"
 #include "io/json_schema.h"
+#include "io/particle_forces_scene.h"
 #include "io/sample_scene.h"
 #include "io/spring_scene.h"
 #include "ricochet/core/random.h"
@@ -86,6 +87,9 @@ std::vector<Json> samples() {
         if (!flow.contains("parts")) continue;
         for (const Json& part : flow["parts"]) scenes.push_back({{"ricochet", 1}, {"flows", {{name, part}}}});
     }
+    const Json mutual = Json::parse(test::kParticleForcesScene);
+    for (const Json& force : mutual["particle_forces"])
+        scenes.push_back({{"ricochet", 1}, {"particle_forces", {force}}});
     Json births = Json::parse(test::kEmitterScene);
     for (const Json& emitter : births["emitters"]) scenes.push_back({{"ricochet", 1}, {"emitters", {emitter}}});
     births.erase("emitters");
@@ -100,6 +104,7 @@ std::vector<Json> samples() {
 TEST(SceneSchema, TheSamplesConform) {
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kEmitterScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
+    EXPECT_EQ(schema_errors(schema(), Json::parse(test::kParticleForcesScene)), Lines{});
     for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
 }
 

@@ -275,6 +275,11 @@ inline constexpr double kDivergedGain = 100.0;
 /// rest counts as diverged by its own rounding. Larger: explosions from perfect rest are detected later.
 inline constexpr double kNegligibleStretch = 1e-6;
 
+/// Distance below which particles stand at one place and have no direction between them, m: forces between them are
+/// zero. Reason: its third power is the smallest that is still a normal number with margin. Smaller (from 1e-102 on):
+/// the inverse cube overflows. Larger: nothing that is simulated.
+inline constexpr double kSamePlace = 1e-100;
+
 /// Speed that forces may not exceed, m/s: that of light (exact by the definition of the metre). Forces that do so are
 /// wrong or the step is too long for them; the run stops. Particles that start faster are left alone.
 inline constexpr double kMaxSpeed = 299792458.0;

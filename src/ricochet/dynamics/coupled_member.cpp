@@ -97,7 +97,8 @@ Vec3 CoupledMember::acceleration(const ForceInput& input) const {
         const Flight& plan = (*plans_)[k];
         return state_along(plan.path, input.time - plan.start.time, plan.path.duration, plan.end_velocity);
     };
-    return system_->spring_force_in(member_, state_of) / input.mass;
+    return system_->spring_force_in(member_, state_of) / input.mass +
+           (mutual_.start + (input.time - mutual_.begin) * mutual_.slope);
 }
 
 void Departures::reset(std::size_t members, IntegratorKind kind) {
@@ -115,6 +116,7 @@ void Departures::correct(const ParticleSystem& system, const std::vector<Flight>
     const auto has_left = [](const std::vector<FlownPiece>& pieces) { return !pieces.empty(); };
     if (std::none_of(flown_.begin(), flown_.end(), has_left)) return;
     const std::vector<Vec3> given = momentum_changes(system, plans);
+    const std::vector<Vec3> mutual = mutual_changes(system, plans);
     for (std::size_t k = 0; k < velocities.size(); ++k) {
         if (is_free[k] == 0) continue;
         const std::vector<FlownPiece>& flown = flown_[k];
@@ -126,7 +128,48 @@ void Departures::correct(const ParticleSystem& system, const std::vector<Flight>
                 plans[k].end_velocity + turned_by_impacts(flown, velocities[k]) + own_change(system, k, plans[k]);
         }
         if (given[k] != Vec3{}) velocities[k] += given[k] / system.mass(k);
+        if (!mutual.empty()) velocities[k] += mutual[k];
     }
+}
+
+/// m/s by member; empty where no forces act between members. Where positions alone matter the forces are those at the
+/// end of the paths for half of the step, as velocity Verlet has them: a departure grows from a bounce to the end, and
+/// what counts of it is no more than what it is there. Velocities leave the plan at once, and so that their mean is not
+/// exceeded the forces are those of the mean for the whole step.
+std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
+    const double duration = plans.front().path.duration;
+    const double weight = (system.has_mutual_damping() ? 1.0 : 0.5) * duration;
+    const double end = system.time() + duration;
+    std::vector<Vec3> positions(system.size());
+    std::vector<Vec3> velocities(system.size());
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        positions[k] = plans[k].path.position(duration);
+        velocities[k] = plans[k].end_velocity;
+    }
+    const std::vector<Vec3> planned = system.mutual_accelerations(end, positions, velocities);
+    if (planned.empty()) return {};
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        if (!has_left(k)) continue;
+        const PhaseState departure = summed_departure(k, plans[k]);
+        positions[k] += departure.position / weight;
+        velocities[k] += departure.velocity / weight;
+    }
+    std::vector<Vec3> changes = system.mutual_accelerations(end, positions, velocities);
+    for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = weight * (changes[k] - planned[k]);
+    return changes;
+}
+
+/// The integrals, over the step, of what a member's position and velocity are beyond its plan, m s and m.
+PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) const {
+    const FlownPiece planned = piece_of(plan);
+    const std::span<const FlownPiece> flown(flown_[member]);
+    PhaseState sum;
+    for (const TimeInterval& part : parts_between(flown, {}, planned)) {
+        const FlownPiece& piece = piece_at(flown, part.middle());
+        sum.position += integral(kGauss, part, [&](double t) { return piece.at(t).position - planned.at(t).position; });
+        sum.velocity += integral(kGauss, part, [&](double t) { return piece.at(t).velocity - planned.at(t).velocity; });
+    }
+    return sum;
 }
 
 /// N s by member. Every spring's is found for itself by any thread; they are added in the order of the springs.

@@ -29,6 +29,13 @@ struct FlownPiece {
 /// A whole flight as one piece.
 [[nodiscard]] FlownPiece piece_of(const Flight& flight);
 
+/// What forces between members do to one of them in the course of a step: as on its planned path.
+struct MutualPull {
+    Vec3 start;          ///< m/s^2, at the step's start
+    Vec3 slope;          ///< m/s^3
+    double begin = 0.0;  ///< s, when the step starts
+};
+
 /// What the springs of a member do to it in a step: held, or as they are between where it is and where the others are
 /// on their planned flights at the time.
 class CoupledMember final : public Coupling {
@@ -37,8 +44,9 @@ public:
     /// Held at an acceleration, m/s^2.
     explicit CoupledMember(const Vec3& held) : held_(held) {}
     /// As the others fly; both must outlive it. plans: of all members.
-    CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member)
-        : system_(&system), plans_(&plans), member_(member) {}
+    CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member,
+                  const MutualPull& mutual = {})
+        : system_(&system), plans_(&plans), member_(member), mutual_(mutual) {}
 
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override;
     [[nodiscard]] bool varies() const override { return system_ != nullptr; }
@@ -48,6 +56,7 @@ private:
     const ParticleSystem* system_ = nullptr;
     const std::vector<Flight>* plans_ = nullptr;
     std::size_t member_ = 0;
+    MutualPull mutual_;
 };
 
 /// The members that have left the plan of a step by an impact, and what follows for the velocities at its end.
@@ -56,6 +65,10 @@ private:
 /// the difference, the integral of the force between the paths that were flown less that between the planned ones,
 /// goes to both ends with opposite signs: momentum is kept to rounding, and what the bounce of one does to the other
 /// is there, of third order in the step. Positions stay: they are at the ends of certified segments.
+///
+/// Forces between members that know no pairs do the same all at once: they are evaluated where the plan ends, and with
+/// each member that has left it moved by the mean of its departure; the difference goes to all. In it momentum is kept
+/// as well as the forces keep it, and it is exact to first order in the departures, so that it is of third order too.
 class Departures {
 public:
     /// Forgets all. members: how many there are; kind: the method that has planned.
@@ -71,6 +84,9 @@ private:
     [[nodiscard]] bool has_left(std::size_t member) const { return !flown_[member].empty(); }
     [[nodiscard]] std::vector<Vec3> momentum_changes(const ParticleSystem& system,
                                                      const std::vector<Flight>& plans) const;
+    [[nodiscard]] std::vector<Vec3> mutual_changes(const ParticleSystem& system,
+                                                   const std::vector<Flight>& plans) const;
+    [[nodiscard]] PhaseState summed_departure(std::size_t member, const Flight& plan) const;
     [[nodiscard]] Vec3 impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
                                       const std::vector<Flight>& plans) const;
     [[nodiscard]] Vec3 own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const;

@@ -9,6 +9,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/implicit_euler.h"
+#include "ricochet/dynamics/mutual_forces.h"
 
 namespace ricochet {
 namespace {
@@ -136,6 +137,11 @@ void ParticleSystem::set_phase(std::span<const Vec3> positions, std::span<const 
 
 void ParticleSystem::accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                                    std::span<Vec3> result) const {
+    accelerations(time, positions, velocities, mutual_accelerations(time, positions, velocities), result);
+}
+
+void ParticleSystem::accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                                   std::span<const Vec3> mutual, std::span<Vec3> result) const {
     require_state(positions, velocities);
     require_same_length(result.size(), size(), "accelerations of a system");
     parallel_for_blocks(size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -143,9 +149,21 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
             result[i] = is_pinned(i) ? Vec3{}
                                      : spring_force_on(i, positions, velocities) / mass(i) +
                                            own_acceleration(i, time, positions[i], velocities[i]);
+            if (!mutual.empty() && !is_pinned(i)) result[i] += mutual[i];
         }
     });
 }
+
+std::vector<Vec3> ParticleSystem::mutual_accelerations(double time, std::span<const Vec3> positions,
+                                                       std::span<const Vec3> velocities) const {
+    if (mutual_ == nullptr || mutual_->empty()) return {};
+    require_state(positions, velocities);
+    std::vector<Vec3> result(size());
+    mutual_->accelerations(time, positions, velocities, result);
+    return result;
+}
+
+bool ParticleSystem::has_mutual_damping() const { return mutual_ != nullptr && mutual_->depend_on_velocity(); }
 
 Vec3 ParticleSystem::spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                      std::span<const Vec3> velocities) const {

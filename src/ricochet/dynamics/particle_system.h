@@ -17,6 +17,8 @@
 
 namespace ricochet {
 
+class MutualForces;
+
 /// The phase-space vector of a system of particles, its dimension, and its derivative at a time: all that a solver of
 /// ordinary differential equations needs to know. Entries 6 i to 6 i + 5 are x, y, z (m) and vx, vy, vz (m/s) of member
 /// i; the derivative holds the velocity and the acceleration at the same indices, zeros for pinned members.
@@ -34,6 +36,9 @@ public:
 
     /// Both must outlive the system. The springs must be bound to the particles of assign().
     ParticleSystem(const ForceField& forces, const SpringNetwork& springs) : forces_(forces), springs_(springs) {}
+    /// With forces between the members, which must outlive it too and have the same members assigned.
+    ParticleSystem(const ForceField& forces, const SpringNetwork& springs, const MutualForces& mutual)
+        : forces_(forces), springs_(springs), mutual_(&mutual) {}
 
     /// Takes these particles, by index and ascending, as its members, in the state that they have. Throws InputError
     /// for members that are not there or do not ascend, as all functions do for members past the end and lists that do
@@ -66,6 +71,14 @@ public:
     /// Accelerations of all members in a state, m/s^2; zero for pinned ones.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
+    /// What forces between the members do to each in a state, m/s^2; empty where there are none.
+    [[nodiscard]] std::vector<Vec3> mutual_accelerations(double time, std::span<const Vec3> positions,
+                                                         std::span<const Vec3> velocities) const;
+    /// accelerations() where mutual_accelerations() of that state is known.
+    void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                       std::span<const Vec3> mutual, std::span<Vec3> result) const;
+    /// True when forces between the members depend on velocities.
+    [[nodiscard]] bool has_mutual_damping() const;
     /// What the springs do to member i, N.
     [[nodiscard]] Vec3 spring_force_on(std::size_t i, std::span<const Vec3> positions,
                                        std::span<const Vec3> velocities) const;
@@ -114,6 +127,7 @@ private:
 
     const ForceField& forces_;
     const SpringNetwork& springs_;
+    const MutualForces* mutual_ = nullptr;
     std::vector<std::uint32_t> members_;
     std::vector<Constants> constants_;
     std::vector<Vec3> position_;

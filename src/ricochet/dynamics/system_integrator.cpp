@@ -18,39 +18,58 @@ Vectors along(const Vectors& a, double h, const Vectors& b) {
     return result;
 }
 
-Vectors accelerations(const ParticleSystem& system, double time, const Vectors& x, const Vectors& v) {
-    Vectors result(system.size());
-    system.accelerations(time, x, v, result);
+/// Of all members in a state, m/s^2.
+struct Accelerations {
+    Vectors all;
+    Vectors mutual;  // of all what the forces between members do; empty where there are none
+};
+
+Accelerations accelerations(const ParticleSystem& system, double time, const Vectors& x, const Vectors& v) {
+    Accelerations result{Vectors(system.size()), system.mutual_accelerations(time, x, v)};
+    system.accelerations(time, x, v, result.mutual, result.all);
     return result;
+}
+
+/// The step of a method that ends in these states.
+SystemStep step_to(Vectors positions, Vectors velocities, Accelerations start, double h) {
+    SystemStep step{std::move(positions), std::move(velocities), std::move(start.all), h, h};
+    step.mutual_start = std::move(start.mutual);
+    return step;
 }
 
 SystemStep euler_step(const ParticleSystem& system, double h, bool kicks_first) {
     const Vectors& v = system.velocities();
-    Vectors a = accelerations(system, system.time(), system.positions(), v);
-    Vectors end = along(v, h, a);
+    Accelerations a = accelerations(system, system.time(), system.positions(), v);
+    Vectors end = along(v, h, a.all);
     Vectors positions = along(system.positions(), h, kicks_first ? end : v);
-    return {std::move(positions), std::move(end), std::move(a), h, h};
+    return step_to(std::move(positions), std::move(end), std::move(a), h);
 }
 
 SystemStep midpoint_step(const ParticleSystem& system, double h) {
     const Vectors& x = system.positions();
     const Vectors& v = system.velocities();
-    Vectors a0 = accelerations(system, system.time(), x, v);
-    const Vectors v_mid = along(v, 0.5 * h, a0);
-    const Vectors a_mid = accelerations(system, system.time() + 0.5 * h, along(x, 0.5 * h, v), v_mid);
-    return {along(x, h, v_mid), along(v, h, a_mid), std::move(a0), h, h};
+    Accelerations a0 = accelerations(system, system.time(), x, v);
+    const Vectors v_mid = along(v, 0.5 * h, a0.all);
+    const Accelerations a_mid = accelerations(system, system.time() + 0.5 * h, along(x, 0.5 * h, v), v_mid);
+    Vectors mutual_end(a_mid.mutual.size());
+    for (std::size_t i = 0; i < mutual_end.size(); ++i) mutual_end[i] = 2.0 * a_mid.mutual[i] - a0.mutual[i];
+    SystemStep step = step_to(along(x, h, v_mid), along(v, h, a_mid.all), std::move(a0), h);
+    step.mutual_end = std::move(mutual_end);
+    return step;
 }
 
 SystemStep verlet_step(const ParticleSystem& system, double h) {
     const Vectors& x = system.positions();
     const Vectors& v = system.velocities();
-    Vectors a0 = accelerations(system, system.time(), x, v);
+    Accelerations a0 = accelerations(system, system.time(), x, v);
     Vectors end(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) end[i] = x[i] + h * v[i] + (0.5 * h * h) * a0[i];
-    const Vectors a1 = accelerations(system, system.time() + h, end, along(v, h, a0));
+    for (std::size_t i = 0; i < x.size(); ++i) end[i] = x[i] + h * v[i] + (0.5 * h * h) * a0.all[i];
+    Accelerations a1 = accelerations(system, system.time() + h, end, along(v, h, a0.all));
     Vectors velocities(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) velocities[i] = v[i] + (0.5 * h) * (a0[i] + a1[i]);
-    return {std::move(end), std::move(velocities), std::move(a0), h, h};
+    for (std::size_t i = 0; i < x.size(); ++i) velocities[i] = v[i] + (0.5 * h) * (a0.all[i] + a1.all[i]);
+    SystemStep step = step_to(std::move(end), std::move(velocities), std::move(a0), h);
+    step.mutual_end = std::move(a1.mutual);
+    return step;
 }
 
 SystemStep rk4_step(const ParticleSystem& system, double h) {
@@ -58,20 +77,22 @@ SystemStep rk4_step(const ParticleSystem& system, double h) {
     const Vectors& v = system.velocities();
     const double t = system.time();
     const double half = 0.5 * h;
-    Vectors a1 = accelerations(system, t, x, v);
-    const Vectors v2 = along(v, half, a1);
-    const Vectors a2 = accelerations(system, t + half, along(x, half, v), v2);
+    Accelerations a1 = accelerations(system, t, x, v);
+    const Vectors v2 = along(v, half, a1.all);
+    const Vectors a2 = accelerations(system, t + half, along(x, half, v), v2).all;
     const Vectors v3 = along(v, half, a2);
-    const Vectors a3 = accelerations(system, t + half, along(x, half, v2), v3);
+    const Vectors a3 = accelerations(system, t + half, along(x, half, v2), v3).all;
     const Vectors v4 = along(v, h, a3);
-    const Vectors a4 = accelerations(system, t + h, along(x, h, v3), v4);
+    Accelerations a4 = accelerations(system, t + h, along(x, h, v3), v4);
     Vectors positions(x.size());
     Vectors velocities(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         positions[i] = x[i] + (h / 6.0) * (v[i] + 2.0 * (v2[i] + v3[i]) + v4[i]);
-        velocities[i] = v[i] + (h / 6.0) * (a1[i] + 2.0 * (a2[i] + a3[i]) + a4[i]);
+        velocities[i] = v[i] + (h / 6.0) * (a1.all[i] + 2.0 * (a2[i] + a3[i]) + a4.all[i]);
     }
-    return {std::move(positions), std::move(velocities), std::move(a1), h, h};
+    SystemStep step = step_to(std::move(positions), std::move(velocities), std::move(a1), h);
+    step.mutual_end = std::move(a4.mutual);
+    return step;
 }
 
 /// A step of Dormand and Prince, and the largest of its errors relative to the tolerance.
@@ -95,8 +116,13 @@ TriedStep dormand_prince_system(const ParticleSystem& system, double h, const Er
                 v[s][i] += weight * a[j][i];
             }
         }
-        a[s] = accelerations(system, system.time() + dormand_prince_node(s) * h, x, v[s]);
-        if (s + 1 == kDormandPrinceStages) tried.step.positions = std::move(x);
+        Accelerations stage = accelerations(system, system.time() + dormand_prince_node(s) * h, x, v[s]);
+        a[s] = std::move(stage.all);
+        if (s == 0) tried.step.mutual_start = std::move(stage.mutual);
+        if (s + 1 == kDormandPrinceStages) {
+            tried.step.positions = std::move(x);
+            tried.step.mutual_end = std::move(stage.mutual);
+        }
     }
     std::array<Vec3, kDormandPrinceStages> own_v;
     std::array<Vec3, kDormandPrinceStages> own_a;
@@ -190,7 +216,8 @@ Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const Syst
     if (kind == IntegratorKind::implicit_euler) {
         return (step.free_velocity(i) - v) / step.duration - system.own_acceleration(i, system.time(), x, v);
     }
-    return system.spring_force_on(i, system.positions(), system.velocities()) / system.mass(i);
+    const Vec3 pull = system.spring_force_on(i, system.positions(), system.velocities()) / system.mass(i);
+    return step.mutual_start.empty() ? pull : pull + step.mutual_start[i];
 }
 
 }  // namespace ricochet

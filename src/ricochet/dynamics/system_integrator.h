@@ -37,6 +37,10 @@ struct SystemStep {
     /// Velocities that members would have at the end without what holds them, but with springs and forces as they are
     /// in that step, m/s; empty where nothing holds any.
     std::vector<Vec3> free_velocities = {};
+    /// What forces between members do to each at the start, m/s^2; empty where there are none.
+    std::vector<Vec3> mutual_start = {};
+    /// The same at the end, to second order in the duration; empty with methods that hold it.
+    std::vector<Vec3> mutual_end = {};
 
     /// That of member i.
     [[nodiscard]] const Vec3& free_velocity(std::size_t i) const {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -46,25 +45,35 @@ bool agree(std::span<const HeldMotion> a, std::span<const HeldMotion> b, std::sp
 
 }  // namespace
 
-CoupledMotion::CoupledMotion(std::vector<Spring> springs, SystemSolver solver, const ForceField& forces,
-                             const Integrator& integrator)
+CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
+                             const ForceField& forces, const Integrator& integrator)
     : springs_(std::move(springs)),
+      mutual_(std::move(mutual)),
       solver_(std::move(solver)),
       integrator_(integrator),
-      system_(forces, springs_),
+      system_(forces, springs_, mutual_),
       least_energy_(negligible_energy(springs_)) {}
 
 void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
 
-double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts) {
-    std::vector<std::uint32_t> all;
-    if (solver_) {
-        all.resize(particles.size());
-        std::iota(all.begin(), all.end(), 0U);
-        // Particles spawned inside the step join with the next one.
-        std::erase_if(all, [&](std::uint32_t i) { return particles.birth_time[i] > time || particles.frozen[i] != 0; });
+/// Particles spawned inside the step join with the next one.
+std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles, double time) const {
+    if (!solver_ && mutual_.empty()) return springs_.coupled();
+    std::vector<std::uint32_t> members;
+    const std::span<const std::uint32_t> joined = springs_.coupled();
+    auto next = joined.begin();
+    for (std::uint32_t i = 0; i < particles.size(); ++i) {
+        const bool is_joined = next != joined.end() && *next == i;
+        if (is_joined) ++next;
+        const bool is_there = particles.birth_time[i] <= time && particles.frozen[i] == 0;
+        if ((is_joined && !solver_) || (is_there && (solver_ || mutual_.act_on(particles, i)))) members.push_back(i);
     }
-    system_.assign(particles, solver_ ? all : springs_.coupled(), time);
+    return members;
+}
+
+double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts) {
+    system_.assign(particles, members_of(particles, time), time);
+    mutual_.assign(particles, system_.members());
     slots_.assign(particles.size(), kNoSlot);
     flights_.resize(system_.size());
     if (system_.size() == 0) return duration;
@@ -85,13 +94,18 @@ void CoupledMotion::plan_flights(const SystemStep& step) {
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             coupled_[k] = holds ? CoupledMember(held_coupling(integrator_.kind, system_, step, k))
-                                : CoupledMember(system_, flights_, k);
+                                : CoupledMember(system_, flights_, k, mutual_pull(step, k));
             flights_[k] = planned_flight(kind, system_, step, k);
             flights_[k].start.coupling = &coupled_[k];
             // What a solver steps may be more than springs; its velocities are those of its path.
             flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
         }
     });
+}
+
+MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) const {
+    if (step.mutual_start.empty()) return {};
+    return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
 }
 
 SystemStep CoupledMotion::stepped(double duration) {
@@ -103,11 +117,14 @@ SystemStep CoupledMotion::stepped(double duration) {
     SystemStep step;
     step.duration = duration;
     step.start_accelerations.resize(system_.size());
-    system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.start_accelerations);
+    step.mutual_start = system_.mutual_accelerations(system_.time(), system_.positions(), system_.velocities());
+    system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.mutual_start,
+                          step.start_accelerations);
     ParticleSystem advanced = system_;
     solver_(advanced, duration);
     step.positions = advanced.positions();
     step.velocities = advanced.velocities();
+    step.mutual_end = system_.mutual_accelerations(system_.time() + duration, step.positions, step.velocities);
     return step;
 }
 
@@ -147,8 +164,10 @@ void CoupledMotion::watch_energy(const SystemStep& step) {
         if (system_.is_pinned(k)) return 0.0;
         const Vec3& x0 = system_.positions()[k];
         const Vec3& x1 = step.positions[k];
-        const Vec3 pull = system_.own_acceleration(k, system_.time(), x0, system_.velocities()[k]) +
-                          system_.own_acceleration(k, system_.time() + step.duration, x1, step.velocities[k]);
+        Vec3 pull = system_.own_acceleration(k, system_.time(), x0, system_.velocities()[k]) +
+                    system_.own_acceleration(k, system_.time() + step.duration, x1, step.velocities[k]);
+        if (!step.mutual_start.empty()) pull += step.mutual_start[k];
+        if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
         return 0.5 * system_.mass(k) * dot(pull, x1 - x0);
     };
     const auto sum = [&](auto&& term) {
@@ -194,6 +213,22 @@ void CoupledMotion::correct_velocities(Particles& particles) {
     }
     departures_.correct(system_, flights_, is_free, velocities);
     for (std::size_t k = 0; k < system_.size(); ++k) particles.velocity[system_.members()[k]] = velocities[k];
+}
+
+std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, double time) const {
+    std::vector<std::uint32_t> living;
+    for (std::uint32_t i = 0; i < particles.size(); ++i) {
+        if (particles.frozen[i] == 0) living.push_back(i);
+    }
+    std::vector<Vec3> positions;
+    std::vector<Vec3> velocities;
+    for (const std::uint32_t i : living) {
+        positions.push_back(particles.position[i]);
+        velocities.push_back(particles.velocity[i]);
+    }
+    MutualForces forces = mutual_;
+    forces.assign(particles, living);
+    return forces.potential_energy(time, positions, velocities);
 }
 
 void CoupledMotion::settle(const Particles& particles) {

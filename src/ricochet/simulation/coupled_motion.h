@@ -3,27 +3,29 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "ricochet/dynamics/coupled_member.h"
+#include "ricochet/dynamics/mutual_forces.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/system_integrator.h"
 #include "ricochet/simulation/planned_contacts.h"
 
 namespace ricochet {
 
-/// Springs, or a solver of the user's own. Every step: plan() says where all members would go if no surface stopped
-/// them; then each member moves along its flight and bounces; settle() takes up what came out.
+/// Springs, forces between particles, or a solver of the user's own. Every step: plan() says where all members would go
+/// if no surface stopped them; then each member moves along its flight and bounces; settle() takes up what came out.
 class CoupledMotion {
 public:
     /// Throws InputError for springs that cannot be. forces must outlive it.
-    CoupledMotion(std::vector<Spring> springs, SystemSolver solver, const ForceField& forces,
-                  const Integrator& integrator);
+    CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
+                  const ForceField& forces, const Integrator& integrator);
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
-    [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty(); }
+    [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty() || !mutual_.empty(); }
     /// To be called whenever particles were added or removed.
     void bind(const Particles& particles);
     /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. contacts:
@@ -64,12 +66,16 @@ public:
     }
 
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
+    /// Energy of the forces between particles, J; nothing where one of them has no potential.
+    [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
     /// Steps whose implicit equations were not solved to the tolerance.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
 
 private:
     static constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
 
+    [[nodiscard]] std::vector<std::uint32_t> members_of(const Particles& particles, double time) const;
+    [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
     [[nodiscard]] SystemStep among_surfaces(SystemStep step, const Particles& particles,
                                             const PlannedContacts& contacts) const;
@@ -79,6 +85,7 @@ private:
     [[noreturn]] void report_divergence(const SystemStep& step) const;
 
     SpringNetwork springs_;
+    MutualForces mutual_;
     SystemSolver solver_;
     Integrator integrator_;
     ParticleSystem system_;

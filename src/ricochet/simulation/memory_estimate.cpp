@@ -26,6 +26,7 @@ constexpr double kMostContacts = 500'000.0;   // rows that the log gathers at mo
 constexpr double kJoinedParticle = 800.0;     // as kParticle, with what its rope or cloth is made in
 constexpr double kSpring = 200.0;             // and what it is made in
 constexpr double kStandingTriangle = 190.0;   // as kTriangle, when the mesh has been read
+constexpr double kCoupledParticle = 900.0;    // of forces between particles: its plan, and the lists that they see
 constexpr double kImplicitParticle = 390.0;   // in the matrix of implicit_euler
 constexpr double kImplicitSpring = 1200.0;    // the same, and its factors
 
@@ -210,6 +211,7 @@ double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
     if (has_children(setup)) bytes += kFamily;
     if (setup.options.verify) bytes += kVerifiedParticle;
+    if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;
 }

@@ -126,10 +126,12 @@ std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, 
     return offspring;
 }
 
-bool keeps_origin(const std::vector<Emitter>& emitters) {
-    return std::any_of(emitters.begin(), emitters.end(), [](const Emitter& emitter) {
-        return emitter.description().parent || !emitter.description().curves.empty();
-    });
+bool keeps_origin(const std::vector<Emitter>& emitters, const std::vector<ParticlesForceEntry>& mutual) {
+    const bool asks_for_emitters = std::any_of(
+        mutual.begin(), mutual.end(), [](const ParticlesForceEntry& entry) { return !entry.emitters.empty(); });
+    return asks_for_emitters || std::any_of(emitters.begin(), emitters.end(), [](const Emitter& emitter) {
+               return emitter.description().parent || !emitter.description().curves.empty();
+           });
 }
 
 std::string named(const ColliderDescription& collider, std::size_t number) {
@@ -185,13 +187,14 @@ Simulation::Impl::Impl(SimulationSetup setup)
       bodies(make_bodies(world, colliders, frames)),
       driven(std::move(setup.bodies), frames.get(), bodies.get(), forces, options),
       queries(Simulation::queries_of(shared_world)),
-      coupled(std::move(setup.springs), std::move(setup.solver), forces, options.integrator),
+      coupled(std::move(setup.springs), setup.particles_forces, std::move(setup.solver), forces, options.integrator),
       emitters(make_emitters(setup)),
       offspring(make_offspring(emitters, options)),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, options, options.duration,
                                                 acceleration.look_ahead && !bodies, bodies.get()})),
-      store(setup.attributes, keeps_origin(emitters), acceleration.sleeping && forces.is_steady() && !bodies,
+      store(setup.attributes, keeps_origin(emitters, setup.particles_forces),
+            acceleration.sleeping && forces.is_steady() && !bodies,
             response->keeps_sides() ? world.colliders().size() : 0, bodies != nullptr),
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),

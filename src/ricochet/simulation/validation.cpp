@@ -242,6 +242,28 @@ void validate_springs(const SimulationSetup& setup) {
     }
 }
 
+/// Forces between particles, and what cannot be together with them.
+void validate_particles_forces(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
+        const ParticlesForceEntry& entry = setup.particles_forces[k];
+        const Subject subject("force between particles", k);
+        if (!entry.force) subject.refuse("force", "a null pointer", "a force");
+        for (const std::uint32_t emitter : entry.emitters) {
+            subject.require_index(emitter, setup.emitters.size(), "emitter", "emitters");
+        }
+        for (const std::string& name : entry.force->attributes()) {
+            const auto has_name = [&](const AttributeDescription& column) { return column.name == name; };
+            if (std::any_of(setup.attributes.begin(), setup.attributes.end(), has_name)) continue;
+            subject.refuse("attribute", name, "the name of one of the setup's attributes");
+        }
+        if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
+        if (setup.options.integrator.kind == IntegratorKind::implicit_euler && !setup.solver) {
+            subject.refuse("integrator", name_of(setup.options.integrator.kind),
+                           "an explicit one: the equations of implicit_euler do not hold forces between particles");
+        }
+    }
+}
+
 void validate(const Box3& bounds) {
     const Subject subject("bounds");
     for (int axis = 0; axis < 3; ++axis) {
@@ -385,7 +407,7 @@ void validate_bodies(const SimulationSetup& setup) {
         if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_on_it)) {
             subject.refuse("emitter", "one in its frame", "none: where it will be within a step is not known");
         }
-        if (!setup.springs.empty() || setup.solver) {
+        if (!setup.springs.empty() || !setup.particles_forces.empty() || setup.solver) {
             subject.refuse("springs", "particles that act on each other", "none beside bodies that impulses move");
         }
     }
@@ -421,6 +443,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_emitters(setup);
     validate_flow_walls(setup);
     validate_springs(setup);
+    validate_particles_forces(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
     require_memory(setup);

@@ -252,6 +252,7 @@ Fields<Unbound> scene_fields() {
             {"$schema", ValueType::text, "For editors; not used here.", Without{"no help from the editor"}},
             {"simulation", ValueType::object, "Time and impacts.", &simulation_spec(), Without{kDefaults}},
             {"forces", ValueType::list, "Forces on the particles.", &force_spec()},
+            {"particle_forces", ValueType::list, "Forces between the particles.", &particle_force_spec()},
             {"flows", ValueType::table, "Flows by name, for several forces to share.", &flow_spec()},
             {"materials", ValueType::table, "Materials by name.", &material_spec()},
             {"colliders", ValueType::list, "What particles bounce off.", &collider_spec()},
@@ -382,6 +383,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_particles(context, scene.setup);
     build_springs(context, scene.setup);
     build_particle_contacts(context, scene.setup);
+    build_particle_forces(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();
     scene.output = output;

@@ -91,6 +91,7 @@ private:
 [[nodiscard]] const ObjectSpec& scene_spec();
 [[nodiscard]] const ObjectSpec& flow_spec();
 [[nodiscard]] const ObjectSpec& force_spec();
+[[nodiscard]] const ObjectSpec& particle_force_spec();
 [[nodiscard]] const ObjectSpec& material_spec();
 [[nodiscard]] const ObjectSpec& collider_spec();
 [[nodiscard]] const ObjectSpec& frame_spec();
@@ -191,6 +192,8 @@ void build_emitters(SceneContext& context, SimulationSetup& setup);
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);
 void build_particles(SceneContext& context, SimulationSetup& setup);
+/// After the attributes, bodies and emitters.
+void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
 /// The values of an explicit particle, one a column; empty when the scene has no columns.
 [[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
                                                           const ObjectView& view);

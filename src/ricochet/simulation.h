@@ -73,8 +73,8 @@ struct SimulationStatistics {
     std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
     std::uint64_t removed = 0;                       ///< by remove_particles()
     std::uint64_t contacts = 0;                      ///< impacts
-    std::uint64_t pair_impacts = 0;  ///< impacts of two spheres on each other
-    double overlap_largest = 0.0;    ///< of two spheres at a step's end, over the smaller radius
+    std::uint64_t pair_impacts = 0;                  ///< impacts of two spheres on each other
+    double overlap_largest = 0.0;                    ///< of two spheres at a step's end, over the smaller radius
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;             ///< particles at rest after the last step
     double unsimulated_time = 0.0;         ///< s, summed over particles, cut off by the bounce budget

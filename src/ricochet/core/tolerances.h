@@ -508,8 +508,8 @@ inline constexpr double kSameImpactUlps = 16.0;
 /// rounds. Smaller and larger: as above.
 inline constexpr double kSameApproach = 1e-9;
 
-/// Box in which a sphere declares to stay, relative to what it needs. Reason: roundings of its path, and of contact that
-/// lasts. Smaller: spheres leave their boxes by rounding, and are worked off twice. Larger: more candidates.
+/// Box in which a sphere declares to stay, relative to what it needs. Reason: roundings of its path, and of contact
+/// that lasts. Smaller: spheres leave their boxes by rounding, and are worked off twice. Larger: more candidates.
 inline constexpr double kPairBoxSlack = 1.0 + 0x1p-20;
 
 }  // namespace ricochet

@@ -309,8 +309,9 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const double remaining = step_.remaining();
     const double time_step = rules_.settings.time_step;
     const bool is_known = rules_.look_ahead && step_.outcome().bounces < kBouncesInNarrowGap &&
-                          rules_.forces.is_uniform() && particle_.planned == nullptr && particle_.beyond == 0.0 && state.coupling == nullptr &&
-                          flight.path.duration == remaining && remaining <= kWholeStep * time_step;
+                          rules_.forces.is_uniform() && particle_.planned == nullptr && particle_.beyond == 0.0 &&
+                          state.coupling == nullptr && flight.path.duration == remaining &&
+                          remaining <= kWholeStep * time_step;
     if (!is_known) return std::nullopt;
     const double acceleration = length(flight.acceleration);
     const int steps = acceleration == 0.0 ? kMaxLookAheadSteps : kMaxLookAheadStepsCurved;

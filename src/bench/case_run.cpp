@@ -187,7 +187,10 @@ MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh
     MemoryUse use;
     // Counted, not asked of the allocator: Embree maps large blocks past it.
     std::vector<ColliderDescription> colliders = colliders_of(c, mesh);
-    for (ColliderDescription& collider : colliders) collider.frame.clear();
+    for (ColliderDescription& collider : colliders) {
+        collider.frame.clear();
+        if (auto* shape = std::get_if<MeshShape>(&collider.shape)) shape->motion = nullptr;
+    }
     const CollisionWorld world(std::move(colliders));
     use.bytes_per_triangle =
         (mesh_bytes + static_cast<double>(world.memory_bytes())) / static_cast<double>(mesh->triangles.size());
@@ -207,14 +210,6 @@ std::vector<Flight> flights_of(const Particles& particles) {
 }
 
 /// True before the steps whose segments the references get.
-/// As the ground's frame sees them at a time, s.
-std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time) {
-    if (c.moves == Moves::nothing) return flights;
-    const MovingPose pose = ground_pose(c, time);
-    for (Flight& flight : flights) flight = {pose.image(flight.position), pose.direction_image(flight.velocity)};
-    return flights;
-}
-
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;

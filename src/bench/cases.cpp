@@ -226,6 +226,7 @@ Cases moving_cases() {
     append(cases, beside_rest(hits, "hits-rest", "hits-shaken", Moves::shaken));
     append(cases, beside_rest(inside, "inside-rest", "inside-spinning", Moves::spinning));
     append(cases, beside_rest(inside, "far-rest", "far-moving", Moves::bystander));
+    append(cases, beside_rest(inside, "deforming-rest", "deforming", Moves::breathing));
     append(cases, beside_rest(rocks, "rocks-rest", "rocks-spinning", Moves::spinning));
     return cases;
 }

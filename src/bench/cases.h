@@ -31,6 +31,8 @@ enum class Moves {
     shaken,     ///< the ground, to and fro by a decimetre in 5 s
     spinning,   ///< the ground by a degree a step; of rocks each about itself
     bystander,  ///< a rock far from the ground and all particles, by a degree a step
+    breathing,  ///< every vertex of the ground, which deforms: to and fro by a twentieth of its way from the origin in
+                ///< 40 steps, with a key every fourth
 };
 
 /// Where particles start.

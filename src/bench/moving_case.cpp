@@ -8,7 +8,9 @@
 #include "generators/build_near.h"
 #include "generators/placement.h"
 #include "generators/rock.h"
+#include "ricochet/core/portable_math.h"
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/mesh/mesh_motion.h"
 
 namespace ricochet::bench {
 namespace {
@@ -17,6 +19,9 @@ constexpr std::size_t kTrianglesOfARock = 1000;
 constexpr double kLattice = 2.0;  // m
 constexpr double kCoarseEdge = 0.25;
 constexpr double kDegreesAStep = 1.0;
+constexpr double kBreath = 0.05;
+constexpr int kKeysABreath = 10;
+constexpr double kStepsAKey = 4.0;
 
 TriangleMesh make_one_rock() {
     return meshes::build_near(kTrianglesOfARock, kCoarseEdge,
@@ -54,6 +59,18 @@ Spin spin_of(const Case& c, std::size_t number) {
 
 std::string name_of_rock(std::size_t k) { return fmt::format("rock {}", k); }
 
+MeshMotion breathing(const Case& c, const std::vector<Vec3>& vertices) {
+    std::vector<double> times;
+    std::vector<std::vector<Vec3>> positions;
+    for (int k = 0; k <= kKeysABreath; ++k) {
+        times.push_back(k * kStepsAKey * c.time_step);
+        const double size = 1.0 + kBreath * sine_of_turns(static_cast<double>(k % kKeysABreath) / kKeysABreath);
+        std::vector<Vec3>& all = positions.emplace_back();
+        for (const Vec3& vertex : vertices) all.push_back(size * vertex);
+    }
+    return {std::move(times), std::move(positions), MeshEnds::repeat};
+}
+
 constexpr const char* kGroundFrame = "ground";
 constexpr const char* kBystanderFrame = "bystander";
 
@@ -81,6 +98,10 @@ std::vector<ColliderDescription> colliders_of(const Case& c, const std::shared_p
     }
     const bool moves = c.moves == Moves::shaken || c.moves == Moves::spinning;
     std::vector<ColliderDescription> colliders{{"ground", MeshShape{mesh, {}, ""}, 0, moves ? kGroundFrame : ""}};
+    if (c.moves == Moves::breathing) {
+        auto& shape = std::get<MeshShape>(colliders[0].shape);
+        shape.motion = std::make_shared<const MeshMotion>(breathing(c, mesh->vertices));
+    }
     if (c.moves == Moves::bystander) {
         const auto rock = std::make_shared<const TriangleMesh>(make_one_rock());
         colliders.push_back({"bystander", MeshShape{rock, {}, ""}, 0, kBystanderFrame});
@@ -90,7 +111,7 @@ std::vector<ColliderDescription> colliders_of(const Case& c, const std::shared_p
 
 std::shared_ptr<const FrameTree> frames_of(const Case& c) {
     std::vector<FrameDescription> frames;
-    if (c.moves == Moves::nothing) return nullptr;
+    if (c.moves == Moves::nothing || c.moves == Moves::breathing) return nullptr;
     if (c.ground == Ground::rocks) {
         for (const Vec3& place : places_of_rocks(count_of_rocks(c.triangles))) {
             const std::size_t k = frames.size();
@@ -106,10 +127,18 @@ std::shared_ptr<const FrameTree> frames_of(const Case& c) {
     return std::make_shared<const FrameTree>(std::move(frames));
 }
 
-MovingPose ground_pose(const Case& c, double time) {
+std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time) {
+    if (c.moves == Moves::breathing) {
+        const double size = breathing(c, {{1, 0, 0}}).at(time).position(0).x;
+        for (Flight& flight : flights) flight = {flight.position / size, flight.velocity / size};
+        return flights;
+    }
     const auto frames = frames_of(c);
     const auto frame = frames ? frames->find(kGroundFrame) : std::nullopt;
-    return frame ? frames->at(*frame, time) : MovingPose{};
+    if (!frame) return flights;
+    const MovingPose pose = frames->at(*frame, time);
+    for (Flight& flight : flights) flight = {pose.image(flight.position), pose.direction_image(flight.velocity)};
+    return flights;
 }
 
 }  // namespace ricochet::bench

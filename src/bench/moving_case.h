@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/cases.h"
+#include "bench/native_rays.h"
 #include "ricochet/collision/collider.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -23,7 +24,8 @@ namespace ricochet::bench {
 /// How they move; null where nothing does.
 [[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const Case& c);
 
-/// The pose of the case's ground at a time, s; that of the world where it stands still or has several parts.
-[[nodiscard]] MovingPose ground_pose(const Case& c, double time);
+/// Flights at a time, s, as the case's ground sees them: in its frame, and over its size. The same where the ground
+/// stands still or has several parts.
+[[nodiscard]] std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time);
 
 }  // namespace ricochet::bench

@@ -26,7 +26,11 @@ struct NaiveMotion::Impl {
         std::optional<std::size_t> frame;
         RTCGeometry geometry = nullptr;  ///< the scene's
         MovingPose pose;
+        std::shared_ptr<const MeshMotion> motion;  ///< of the vertices, where it deforms
+        MeshMoment moment;
         std::vector<Vec3> placed;  ///< the vertices in the world
+
+        [[nodiscard]] bool moves() const { return frame || motion; }
     };
 
     std::shared_ptr<const FrameTree> frames;
@@ -61,7 +65,8 @@ NaiveMotion::Impl::Impl(const std::vector<ColliderDescription>& colliders, std::
             std::copy(part.mesh->triangles[i].begin(), part.mesh->triangles[i].end(), indices + 3 * i);
         }
         rtcSetGeometryMask(part.geometry, 0xFFFFFFFFU);
-        if (part.frame) rtcSetGeometryBuildQuality(part.geometry, RTC_BUILD_QUALITY_REFIT);
+        part.motion = shape.motion;
+        if (part.moves()) rtcSetGeometryBuildQuality(part.geometry, RTC_BUILD_QUALITY_REFIT);
         rtcAttachGeometry(scene.get(), part.geometry);
         rtcReleaseGeometry(part.geometry);  // the scene holds it
         parts.push_back(std::move(part));
@@ -73,10 +78,13 @@ NaiveMotion::Impl::Impl(const std::vector<ColliderDescription>& colliders, std::
 
 void NaiveMotion::Impl::place(Part& part, double time) {
     if (part.frame) part.pose = frames->at(*part.frame, time);
+    if (part.motion) part.moment = part.motion->at(time);
     part.placed.resize(part.vertices.size());
     auto* const corners = static_cast<float*>(rtcGetGeometryBufferData(part.geometry, RTC_BUFFER_TYPE_VERTEX, 0));
     for (std::size_t i = 0; i < part.vertices.size(); ++i) {
-        const Vec3 corner = part.frame ? part.pose.point(part.vertices[i]) : part.vertices[i];
+        const Vec3 corner = part.motion  ? part.moment.position(i)
+                            : part.frame ? part.pose.point(part.vertices[i])
+                                         : part.vertices[i];
         part.placed[i] = corner;
         for (int axis = 0; axis < 3; ++axis)
             corners[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(corner[axis]);
@@ -88,7 +96,7 @@ void NaiveMotion::Impl::place(Part& part, double time) {
 void NaiveMotion::Impl::move_to(double time) {
     parallel_for_blocks(parts.size(), 1, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            if (parts[k].frame) place(parts[k], time);
+            if (parts[k].moves()) place(parts[k], time);
         }
     });
     rtcCommitScene(scene.get());
@@ -114,8 +122,9 @@ bool NaiveMotion::Impl::step(Flight& flight, double time_step, double restitutio
     const double share = along > 0.0 ? std::clamp(dot(flight.position - a, normal) / along, 0.0, 1.0) : 0.0;
     flight.position += share * way;
     flight.position += kRayOffset * max_abs(flight.position) * normal;
-    const Vec3 surface = part.pose.velocity +
-                         cross(part.pose.angular_velocity, flight.position - part.pose.world_from_frame.translation);
+    Vec3 surface = part.pose.velocity +
+                   cross(part.pose.angular_velocity, flight.position - part.pose.world_from_frame.translation);
+    if (part.motion) surface = part.moment.velocity(triangle[0]);
     const double approach = -dot(normal, flight.velocity - surface);
     if (approach > 0.0) flight.velocity += (1.0 + restitution) * approach * normal;
     return true;

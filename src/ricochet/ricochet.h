@@ -33,6 +33,7 @@
 #include "ricochet/geometry/mesh/mass_moments.h"
 #include "ricochet/geometry/mesh/mesh_motion.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/stretched_motion.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/geometry/sweep/moving_triangle.h"
 #include "ricochet/io/frames.h"

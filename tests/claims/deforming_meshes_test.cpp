@@ -289,6 +289,32 @@ TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
     }
 }
 
+// At rest is what does not move against what it lies on, moving or not; what slides or rolls is not.
+TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingWhereItRestsOnIt) {
+    struct Sample {
+        double lift;      ///< m/s, of the plate
+        double friction;  ///< that rolls too
+        double speed;     ///< m/s, along it at first
+        std::uint64_t resting;
+    };
+    for (const Sample& sample : {Sample{0.0, 0.5, 0.3, 2}, {0.3, 0.5, 0.3, 2}, {0.0, 0.0, 0.3, 0}}) {
+        SCOPED_TRACE(std::to_string(sample.lift) + " " + std::to_string(sample.friction));
+        const auto lift = [&](const Vec3& v, double time) { return v + Vec3{0, 0, sample.lift * time}; };
+        SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.0, sample.friction});
+        setup.materials[0].rolling_friction = sample.friction;
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.colliders = {{"plate", deforming(sheet(2.0, 3), lift, {0.0, 2.0}), 0}};
+        setup.particles = {particle_at({0.1, 0.2, 0.01}, {sample.speed, 0, 0}),
+                           particle_at({0.1, 0.4, 0.06}, {sample.speed, 0, 0}, 0.05)};
+        Simulation simulation(std::move(setup));
+        simulation.step();
+        EXPECT_EQ(simulation.statistics().resting, 0U);
+        while (!simulation.finished()) simulation.step();
+        EXPECT_EQ(simulation.statistics().resting, sample.resting);
+        expect_sound(simulation);
+    }
+}
+
 /// Runs it on a mesh with two equal keys and on the same mesh at rest, and expects the same way to first order.
 void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, double time_step, double duration) {
     std::vector<Vec3> ends;

@@ -1,7 +1,9 @@
 // Colliders that move, as a scene says it: what comes of it, and what is wrong and where.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/scene_errors.h"
@@ -108,6 +110,54 @@ TEST(MovingScene, SaysWhatIsWrongAndWhere) {
               (Lines{"colliders[1].motion: found an object, expected a list [...] of objects, at least one"}));
     EXPECT_EQ(errors_of(scene_of(R"("motion": [{"time": 0, "position": [-1e75, 0, 0]}, {"time": 1e-300}])")),
               (Lines{"colliders[1].motion[0]: keys 0 and 1 of a curve are too near in time for their values"}));
+}
+
+TEST(MovingScene, MakesWhatItsPosesScaleAMeshThatDeforms) {
+    const char* growing = R"("motion": [{"time": 0.5}, {"time": 1.5, "scale": [2, 1, 3], "position": [0, 0, 1]}])";
+    const SimulationSetup setup = parse_scene(scene_of(growing), "s.json").setup;
+    EXPECT_EQ(setup.colliders[1].frame, "");
+    const auto& mesh = std::get<MeshShape>(setup.colliders[1].shape);
+    ASSERT_NE(mesh.motion, nullptr);
+    EXPECT_EQ(mesh.motion->key_count(), 2U);  // nothing turns
+    // A box of 1 m about (3, 0, 0) of the frame that is scaled about its origin.
+    for (std::size_t v = 0; v < mesh.mesh->vertices.size(); ++v) {
+        const Vec3 p = mesh.mesh->vertices[v];
+        EXPECT_EQ(mesh.motion->at(0.5).position(v), p);
+        EXPECT_EQ(mesh.motion->at(9.0).position(v), Vec3(2 * p.x, p.y, 3 * p.z + 1));
+        EXPECT_LT(length(mesh.motion->at(1.0).position(v) - Vec3(1.5 * p.x, p.y, 2 * p.z + 0.5)), 1e-15);
+        EXPECT_EQ(std::fabs(p.x - 3.0), 0.5);
+    }
+    // In a frame that turns it goes with that, until the end of the run.
+    const SimulationSetup turning = parse_scene(scene_of(std::string(R"("frame": "arm", )") + growing), "s.json").setup;
+    const auto& turned = std::get<MeshShape>(turning.colliders[1].shape);
+    EXPECT_GT(turned.motion->key_count(), 20U);
+    EXPECT_EQ(turned.motion->times().front(), 0.0);
+    EXPECT_EQ(turned.motion->times().back(), 1.01);
+    EXPECT_NO_THROW(Simulation(parse_scene(scene_of(growing), "s.json").setup));
+}
+
+TEST(MovingScene, SaysWhatCannotBeScaledInTime) {
+    const auto with_scale = [](const std::string& scale) {
+        return errors_of(scene_of(R"("motion": [{"time": 0}, {"time": 1, "scale": )" + scale + "}]"));
+    };
+    const std::string found = "colliders[1].motion[1].scale: found ";
+    const std::string expected = ", expected a number above 0, or three in [x, y, z]";
+    EXPECT_EQ(with_scale("0"), Lines{found + "0" + expected});
+    EXPECT_EQ(with_scale("-2"), Lines{found + "-2" + expected});
+    EXPECT_EQ(with_scale("[1, -1, 2]"), Lines{found + "-1 in the list" + expected});
+    for (const auto& [type, measures] : {std::pair{"sphere", R"("radius": 1)"},
+                                         {"cylinder", R"("radius": 1, "height": 1)"},
+                                         {"plane", R"("normal": [0, 0, 1])"}}) {
+        const std::string scene = std::string(R"({"ricochet": 1, "colliders": [{"type": ")") + type + "\", " +
+                                  measures + R"(, "motion": [{"time": 0}, {"time": 1, "scale": 2}]}]})";
+        EXPECT_EQ(errors_of(scene), Lines{std::string("colliders[0].motion: a ") + type +
+                                          " keeps its size: poses with \"scale\" move the vertices of meshes and "
+                                          "boxes, expected one of these, or no \"scale\""});
+    }
+    EXPECT_EQ(
+        errors_of(scene_of(R"("frame": "arm", "motion": [{"time": 0, "scale": 2}])", R"(, "response": "project")")),
+        (Lines{"colliders[1].frame: the response \"project\" knows no colliders that move, expected none, or "
+               "\"exact\""}));
 }
 
 TEST(MovingScene, SaysWhichResponsesKnowNoCollidersThatMove) {

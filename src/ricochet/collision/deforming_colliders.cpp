@@ -105,32 +105,37 @@ void DeformingColliders::sweep(Mesh& mesh) {
         moments.push_back(mesh.motion->at(key));
     }
     moments.push_back(mesh.motion->at(end_));
+    const bool stands = std::all_of(moments.begin(), moments.end(), [&](const MeshMoment& moment) {
+        return moment.duration == 0.0 && moment.from.data() == moments[0].from.data();
+    });
+    const Vec3* const stands_at = stands ? moments[0].from.data() : nullptr;
+    if (std::exchange(mesh.stands_at, stands_at) == stands_at && stands) return;
     const std::size_t count = mesh.motion->vertex_count();
-    lower_.resize(count);
-    upper_.resize(count);
+    swept_.resize(count);
     std::vector<double> largest((count + kBlock - 1) / kBlock, 0.0);
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t first, std::size_t last) {
+        Box3 all;
         for (std::size_t v = first; v < last; ++v) {
-            lower_[v] = upper_[v] = moments[0].position(v);
-            for (std::size_t k = 1; k < moments.size(); ++k) {
-                const Vec3 p = moments[k].position(v);
-                lower_[v] = min(lower_[v], p);
-                upper_[v] = max(upper_[v], p);
-            }
-            largest[block] = std::max({largest[block], max_abs(lower_[v]), max_abs(upper_[v])});
+            const Vec3 begin = moments.front().position(v);
+            const Vec3 end = moments.back().position(v);
+            Box3 box{min(begin, end), max(begin, end)};
+            for (std::size_t k = 1; k + 1 < moments.size(); ++k) box.include(moments[k].position(v));
+            swept_[v] = box;
+            all.lower = min(all.lower, box.lower);
+            all.upper = max(all.upper, box.upper);
         }
+        largest[block] = std::max(max_abs(all.lower), max_abs(all.upper));
     });
     const double most = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
     mesh.offset = contact_offset({most, 0.0, 0.0});
-    boxes_.resize(mesh.triangles.size());
-    parallel_for_blocks(boxes_.size(), kBlock, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t t = first; t < last; ++t) {
-            const auto [a, b, c] = mesh.triangles[t];
-            const Box3 box{min(lower_[a], min(lower_[b], lower_[c])), max(upper_[a], max(upper_[b], upper_[c]))};
-            boxes_[t] = grown(box, kBoxRounding * most);
-        }
+    mesh.tree.fit(mesh.triangles.size(), [&](std::uint32_t t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        const Box3& at_a = swept_[a];
+        const Box3& at_b = swept_[b];
+        const Box3& at_c = swept_[c];
+        return grown({min(at_a.lower, min(at_b.lower, at_c.lower)), max(at_a.upper, max(at_b.upper, at_c.upper))},
+                     kBoxRounding * most);
     });
-    mesh.tree.fit(boxes_);
 }
 
 void DeformingColliders::near(const Box3& box, std::vector<SurfaceId>& out) const {
@@ -251,7 +256,7 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
 }
 
 std::size_t DeformingColliders::memory_bytes() const {
-    std::size_t bytes = (lower_.capacity() + upper_.capacity()) * sizeof(Vec3) + boxes_.capacity() * sizeof(Box3);
+    std::size_t bytes = swept_.capacity() * sizeof(Box3);
     for (const Mesh& mesh : meshes_) {
         bytes += mesh.triangles.capacity() * (sizeof(Triangle) + 2 * sizeof(Box3)) + mesh.motion->memory_bytes();
     }

@@ -96,6 +96,8 @@ private:
         std::shared_ptr<const MeshMotion> motion;
         BoxTree tree;         ///< of where each triangle comes in the step
         double offset = 0.0;  ///< m, see offset_of()
+        /// The positions at which it stands in the step that `tree` is of: before its first key or after its last one.
+        const Vec3* stands_at = nullptr;
     };
 
     void add(std::size_t number);
@@ -106,9 +108,7 @@ private:
     std::shared_ptr<ColliderList> colliders_;
     std::vector<Mesh> meshes_;
     std::vector<std::uint32_t> mesh_of_;  ///< of each collider; kNone for others
-    std::vector<Vec3> lower_;             ///< scratch memory of sweep(): of each vertex in the step
-    std::vector<Vec3> upper_;
-    std::vector<Box3> boxes_;
+    std::vector<Box3> swept_;             ///< scratch memory of sweep(): where each vertex comes in the step
     double begin_ = 0.0;
     double end_ = 0.0;
 };

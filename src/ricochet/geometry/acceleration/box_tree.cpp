@@ -8,9 +8,6 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;
 
-/// Fitted boxes that are larger by this factor, all nodes together, are worth a new hierarchy.
-constexpr double kPoor = 2.0;
-
 /// What a query pays for a node, relative to others: the sum of its edges, which flat boxes have too.
 double cost(const Box3& box) {
     const Vec3 size = box.size();
@@ -19,11 +16,6 @@ double cost(const Box3& box) {
 
 }  // namespace
 
-void BoxTree::fit(std::span<const Box3> boxes) {
-    if (boxes.size() == order_.size() && !boxes.empty() && refit(boxes) <= kPoor * cost_when_built_) return;
-    build(boxes);
-}
-
 void BoxTree::build(std::span<const Box3> boxes) {
     nodes_.clear();
     order_.resize(boxes.size());
@@ -31,7 +23,8 @@ void BoxTree::build(std::span<const Box3> boxes) {
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
     if (boxes.empty()) return;
     split(0, static_cast<std::uint32_t>(boxes.size()), boxes);
-    cost_when_built_ = refit(boxes);
+    place_leaves([&](std::uint32_t i) { return boxes[i]; });
+    cost_when_built_ = place_branches();
 }
 
 /// At the median along the longest side of the box of the centres.
@@ -58,20 +51,16 @@ void BoxTree::split(std::uint32_t begin, std::uint32_t end, std::span<const Box3
     split(middle, end, boxes);
 }
 
-/// Children stand behind their parents. Returns the cost of all nodes.
-double BoxTree::refit(std::span<const Box3> boxes) {
-    for (std::size_t k = 0; k < boxes_.size(); ++k) boxes_[k] = boxes[order_[k]];
+/// Children stand behind their parents. Returns the cost of all branches.
+double BoxTree::place_branches() {
     double sum = 0.0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         Node& node = nodes_[i];
-        node.box = {};
-        if (node.count > 0) {
-            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) node.box.include(boxes_[k]);
-        } else {
-            node.box.include(nodes_[i + 1].box);
-            node.box.include(nodes_[node.first].box);
-        }
-        sum += cost(node.box);
+        if (node.count > 0) continue;
+        Box3 box = nodes_[i + 1].box;
+        box.include(nodes_[node.first].box);
+        node.box = box;
+        sum += cost(box);
     }
     return sum;
 }

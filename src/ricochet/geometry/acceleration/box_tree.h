@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/parallel.h"
 
 namespace ricochet {
 
@@ -17,7 +18,20 @@ namespace ricochet {
 class BoxTree {
 public:
     /// The boxes from now on, none of them empty. Their number may differ from before.
-    void fit(std::span<const Box3> boxes);
+    void fit(std::span<const Box3> boxes) {
+        fit(boxes.size(), [&](std::uint32_t i) { return boxes[i]; });
+    }
+    /// The same with box_of(i) for so many i, asked from any number of threads.
+    template <class BoxOf>
+    void fit(std::size_t count, const BoxOf& box_of) {
+        if (count != order_.size() || count == 0) {
+            build(all_boxes(count, box_of));
+            return;
+        }
+        place_leaves(box_of);
+        if (place_branches() <= kPoor * cost_when_built_) return;
+        build(all_boxes(count, box_of));
+    }
 
     /// Calls visit(i) for every box that has a point in common with `box`, in no particular order.
     template <class Visit>
@@ -58,10 +72,38 @@ private:
         std::uint32_t count = 0;  ///< boxes of a leaf; 0 for others
     };
 
+    template <class BoxOf>
+    [[nodiscard]] static std::vector<Box3> all_boxes(std::size_t count, const BoxOf& box_of) {
+        std::vector<Box3> boxes(count);
+        parallel_for_blocks(count, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(static_cast<std::uint32_t>(i));
+        });
+        return boxes;
+    }
+    /// In the order of the leaves, so that what lies together is asked for together.
+    template <class BoxOf>
+    void place_leaves(const BoxOf& box_of) {
+        parallel_for_blocks(nodes_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Node& node = nodes_[i];
+                if (node.count == 0) continue;
+                Box3 box;
+                for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+                    boxes_[k] = box_of(order_[k]);
+                    box.include(boxes_[k]);
+                }
+                node.box = box;
+            }
+        });
+    }
+    [[nodiscard]] double place_branches();
     void build(std::span<const Box3> boxes);
     void split(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes);
-    [[nodiscard]] double refit(std::span<const Box3> boxes);
 
+    /// Boxes or nodes per unit of parallel work.
+    static constexpr std::size_t kBlock = 1 << 13;
+    /// Fitted boxes that are larger by this factor, all branches together, are worth a new hierarchy.
+    static constexpr double kPoor = 2.0;
     /// Halving 2^32 boxes leaves no more levels than this.
     static constexpr std::size_t kMostDepth = 48;
 

@@ -87,7 +87,7 @@ public:
             collider.name = context_.unique_name(view, setup_.colliders.size(), "collider", taken);
             collider.material = material_of(view);
             collider.shape = shape_of(view, collider.material);
-            collider.frame = frame_of(view, collider.name);
+            collider.frame = frame_of(view, collider);
             setup_.colliders.push_back(std::move(collider));
         }
         warn_about_unused_materials();
@@ -221,8 +221,8 @@ private:
         }
     }
 
-    // The name of the frame that it stands in; its own keys make one more.
-    std::string frame_of(const ObjectView& view, const std::string& name) {
+    // The name of the frame that it stands in; its own keys make one more, or where they scale it a mesh that deforms.
+    std::string frame_of(const ObjectView& view, ColliderDescription& collider) {
         if (view.has("deformation")) {
             require_exact(view);
             return {};
@@ -240,9 +240,10 @@ private:
         }
         if (!view.has("motion")) return parent;
         FrameDescription frame = frame_through(view.objects("motion"), context_.diagnostics());
-        frame.name = "motion of " + name;
+        frame.name = "motion of " + collider.name;
         while (scene_frames_.find(frame.name)) frame.name += "'";
         frame.parent = parent;
+        if (stretch(context_, view, setup_.options, scene_frames_, frame, collider)) return {};
         frames_.push_back(frame);
         return frame.name;
     }
@@ -311,7 +312,7 @@ const ObjectSpec& collider_spec() {
           Without{"it stands in the world"}},
          {"motion", ValueType::list,
           "A frame of its own: poses in the order of time, at least one, each `{\"time\": ..., \"position\": ..., "
-          "\"rotation\": ...}`, within `frame` where that is given too. The collider's own position and rotation are "
+          "\"rotation\": ..., \"scale\": ...}`, within `frame` where that is given too. The collider's own position and rotation are "
           "within that.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         shapes());

@@ -172,6 +172,11 @@ private:
 /// What a collider's key "deformation" says; null pointer where there is none, or after reporting.
 [[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
+/// Where poses of a collider scale it, makes it the mesh that deforms so, within its own frame, which is not one of
+/// `frames`; false where they do not. Reports shapes that keep their size.
+[[nodiscard]] bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options,
+                           const FrameTree& frames, const FrameDescription& own, ColliderDescription& collider);
+
 /// frames: those of the scene; the ones that colliders move in by their own keys are added.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
 /// The bodies among the frames, with the mass of the colliders that stand in them.
@@ -184,6 +189,8 @@ void build_attributes(const SceneContext& context, SimulationSetup& setup);
 /// The keys of a frame that a collider has for itself, and what they say.
 [[nodiscard]] const ObjectSpec& key_pose_spec();
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
+/// The factors along the frame's axes that these keys say; nothing where none has `scale`.
+[[nodiscard]] std::optional<KeyedCurve<Vec3>> scale_through(const std::vector<ObjectView>& keys);
 /// True when a key "frame" names one of them; reports otherwise.
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
 /// In setup.frames.

@@ -14,6 +14,7 @@
 #include "ricochet/geometry/mesh/mesh_motion.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/point_cache.h"
+#include "ricochet/geometry/mesh/stretched_motion.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -202,6 +203,28 @@ private:
     bool asked_for_memory_ = false;
 };
 
+/// As it stands in its frame; null for shapes without vertices.
+std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape) {
+    const auto* const mesh = std::get_if<MeshShape>(&shape);
+    if (mesh != nullptr && mesh->mesh) {
+        return std::make_shared<const TriangleMesh>(transformed(*mesh->mesh, mesh->placement));
+    }
+    const auto* const box = std::get_if<CuboidShape>(&shape);
+    if (box == nullptr) return nullptr;
+    return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
+}
+
+/// Outside of its poses it stands still, unless what it stands in moves.
+std::pair<double, double> times_of(const std::vector<ObjectView>& poses) {
+    const double begin = poses.front().node("time").number().value_or(0.0);
+    const double end = poses.back().node("time").number().value_or(0.0);
+    return {begin, std::max(end, begin + (poses.size() == 1 ? 1.0 : 0.0))};
+}
+
+std::pair<double, double> times_of(const SimulationOptions& options) {
+    return {0.0, options.duration + options.time_step};
+}
+
 }  // namespace
 
 const ObjectSpec& deformation_spec() {
@@ -249,6 +272,37 @@ std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const Ob
         if (!context.failed()) context.error(view, problem.what());
         return nullptr;
     }
+}
+
+bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options, const FrameTree& frames,
+             const FrameDescription& own, ColliderDescription& collider) {
+    const std::vector<ObjectView> poses = view.objects("motion");
+    const auto factors = scale_through(poses);
+    if (!factors || context.failed()) return factors.has_value();
+    const std::shared_ptr<const TriangleMesh> mesh = mesh_within_frame(collider.shape);
+    if (mesh == nullptr) {
+        context.error(view, "motion",
+                      fmt::format("a {} keeps its size: poses with \"scale\" move the vertices of meshes and boxes, "
+                                  "expected one of these, or no \"scale\"",
+                                  view.type()));
+        return true;
+    }
+    try {
+        const auto [begin, end] = own.parent.empty() ? times_of(poses) : times_of(options);
+        std::vector<FrameDescription> all{own};
+        for (std::size_t k = 0; k < frames.size(); ++k) all.push_back(frames.description(k));
+        MeshShape shape{mesh, {}, "", {}};
+        shape.motion = std::make_shared<const MeshMotion>(
+            stretched_motion(mesh->vertices, *factors, FrameTree(std::move(all)), 0, begin, end));
+        if (const auto* was = std::get_if<MeshShape>(&collider.shape)) {
+            shape.file = was->file;
+            shape.triangle_materials = was->triangle_materials;
+        }
+        collider.shape = std::move(shape);
+    } catch (const InputError& problem) {
+        context.error(view, "motion", problem.what());
+    }
+    return true;
 }
 
 }  // namespace ricochet::detail

@@ -80,6 +80,11 @@ KeyedCurve<Value> curve_of(const ObjectView& view, Diagnostics& diagnostics) {
     }
 }
 
+// A pose of a collider, with its size.
+struct ScaledPose : KeyPose {
+    Vec3 scale{1, 1, 1};
+};
+
 const ObjectSpec& motion_spec() {
     using Turn = KeyedRotation;
     static const ObjectSpec spec = object<Unbound>(
@@ -224,16 +229,19 @@ bool is_frame_named(const SceneContext& context, const ObjectView& view, const F
 }
 
 const ObjectSpec& key_pose_spec() {
-    using P = KeyPose;
+    using P = ScaledPose;
     static const ObjectSpec spec = object<P>(
-        "key pose", "Where a collider's frame is at a time; between two keys it moves steadily and turns steadily.",
+        "key pose", "Where a collider's frame is at a time; between two keys it moves, turns and is scaled steadily.",
         {{"time", &P::time, kCoordinate, "s", "When; later than the key before.", kRequired},
          {"position", &P::position, kCoordinate, "m", "Of the frame's origin."},
          {"rotation",
           [](P& p) {
               return RotationTarget{p.axis, p.degrees};
           },
-          "How it is turned then.", Without{"not turned"}, &rotation_spec()}});
+          "How it is turned then.", Without{"not turned"}, &rotation_spec()},
+         {"scale", &P::scale, positive_up_to(kLargestCoordinate), "",
+          "Factor, or one for each of the frame's axes: of meshes and boxes, whose vertices it moves.",
+          ValueType::scale}});
     return spec;
 }
 
@@ -241,13 +249,23 @@ FrameDescription frame_through(const std::vector<ObjectView>& views, Diagnostics
     FrameDescription frame;
     std::vector<KeyPose> poses;
     if (!are_good_keys(views, diagnostics, false)) return frame;
-    for (const ObjectView& view : views) poses.push_back(view.read<KeyPose>());
+    for (const ObjectView& view : views) poses.push_back(view.read<ScaledPose>());
     try {
         frame.motions = motions_through(poses);
     } catch (const InputError& problem) {
         diagnostics.error(views.front().location(), views.front().path(), problem.what());
     }
     return frame;
+}
+
+std::optional<KeyedCurve<Vec3>> scale_through(const std::vector<ObjectView>& views) {
+    if (std::none_of(views.begin(), views.end(), [](const ObjectView& view) { return view.has("scale"); })) return {};
+    std::vector<CurveKey<Vec3>> keys;
+    for (const ObjectView& view : views) {
+        const auto pose = view.read<ScaledPose>();
+        keys.push_back({pose.time, pose.scale});
+    }
+    return KeyedCurve<Vec3>(std::move(keys));
 }
 
 }  // namespace ricochet::detail

@@ -109,7 +109,7 @@ std::string expectation(const KeySpec& key) {
         case ValueType::vector:
             return vector_words(key);
         case ValueType::scale:
-            return "a number other than 0, or three in [x, y, z]";
+            return fmt::format("a number {} 0, or three in [x, y, z]", key.range.lower_open ? "above" : "other than");
         case ValueType::pair:
             return pair_words(key);
         case ValueType::object:

@@ -1,0 +1,109 @@
+#include "ricochet/geometry/mesh/stretched_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
+
+namespace ricochet {
+namespace {
+
+/// Of the time between two keys: as far from them bounds are taken, so that they are not those of what is beyond.
+constexpr double kInside = 1e-9;
+
+[[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }
+
+void require_factors(const KeyedCurve<Vec3>& factors) {
+    for (const CurveKey<Vec3>& key : factors.keys()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(key.value[axis] > 0.0)) {
+                refuse("found the factor " + std::to_string(key.value[axis]) + ", expected one above 0");
+            }
+        }
+    }
+}
+
+void require_keyed(const FrameTree& frames, std::size_t frame) {
+    for (std::optional<std::size_t> k = frame; k; k = frames.find(frames.description(*k).parent)) {
+        const FrameDescription& link = frames.description(*k);
+        if (link.is_driven) refuse("the frame '" + link.name + "' is driven, expected one whose motion is given");
+    }
+}
+
+/// How a mesh moves, and how far from it straight lines can be.
+class Stretching {
+public:
+    Stretching(std::span<const Vec3> vertices, const KeyedCurve<Vec3>& factors, const FrameTree& frames,
+               std::size_t frame)
+        : vertices_(vertices), factors_(factors), frames_(frames), frame_(frame) {
+        Box3 box;
+        for (const Vec3& v : vertices) {
+            box.include(v);
+            farthest_ = std::max(farthest_, length(v));
+        }
+        if (!vertices.empty()) tolerance_ = kStretchDeviation * length(box.size());
+    }
+
+    [[nodiscard]] double next_key(double time) const {
+        return std::min(frames_.next_key(frame_, time), factors_.next_key(time));
+    }
+
+    /// How many pieces the time between two keys is cut into.
+    [[nodiscard]] double pieces(double begin, double end) const {
+        const double inside = kInside * (end - begin);
+        const MotionBounds bounds = frames_.bounds(frame_, begin + inside, end - inside);
+        const DerivativeBounds linear = product(bounds.rotation, factors_.bounds(begin + inside, end - inside));
+        const double second = bounds.origin[2] + farthest_ * linear[2];
+        if (!(second > 0.0)) return 1.0;
+        return std::max(1.0, std::ceil((end - begin) * std::sqrt(second / (8.0 * tolerance_))));
+    }
+
+    [[nodiscard]] std::vector<Vec3> positions_at(double time) const {
+        const MovingPose pose = frames_.at(frame_, time);
+        const Vec3 factor = factors_.value(time);
+        std::vector<Vec3> positions;
+        positions.reserve(vertices_.size());
+        for (const Vec3& v : vertices_) {
+            positions.push_back(pose.point({factor.x * v.x, factor.y * v.y, factor.z * v.z}));
+        }
+        return positions;
+    }
+
+private:
+    std::span<const Vec3> vertices_;
+    const KeyedCurve<Vec3>& factors_;
+    const FrameTree& frames_;
+    std::size_t frame_;
+    double farthest_ = 0.0;   // m, from the frame's origin
+    double tolerance_ = 0.0;  // m
+};
+
+}  // namespace
+
+MeshMotion stretched_motion(std::span<const Vec3> vertices, const KeyedCurve<Vec3>& factors, const FrameTree& frames,
+                            std::size_t frame, double begin, double end) {
+    if (!(begin < end)) refuse("it ends before it begins, expected a later end");
+    require_factors(factors);
+    require_keyed(frames, frame);
+    const Stretching stretching(vertices, factors, frames, frame);
+    std::vector<double> times{begin};
+    double keys = 1.0;
+    for (double from = begin; from < end;) {
+        const double to = std::min(end, stretching.next_key(from));
+        const double pieces = stretching.pieces(from, to);
+        keys += pieces;
+        require_memory(keys * static_cast<double>(vertices.size() * sizeof(Vec3)), "scale that changes in time");
+        for (double k = 1.0; k < pieces; ++k) times.push_back(from + (to - from) * (k / pieces));
+        times.push_back(to);
+        from = to;
+    }
+    return sampled_motion([&](double time) { return stretching.positions_at(time); }, std::move(times));
+}
+
+}  // namespace ricochet

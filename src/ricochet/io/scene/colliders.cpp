@@ -312,7 +312,8 @@ const ObjectSpec& collider_spec() {
           Without{"it stands in the world"}},
          {"motion", ValueType::list,
           "A frame of its own: poses in the order of time, at least one, each `{\"time\": ..., \"position\": ..., "
-          "\"rotation\": ..., \"scale\": ...}`, within `frame` where that is given too. The collider's own position and rotation are "
+          "\"rotation\": ..., \"scale\": ...}`, within `frame` where that is given too. The collider's own position "
+          "and rotation are "
           "within that.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         shapes());

@@ -184,7 +184,9 @@ TEST(PairContacts, ASymmetricRackBreaksSymmetrically) {
             const Sums sums = sums_of(p);
             EXPECT_NEAR(sums.momentum.x, 4.0, 1e-12);
             EXPECT_NEAR(sums.momentum.y, 0.0, 1e-12);
-            if (e == 1.0) EXPECT_NEAR(sums.energy, 8.0, 1e-12);
+            if (e == 1.0) {
+                EXPECT_NEAR(sums.energy, 8.0, 1e-12);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/flight.h"
 #include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
@@ -58,6 +59,25 @@ void MoveLists::append(const MoveLists& more) {
     ricochet::append(loads, more.loads);
 }
 
+FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end) {
+    const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, end - state.time);
+    FlownPiece way = piece_of(flight);
+    way.begin = state.time;
+    return way;
+}
+
+std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
+                                    double distance, double slow) {
+    for (std::size_t i = 0, j = 0; i < first.size() && j < second.size();) {
+        const TimedPath x{&first[i].path, first[i].begin, first[i].begin + first[i].duration};
+        const TimedPath y{&second[j].path, second[j].begin, second[j].begin + second[j].duration};
+        if (const auto time = first_meeting(x, y, distance, slow)) return time;
+        if (x.end <= y.end) ++i;
+        if (y.end <= x.end) ++j;
+    }
+    return std::nullopt;
+}
+
 void PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch) {
     members_ = &members;
     scratch_ = &scratch;
@@ -99,6 +119,12 @@ void PairIsland::predict(std::size_t m) {
         stay(m);
         return;
     }
+    if (member.is_free) {
+        prediction.flown.assign(1, free_way(response_.rules(), member.moving.state, member.end));
+        const Path& path = prediction.flown[0].path;
+        boxes_[m] = grown(box_of(path, path.duration), member.radius());
+        return;
+    }
     scratch_->flown.clear();
     prediction.moved.step_end = member.end;
     prediction.outcome = response_.move(prediction.moved, duration, *scratch_);
@@ -131,18 +157,36 @@ void PairIsland::bring(std::size_t m, double time) {
     const double duration = time - moving.state.time;
     if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) return;
     scratch_->flown.clear();
-    moving.beyond = member.end - time;
-    moving.step_end = time;
-    add(member.outcome, response_.move(moving, duration, *scratch_));
-    moving.beyond = 0.0;
+    if (member.is_free && !scratch_->record_segments) {
+        fly_freely(member, duration);
+    } else {
+        moving.beyond = member.end - time;
+        moving.step_end = time;
+        add(member.outcome, response_.move(moving, duration, *scratch_));
+        moving.beyond = 0.0;
+    }
+    member.is_free = false;
     if (!member.is_gone()) moving.state.time = time;
     MoveLists lists;
     lists.take(*scratch_);
     member.lists.append(lists);
+    ricochet::append(member.way, scratch_->flown);
     Box3 box;
     for (const FlownPiece& piece : scratch_->flown) box.include(box_of(piece.path, piece.duration));
     box.include(moving.state.position);
     member.swept.include(grown(box, member.radius()));
+}
+
+/// What response_.move() does where it is known to meet no wall, without the certificate.
+void PairIsland::fly_freely(IslandMember& member, double duration) {
+    const ResponseRules& rules = response_.rules();
+    ForceInput& state = member.moving.state;
+    const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, member.end - state.time);
+    const Vec3 departure = state.velocity;
+    const double begin = state.time;
+    state.velocity = velocity_at(rules.settings.integrator, rules.forces, flight, duration);
+    state.position = flight.path.position(duration);
+    scratch_->flown.push_back({flight.path, begin, duration, departure, state.velocity, true});
 }
 
 /// What is predicted has come true.
@@ -151,7 +195,8 @@ void PairIsland::commit(std::size_t m) {
     Prediction& prediction = predictions_[m];
     member.swept.include(boxes_[m]);
     member.moving.planned = nullptr;
-    if (member.is_fixed || member.is_cut_off || member.is_gone()) return;
+    if (member.impacts > 0) ricochet::append(member.way, prediction.flown);
+    if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
     member.moving = prediction.moved;
     member.moving.planned = nullptr;
     add(member.outcome, prediction.outcome);
@@ -173,17 +218,8 @@ std::optional<double> PairIsland::meeting_of(std::size_t a, std::size_t b) const
     if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
     const std::vector<FlownPiece>& first = predictions_[a].flown;
     const std::vector<FlownPiece>& second = predictions_[b].flown;
-    if (first.empty() || second.empty()) return std::nullopt;
     const double distance = (*members_)[a].radius() + (*members_)[b].radius();
-    const double rounding = slow(a, b);
-    for (std::size_t i = 0, j = 0; i < first.size() && j < second.size();) {
-        const TimedPath x{&first[i].path, first[i].begin, first[i].begin + first[i].duration};
-        const TimedPath y{&second[j].path, second[j].begin, second[j].begin + second[j].duration};
-        if (const auto time = first_meeting(x, y, distance, rounding)) return time;
-        if (x.end <= y.end) ++i;
-        if (y.end <= x.end) ++j;
-    }
-    return std::nullopt;
+    return first_meeting(std::span(first), std::span(second), distance, slow(a, b));
 }
 
 void PairIsland::find_next(std::size_t m) {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -58,12 +59,15 @@ struct IslandMember {
     MovingParticle moving;     ///< at the time moving.state.time
     double end = 0.0;          ///< s, of its part of the step
     bool is_fixed = false;     ///< nothing moves it
+    bool is_free = false;      ///< as long as it meets none of the others it certainly touches no wall
     // Out:
     MoveOutcome outcome{};
     MoveLists lists{};
     std::uint32_t impacts = 0;  ///< on other members
     bool is_cut_off = false;    ///< it has spent its budget
     Box3 swept{};               ///< of the whole sphere on all of its way
+    /// All of its way, where it has met others.
+    std::vector<FlownPiece> way{};
 
     /// It has ended before the step.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
@@ -72,6 +76,13 @@ struct IslandMember {
         return moving.state.whole_radius > 0.0 ? moving.state.whole_radius : moving.state.radius;
     }
 };
+
+/// The way of a sphere that certainly touches no wall and meets no other one, until `end`, s.
+[[nodiscard]] FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end);
+/// When spheres on two ways first meet, s; nothing where they do not. distance: of their centres then, m; slow: m/s, an
+/// approach that does not count.
+[[nodiscard]] std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
+                                                  double distance, double slow);
 
 /// Works islands off; keeps its memory for the next one. For one thread.
 class PairIsland {
@@ -102,6 +113,7 @@ private:
 
     void predict(std::size_t m);
     void stay(std::size_t m);
+    void fly_freely(IslandMember& member, double duration);
     void bring(std::size_t m, double time);
     void commit(std::size_t m);
     void find_next(std::size_t m);

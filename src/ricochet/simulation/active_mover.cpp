@@ -130,6 +130,7 @@ std::optional<IslandMember> ActiveMover::member_of(std::size_t i, const TimeSpan
     member.moving = load(i, life.begin);
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
+    member.is_free = parts_.schedule.is_in_free_flight(i);
     return member;
 }
 

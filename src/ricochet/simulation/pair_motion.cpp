@@ -34,12 +34,14 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) boxes_[k] = declared_box(first_ + k, step);
     });
-    find_islands(range);
+    find_islands(range, step);
     run(islands_, step);
-    while (join_those_near_roamers()) rebuild(step);
-    // The ordinary way leaves them alone until they are taken over.
-    for (const Island& island : islands_) {
-        for (const std::uint32_t k : island.particles) schedule_.leave_alone(first_ + k);
+    while (join_those_met(step)) rebuild(step);
+    for (Island& island : islands_) {
+        // Those that have flown as if nobody had been there go the ordinary way.
+        std::erase_if(island.members, [](const IslandMember& member) { return member.is_free; });
+        // It leaves the others alone until they are taken over.
+        for (const IslandMember& member : island.members) schedule_.leave_alone(member.particle);
     }
 }
 
@@ -81,22 +83,43 @@ bool PairMotion::is_bounded() const {
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
 }
 
-void PairMotion::find_islands(const ParticleRange& range) {
+bool PairMotion::moves(std::uint32_t k) const {
+    return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k);
+}
+
+FlownPiece PairMotion::way_of_free(std::uint32_t k, const TimeSpan& step) const {
+    return free_way(response_.rules(), store_.force_input(first_ + k, step.begin), step.end);
+}
+
+/// False for two spheres whose boxes overlap that do not meet, unless others are met.
+bool PairMotion::may_meet(const NeighbourPair& pair, const TimeSpan& step) const {
+    if (!moves(pair.first) && !moves(pair.second)) return false;
+    if (!is_free(pair.first) || !is_free(pair.second)) return true;
+    const FlownPiece first = way_of_free(pair.first, step);
+    const FlownPiece second = way_of_free(pair.second, step);
+    const std::vector<double>& radius = store_.particles().radius;
+    const double distance = radius[first_ + pair.first] + radius[first_ + pair.second];
+    return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
+}
+
+void PairMotion::find_islands(const ParticleRange& range, const TimeSpan& step) {
     parents_.resize(range.size());
     std::iota(parents_.begin(), parents_.end(), 0U);
     pairs_ = grid_.find_pairs(boxes_);
-    const auto moves = [&](std::uint32_t k) {
-        return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k);
-    };
-    std::erase_if(pairs_, [&](const NeighbourPair& pair) { return !moves(pair.first) && !moves(pair.second); });
+    std::vector<std::uint8_t> may(pairs_.size());
+    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) may[n] = may_meet(pairs_[n], step) ? 1 : 0;
+    });
     std::vector<std::uint32_t> involved;
-    for (const NeighbourPair& pair : pairs_) {
-        static_cast<void>(join(pair.first, pair.second));
-        involved.push_back(pair.first);
-        involved.push_back(pair.second);
+    for (std::size_t n = 0; n < pairs_.size(); ++n) {
+        if (may[n] == 0) continue;
+        static_cast<void>(join(pairs_[n].first, pairs_[n].second));
+        involved.push_back(pairs_[n].first);
+        involved.push_back(pairs_[n].second);
     }
     // Where a sphere may go farther than its box those that meet nobody are watched, too.
-    for (std::uint32_t k = 0; !is_bounded() && k < boxes_.size(); ++k) {
+    const bool may_roam = !is_bounded();
+    for (std::uint32_t k = 0; may_roam && k < boxes_.size(); ++k) {
         if (!boxes_[k].empty() && moves(k)) involved.push_back(k);
     }
     islands_ = islands_of(std::move(involved));
@@ -154,28 +177,46 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
     });
 }
 
-/// True where members that have left their boxes have come near to particles of other islands, which are joined.
-bool PairMotion::join_those_near_roamers() {
-    std::vector<std::uint32_t> roamers;
-    std::vector<Box3> swept;
+/// Members that have gone another way than they would have gone by themselves, or farther than declared.
+std::vector<const IslandMember*> PairMotion::members_off_plan() const {
+    std::vector<const IslandMember*> members;
     for (const Island& island : islands_) {
         for (const IslandMember& member : island.members) {
-            const auto k = static_cast<std::uint32_t>(member.particle - first_);
-            if (contains(boxes_[k], member.swept)) continue;
-            roamers.push_back(k);
-            swept.push_back(member.swept);
+            const bool is_inside = contains(boxes_[member.particle - first_], member.swept);
+            if (member.impacts > 0 || !is_inside) members.push_back(&member);
         }
     }
-    std::vector<std::vector<std::uint32_t>> near(roamers.size());
-    parallel_for_blocks(roamers.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) grid_.find_near(swept[n], near[n]);
+    return members;
+}
+
+/// Whether a member's way leads it onto a sphere of another island that flies freely and meets nobody; of others that
+/// is not known, and their boxes decide.
+bool PairMotion::comes_to(const IslandMember& member, std::uint32_t k, const TimeSpan& step) const {
+    if (!is_free(k) || member.way.empty()) return true;
+    const FlownPiece way = way_of_free(k, step);
+    const double distance = member.radius() + store_.particles().radius[first_ + k];
+    return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
+}
+
+/// True where members that are off their plans have met particles of other islands, which are joined.
+bool PairMotion::join_those_met(const TimeSpan& step) {
+    const std::vector<const IslandMember*> off_plan = members_off_plan();
+    std::vector<Box3> swept;
+    for (const IslandMember* member : off_plan) swept.push_back(member->swept);
+    std::vector<std::vector<std::uint32_t>> met(off_plan.size());
+    parallel_for_blocks(off_plan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            grid_.find_near(swept[n], met[n]);
+            std::erase_if(met[n], [&](std::uint32_t k) { return !comes_to(*off_plan[n], k, step); });
+        }
     });
+    const auto number = [&](std::size_t n) { return static_cast<std::uint32_t>(off_plan[n]->particle - first_); };
     bool has_joined = false;
-    for (std::size_t n = 0; n < roamers.size(); ++n) {
-        for (const std::uint32_t k : near[n]) has_joined |= join(roamers[n], k);
+    for (std::size_t n = 0; n < off_plan.size(); ++n) {
+        for (const std::uint32_t k : met[n]) has_joined |= join(number(n), k);
     }
-    for (const NeighbourPair& pair : roamer_grid_.find_pairs(swept)) {
-        has_joined |= join(roamers[pair.first], roamers[pair.second]);
+    for (const NeighbourPair& pair : off_plan_grid_.find_pairs(swept)) {
+        has_joined |= join(number(pair.first), number(pair.second));
     }
     return has_joined;
 }

@@ -2,9 +2,9 @@
 /// Private to the simulation: spheres that meet each other in a step.
 ///
 /// Each sphere declares a box in which it stays if it meets none of the others. Those whose boxes overlap form islands,
-/// which PairIsland works off, in parallel; all others go the ordinary way. A member that has left its box may have
-/// missed somebody: its island and those that it has come near are joined and worked off again from the step's begin,
-/// until all boxes that spheres of different islands really took are apart.
+/// but for two that fly freely and do not meet; PairIsland works them off, in parallel, and all others go the ordinary
+/// way. A member that has met another, or has left its box, may have missed somebody: its island and those that it
+/// would have met are joined and worked off again from the step's begin, until there are none.
 #pragma once
 
 #include <cstdint>
@@ -50,12 +50,18 @@ private:
     [[nodiscard]] Box3 declared_box(std::size_t i, const TimeSpan& step) const;
     [[nodiscard]] double reach(std::size_t i, double duration) const;
     [[nodiscard]] bool is_bounded() const;
-    void find_islands(const ParticleRange& range);
+    void find_islands(const ParticleRange& range, const TimeSpan& step);
+    [[nodiscard]] bool moves(std::uint32_t k) const;
+    [[nodiscard]] bool is_free(std::uint32_t k) const { return schedule_.is_in_free_flight(first_ + k); }
+    [[nodiscard]] FlownPiece way_of_free(std::uint32_t k, const TimeSpan& step) const;
+    [[nodiscard]] bool may_meet(const NeighbourPair& pair, const TimeSpan& step) const;
+    [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k, const TimeSpan& step) const;
+    [[nodiscard]] std::vector<const IslandMember*> members_off_plan() const;
     [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
     bool join(std::uint32_t a, std::uint32_t b);
     [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
     void run(std::vector<Island>& islands, const TimeSpan& step);
-    [[nodiscard]] bool join_those_near_roamers();
+    [[nodiscard]] bool join_those_met(const TimeSpan& step);
     void rebuild(const TimeSpan& step);
     void measure_overlaps();
 
@@ -66,7 +72,7 @@ private:
     const PairContactSettings& settings_;
     std::size_t first_ = 0;  // of the range: the numbers below count from it
     NeighbourGrid grid_;
-    NeighbourGrid roamer_grid_;
+    NeighbourGrid off_plan_grid_;
     std::vector<Box3> boxes_;             // declared
     std::vector<NeighbourPair> pairs_;    // whose declared boxes overlap
     std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads

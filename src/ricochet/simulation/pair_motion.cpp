@@ -216,6 +216,10 @@ bool PairMotion::join_those_met(const TimeSpan& step) {
         for (const std::uint32_t k : met[n]) has_joined |= join(number(n), k);
     }
     for (const NeighbourPair& pair : off_plan_grid_.find_pairs(swept)) {
+        const IslandMember& first = *off_plan[pair.first];
+        const IslandMember& second = *off_plan[pair.second];
+        const bool are_known = !first.way.empty() && !second.way.empty();
+        if (are_known && !first_meeting(first.way, second.way, first.radius() + second.radius(), 0.0)) continue;
         has_joined |= join(number(pair.first), number(pair.second));
     }
     return has_joined;

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
@@ -258,6 +263,158 @@ TEST(PairContacts, HaveTheSameBitsForAnyNumberOfThreads) {
     }
     EXPECT_EQ(hashes[1], hashes[0]);
     EXPECT_EQ(hashes[2], hashes[0]);
+}
+
+TEST(PairContacts, AVerifiedRunHasTheSameBits) {
+    SimulationSetup verified = gas({.restitution = 0.95}, 300, 0.02, 0.02, 1.0);
+    verified.options.verify = true;
+    const Simulation first = run(std::move(verified));
+    const Simulation second = run(gas({.restitution = 0.95}, 300, 0.02, 0.02, 1.0));
+    EXPECT_GT(first.statistics().pair_impacts, 100U);
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(PairContacts, ARunThatIsResumedHasTheSameBits) {
+    const auto setup = [] { return gas({.restitution = 0.9, .friction = 0.3}, 200, 0.03, 0.02, 0.6); };
+    Simulation whole(setup());
+    std::vector<std::byte> bytes;
+    while (!whole.finished()) {
+        if (whole.step_index() == 11) {
+            whole.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+        }
+        whole.step();
+    }
+    Simulation resumed(setup());
+    std::size_t at = 0;
+    resumed.restore([&](std::span<std::byte> part) {
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), part.size(), part.begin());
+        at += part.size();
+    });
+    while (!resumed.finished()) resumed.step();
+    EXPECT_EQ(resumed.state_hash(), whole.state_hash());
+    EXPECT_EQ(resumed.statistics().pair_impacts, whole.statistics().pair_impacts);
+    EXPECT_GT(whole.statistics().pair_impacts, 100U);
+}
+
+// Where the acceleration is uniform the length of the step decides nothing, until rounding has grown.
+TEST(PairContacts, TheTimeStepChangesNoImpact) {
+    const auto positions = [](double time_step) {
+        SimulationSetup setup = gas({.restitution = 0.9, .friction = 0.2}, 60, 0.04, time_step, 0.5);
+        setup.forces.push_back(make_gravity({0, 0, -2}));
+        const Simulation simulation = run(std::move(setup));
+        EXPECT_GT(simulation.statistics().pair_impacts, 20U);
+        return simulation.particles().position;
+    };
+    const std::vector<Vec3> coarse = positions(0.1);
+    const std::vector<Vec3> fine = positions(0.003);
+    for (std::size_t i = 0; i < coarse.size(); ++i) EXPECT_LT(largest(coarse[i] - fine[i]), 1e-9) << i;
+}
+
+/// Time of a pair's impact under the spring force a = -k x, by bisection on the exact motion.
+double meeting_of_oscillators(double x, double v, double rate, double distance) {
+    double low = 0.0;
+    double high = 0.5;
+    for (int k = 0; k < 200; ++k) {
+        const double t = 0.5 * (low + high);
+        const double gap = x * std::cos(rate * t) + v / rate * std::sin(rate * t);
+        (gap > distance ? low : high) = t;
+    }
+    return 0.5 * (low + high);
+}
+
+// The relative motion of two in one field of springs is that of one; elastic equals exchange their velocities.
+TEST(PairContacts, OtherIntegratorsFindTheImpactWithTheirOwnOrder) {
+    const double rate = 3.0;
+    const double time = meeting_of_oscillators(1.0, -2.0, rate, 0.2);
+    const double velocity = -1.0 * rate * std::sin(rate * time) - 2.0 * std::cos(rate * time);
+    const double left = 0.5 - time;
+    const double expected = 0.2 * std::cos(rate * left) - velocity / rate * std::sin(rate * left);
+    const auto error_of = [&](IntegratorKind kind, double time_step) {
+        SimulationSetup setup = pair_setup(time_step, 0.5, {});
+        setup.options.integrator = kind;
+        setup.forces.push_back(make_force([=](const ForceInput& input) { return -(rate * rate) * input.position; }));
+        setup.particles = {particle_of({-0.5, 0, 0}, {1, 0, 0}, 0.1), particle_of({0.5, 0, 0}, {-1, 0, 0}, 0.1)};
+        const Simulation simulation = run(std::move(setup));
+        EXPECT_EQ(simulation.statistics().pair_impacts, 1U);
+        const std::vector<Vec3>& x = simulation.particles().position;
+        return std::fabs((x[1] - x[0]).x - expected);
+    };
+    for (const auto& [kind, order] : {std::pair(IntegratorKind::rk4, 4.0),
+                                      {IntegratorKind::midpoint, 2.0},
+                                      {IntegratorKind::velocity_verlet, 2.0},
+                                      {IntegratorKind::symplectic_euler, 1.0},
+                                      {IntegratorKind::forward_euler, 1.0}}) {
+        SCOPED_TRACE(name_of(kind));
+        const double coarse = error_of(kind, 0.02);
+        const double fine = error_of(kind, 0.0025);
+        EXPECT_LT(fine, coarse * std::pow(8.0, -order + 0.7));
+    }
+}
+
+TEST(PairContacts, SpheresThatOverlapFromTheStartPartAndGetNoDeeper) {
+    SimulationSetup setup = pair_setup(0.05, 1.0, {.restitution = 0.5});
+    setup.particles = {particle_of({0, 0, 0}, {0.5, 0, 0}, 0.1), particle_of({0.15, 0, 0}, {-0.5, 0, 0}, 0.1),
+                       particle_of({5, 0, 0}, {-0.1, 0, 0}, 0.1), particle_of({5.1, 0, 0}, {0.1, 0, 0}, 0.1)};
+    const Simulation simulation = run(std::move(setup));
+    const Particles& p = simulation.particles();
+    EXPECT_EQ(simulation.statistics().pair_impacts, 1U);
+    EXPECT_NEAR(p.velocity[1].x, 0.25, 1e-14);
+    EXPECT_NEAR(p.velocity[2].x, -0.1, 0.0);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1.0);
+}
+
+TEST(PairContacts, WhatSpendsItsBudgetIsCountedAndStays) {
+    SimulationSetup setup = pair_setup(0.5, 0.5, {.restitution = 0.5, .impact_budget = 3});
+    ColliderDescription floor;
+    floor.shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
+    setup.colliders.push_back(floor);
+    setup.forces.push_back(make_gravity({0, 0, -10}));
+    setup.particles = {particle_of({0, 0, 0.1}, {}, 0.1), particle_of({0, 0, 0.31}, {}, 0.1)};
+    const Simulation simulation = run(std::move(setup));
+    EXPECT_GT(simulation.statistics().unsimulated_time, 0.1);
+    EXPECT_GT(simulation.statistics().budget_exhausted, 0U);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1e-9);
+}
+
+TEST(PairContacts, ABallAtRestOnTheFloorRollsAwayWhenItIsHit) {
+    SimulationSetup setup = pair_setup(0.02, 1.0, {.restitution = 0.9, .friction = 0.1}, {0, 0, -9.81});
+    setup.options.resting_speed = 1e-3;
+    setup.options.verify = true;
+    setup.materials[0] = {.name = "cloth", .restitution = 0.5, .friction = 0.2};
+    ColliderDescription floor;
+    floor.shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
+    setup.colliders.push_back(floor);
+    setup.particles = {particle_of({0, 0, 0.03}, {}, 0.03), particle_of({-0.5, 0, 0.03}, {2, 0, 0}, 0.03)};
+    const Simulation simulation = run(std::move(setup));
+    const Particles& p = simulation.particles();
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    EXPECT_GT(p.position[0].x, 0.5);
+    EXPECT_GT(p.position[0].x, p.position[1].x + 0.06);
+    EXPECT_NEAR(p.position[0].z, 0.03, 1e-6);
+    EXPECT_NEAR(p.spin[0].y, p.velocity[0].x / 0.03, 1e-6);  // it rolls
+}
+
+TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
+    const auto complaint = [](const std::function<void(SimulationSetup&)>& change) {
+        SimulationSetup setup = pair_setup(0.1, 1.0, {});
+        setup.particles = {particle_of({0, 0, 0}, {}, 0.1), particle_of({1, 0, 0}, {}, 0.1)};
+        change(setup);
+        try {
+            const Simulation simulation(std::move(setup));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    EXPECT_EQ(complaint([](SimulationSetup&) {}), "none");
+    const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+    EXPECT_TRUE(has(complaint([](auto& s) { s.options.response = ResponseKind::penalty; }), "response"));
+    EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->restitution = 1.5; }), "restitution"));
+    EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->impact_budget = 0; }), "impact_budget"));
+    EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->method = PairMethod::contacts; }), "method"));
+    EXPECT_TRUE(has(complaint([](auto& s) { s.springs.push_back({0, 1, 1.0}); }), "springs"));
 }
 
 }  // namespace

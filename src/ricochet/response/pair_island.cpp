@@ -135,6 +135,13 @@ void PairIsland::predict(std::size_t m) {
         stay(m);
         return;
     }
+    // What has spent its bounces on walls stays there, and others may come.
+    if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
+        const FlownPiece& last = prediction.flown.back();
+        const double begin = last.begin + last.duration;
+        const Path here = line_path(prediction.moved.state.position, Vec3{}, std::max(0.0, member.end - begin));
+        prediction.flown.push_back({here, begin, here.duration, Vec3{}, Vec3{}, false});
+    }
     Box3 box;
     for (const FlownPiece& piece : prediction.flown) box.include(box_of(piece.path, piece.duration));
     box.include(prediction.moved.state.position);

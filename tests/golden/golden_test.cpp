@@ -71,6 +71,8 @@ constexpr ShippedScene kShippedScenes[] = {
     {"bouncing_table", "1.2"},
     {"fish", "2.4"},
     {"tumbling_rocks", "1.1"},
+    {"billiard_break", "1"},
+    {"granular_gas", "0.3"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "claims/particles_forces_scene.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
@@ -24,6 +25,12 @@
 namespace ricochet {
 namespace {
 
+using test::add_box;
+using test::body;
+using test::energy;
+using test::finished;
+using test::momentum;
+using test::momentum_scale;
 using testing::setup_of;
 
 GravitySettings gravity_of(double constant, double softening = 0.0, SumMethod method = SumMethod::automatic) {
@@ -38,43 +45,6 @@ ChargeSettings unit_coulomb() {
     ChargeSettings settings;
     settings.constant = 1.0;
     return settings;
-}
-
-Particle body(const Vec3& position, const Vec3& velocity, double mass, std::vector<AttributeValue> attributes = {}) {
-    Particle particle = testing::particle_of(position, velocity);
-    particle.mass = mass;
-    particle.attributes = std::move(attributes);
-    return particle;
-}
-
-void add_box(SimulationSetup& setup, double half_side) {
-    for (const Vec3& n :
-         {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
-        setup.colliders.push_back({"wall " + std::to_string(setup.colliders.size()), PlaneShape{-half_side * n, n}, 0});
-    }
-}
-
-Simulation finished(SimulationSetup setup, const Integrator& integrator) {
-    setup.options.integrator = integrator;
-    Simulation simulation(std::move(setup));
-    while (!simulation.finished()) simulation.step();
-    return simulation;
-}
-
-Vec3 momentum(const Particles& particles) {
-    Vec3 sum;
-    for (std::size_t i = 0; i < particles.size(); ++i) sum += particles.mass[i] * particles.velocity[i];
-    return sum;
-}
-
-double momentum_scale(const Particles& particles) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < particles.size(); ++i) sum += particles.mass[i] * length(particles.velocity[i]);
-    return sum;
-}
-
-double energy(const Simulation& simulation) {
-    return simulation.kinetic_energy() + simulation.potential_energy().value();
 }
 
 // Two bodies.

@@ -42,6 +42,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"bouncing_ball", ""},
     {"conveyor", "4"},
     {"debris", "1.6"},
+    {"drops", "0.12"},
     {"fireworks", "2.2"},
     {"flow_past_body", "1.6"},
     {"fountain", "1.2"},

@@ -50,6 +50,15 @@ std::string refusal_of(SimulationSetup setup) {
     return "it was taken";
 }
 
+TEST(MemoryEstimate, CountsMoreForParticlesThatActOnEachOther) {
+    EmitterDescription emitter = source("tap");
+    emitter.burst = 1000;
+    SimulationSetup setup = setup_with(emitter);
+    const double alone = estimate_memory(setup).bytes();
+    setup.particles_forces.push_back({make_mutual_gravity({})});
+    EXPECT_GT(estimate_memory(setup).bytes(), alone + 1000.0 * 500.0);
+}
+
 TEST(MemoryEstimate, CountsBurstsAndRatesWithTheirTimesLifetimesAndLimits) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 500;

@@ -208,6 +208,20 @@ class Simulation(unittest.TestCase):
         simulation.run(until=0.1, progress=True)
         self.assertEqual(simulation.step_index, 10)
 
+    def test_a_picture_is_an_array(self):
+        simulation = ricochet.Simulation(ROOT / "scenes" / "bouncing_ball.json")
+        simulation.run(until=0.5)
+        picture = simulation.render(64, 36, samples=1)
+        self.assertEqual((picture.shape, picture.dtype), ((36, 64, 3), np.uint8))
+        self.assertGreater(picture.std(), 5)
+        np.testing.assert_array_equal(picture, simulation.render(64, 36, samples=1))
+        elsewhere = simulation.render(64, 36, 1, position=[0, -20, 3], target=[0, 0, 0], field_of_view=50)
+        self.assertFalse(np.array_equal(picture, elsewhere))
+        for wrong in ({"width": 0}, {"height": 10**6}, {"samples": 0}, {"position": [0, np.nan, 0]}, {"target": 3},
+                      {"field_of_view": 180}):
+            with self.assertRaises(ricochet.InputError):
+                simulation.render(**wrong)
+
     def test_the_scenes_of_the_project_run(self):
         simulation = ricochet.Simulation(ROOT / "scenes" / "bouncing_ball.json")
         simulation.step()

@@ -1,5 +1,6 @@
 """The package and its stubs as a type checker sees them."""
 
+import ast
 import importlib.util
 import os
 import subprocess
@@ -9,6 +10,7 @@ import unittest
 from pathlib import Path
 
 import ricochet
+from ricochet import _core
 from support import ROOT
 
 USE = """
@@ -30,6 +32,18 @@ WRONG = """
 from ricochet import scene
 scene.Material(restitutoin=0.5)
 """
+
+
+class Stub(unittest.TestCase):
+    def test_of_the_compiled_module_names_what_there_is(self):
+        stub = ast.parse((Path(ricochet.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
+        for entry in stub.body:
+            if isinstance(entry, ast.ClassDef) and entry.name in ("Mesh", "Simulation"):
+                named = {method.name for method in entry.body if isinstance(method, ast.FunctionDef)}
+                there = {name for name in vars(getattr(_core, entry.name)) if not name.startswith("__")}
+                self.assertEqual({name for name in named if not name.startswith("__")}, there)
+        named = {entry.name for entry in stub.body if isinstance(entry, (ast.ClassDef, ast.FunctionDef))}
+        self.assertEqual(named, {name for name in vars(_core) if not name.startswith("_")})
 
 
 @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")

@@ -336,6 +336,7 @@ void bind_simulation(py::module_& module) {
              arg("overrides"), arg("contacts"), arg("verify"));
     bind_state(type);
     bind_changes(type);
+    bind_picture(type);
 }
 
 }  // namespace ricochet::python

@@ -55,6 +55,8 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
       verifies_(verifies),
       scene_(parse_scene(text_, file_, overrides_)) {
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
+    const Vec3 down = uniform_acceleration(scene_.setup);
+    if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
     simulation_ = std::make_unique<Simulation>(std::move(scene_.setup));
     if (!keeps_contacts) return;
     simulation_->on_contact([this](std::span<const ContactRecord> records) {

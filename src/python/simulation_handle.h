@@ -56,6 +56,8 @@ public:
     [[nodiscard]] std::vector<ContactRecord> take_contacts();
 
     [[nodiscard]] const SceneDescription& scene() const { return scene_; }
+    /// Against gravity, of unit length.
+    [[nodiscard]] const Vec3& up() const { return up_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     [[nodiscard]] const std::string& file() const { return file_; }
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
@@ -85,10 +87,13 @@ private:
     bool keeps_contacts_;
     bool verifies_;
     SceneDescription scene_;  ///< without its setup
+    Vec3 up_{0, 0, 1};
     std::unique_ptr<Simulation> simulation_;
     std::vector<ContactRecord> contacts_;
     mutable std::weak_ptr<LentParticles> lent_;
     mutable std::atomic<bool> is_busy_ = false;
 };
+
+void bind_picture(py::class_<SimulationHandle>& type);
 
 }  // namespace ricochet::python

@@ -264,5 +264,21 @@ TEST(ContactCallback, MayPutAnotherInItsPlaceOrEndItself) {
     EXPECT_EQ(calls, (std::vector<std::string>{"first 1x", "second"}));
 }
 
+TEST(ReleasedParticles, KeepTheirMemoryAndValuesAndTheRunItsBits) {
+    Simulation lending(box_of_balls(40));
+    Simulation plain(box_of_balls(40));
+    for (int round = 0; round < 4; ++round) {
+        const Vec3* lent = lending.particles().position.data();
+        const std::vector<Vec3> before = lending.particles().position;
+        const Particles released = lending.release_particles();
+        lending.advance(40);
+        plain.advance(40);
+        EXPECT_EQ(released.position.data(), lent);
+        EXPECT_EQ(released.position, before);
+        EXPECT_NE(lending.particles().position.data(), lent);
+        ASSERT_EQ(lending.state_hash(), plain.state_hash());
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -25,6 +25,7 @@ class Scene(Thing):
 
     simulation: Time and impacts.
     forces: Forces on the particles.
+    particle_forces: Forces between the particles.
     flows: Flows by name, for several forces to share.
     materials: Materials by name.
     colliders: What particles bounce off.
@@ -32,6 +33,7 @@ class Scene(Thing):
     emitters: Where particles are born.
     particles: Particles that are there from the start, one by one or from a table.
     springs: Springs between particles; ropes, chains and cloth with particles of their own.
+    particle_contacts: Spheres meet each other.
     attributes: Values of your own that particles carry, by name.
     reference_camera: For emitters' rates per screen area.
     bounds: Where particles are retired.
@@ -792,6 +794,66 @@ class AnchorForce(Thing):
     _fixed = {"type": "anchor"}
 
 
+class GravityForceBetweenParticles(Thing):
+    """Newton's law between every two particles, by their masses.
+
+    particles: Ids of particles that take part.
+    emitter: Name of an emitter: what it gives birth to takes part.
+    constant: Of gravitation; negative repels. Scenes with units of their own often have 1. Unit: m^3/(kg s^2).
+        Default: 6.6743e-11.
+    softening: Length over which each particle is smeared out: the force is weaker within it. Without it two that
+        come near each other need steps as short as their passage. Unit: m. Default: 0.
+    method: How all are added up. Default: "auto".
+    opening: Of the tree: groups are taken together from where their radius over their distance is smaller than
+        this. Smaller is more exact and slower. Default: 0.5.
+    """
+
+    _fixed = {"type": "gravity"}
+
+
+class ChargeForceBetweenParticles(Thing):
+    """Coulomb's law between every two particles, by a charge that they carry as an attribute.
+
+    particles: Ids of particles that take part.
+    emitter: Name of an emitter: what it gives birth to takes part.
+    attribute: The attribute, of one component, that holds the charge in C. Default: "charge".
+    constant: Coulomb's; negative attracts like charges. Unit: N m^2/C^2. Default: 8987551786.2.
+    softening: Length over which each particle is smeared out: the force is weaker within it. Without it two that
+        come near each other need steps as short as their passage. Unit: m. Default: 0.
+    method: How all are added up. Default: "auto".
+    opening: Of the tree: groups are taken together from where their radius over their distance is smaller than
+        this. Smaller is more exact and slower. Default: 0.5.
+    """
+
+    _fixed = {"type": "charge"}
+
+
+class LennardJonesForceBetweenParticles(Thing):
+    """The force of neutral atoms: repulsion by the 12th, attraction by the 6th power of the distance, cut off smoothly. The least potential is near a distance of 1.12 diameters.
+
+    particles: Ids of particles that take part.
+    emitter: Name of an emitter: what it gives birth to takes part.
+    depth: How deep the least potential is, without the cutoff. Unit: J. Default: 1.
+    diameter: Distance of the centres at which the potential is 0. Unit: m. Default: 1.
+    cutoff: Diameters beyond which there is no force. Default: 2.5.
+    """
+
+    _fixed = {"type": "lennard_jones"}
+
+
+class CohesionForceBetweenParticles(Thing):
+    """Spheres that stick: a spring between their surfaces that lets go at a gap, F = k g (1 - g / range)^2, and pushes back where they overlap.
+
+    particles: Ids of particles that take part.
+    emitter: Name of an emitter: what it gives birth to takes part.
+    stiffness: The k: the spring's near contact. Unit: N/m. Required.
+    range: Gap between the surfaces at which they let go. Unit: m. Required.
+    damping: Along the line of the centres, within the range. Unit: N s/m. Default: 0.
+    """
+
+    _fixed = {"type": "cohesion"}
+
+
 class Frame(Thing):
     """A moving frame of reference, for emitters and colliders. It stands in its parent like this: translation, rotation, then the motions in their order.
 
@@ -923,6 +985,19 @@ class Particle(Thing):
     opacity: How much it covers what is behind.
     size: Radius that is drawn. Unit: m.
     attributes: Values of the scene's `attributes`, by name; no spread.
+    """
+
+
+class ParticleContacts(Thing):
+    """What spheres do when they meet each other.
+
+    restitution: Speed of parting over speed of approach along the normal. Default: 1.
+    friction: Coulomb coefficient between spheres. Default: 0.
+    rolling_friction: Moment that resists turning relative to each other, over the reduced radius times the normal
+        impulse. Default: 0.
+    method: How spheres that meet are moved. Default: "auto".
+    impact_budget: Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for
+        the rest of the step, and the time left out is counted. Default: 1000.
     """
 
 

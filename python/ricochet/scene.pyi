@@ -18,6 +18,7 @@ class Scene(Thing):
         *,
         simulation: Any = ...,
         forces: Optional[Sequence[Any]] = ...,
+        particle_forces: Optional[Sequence[Any]] = ...,
         flows: Optional[Mapping[str, Any]] = ...,
         materials: Optional[Mapping[str, Any]] = ...,
         colliders: Optional[Sequence[Any]] = ...,
@@ -25,6 +26,7 @@ class Scene(Thing):
         emitters: Optional[Sequence[Any]] = ...,
         particles: Any = ...,
         springs: Optional[Sequence[Any]] = ...,
+        particle_contacts: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         reference_camera: Any = ...,
         bounds: Any = ...,
@@ -656,6 +658,53 @@ class AnchorForce(Thing):
         damping: Optional[float] = ...,
     ) -> None: ...
 
+class GravityForceBetweenParticles(Thing):
+    def __init__(
+        self,
+        *,
+        particles: Optional[Vector] = ...,
+        emitter: Optional[str] = ...,
+        constant: Optional[float] = ...,
+        softening: Optional[float] = ...,
+        method: Optional[str] = ...,
+        opening: Optional[float] = ...,
+    ) -> None: ...
+
+class ChargeForceBetweenParticles(Thing):
+    def __init__(
+        self,
+        *,
+        particles: Optional[Vector] = ...,
+        emitter: Optional[str] = ...,
+        attribute: Optional[str] = ...,
+        constant: Optional[float] = ...,
+        softening: Optional[float] = ...,
+        method: Optional[str] = ...,
+        opening: Optional[float] = ...,
+    ) -> None: ...
+
+class LennardJonesForceBetweenParticles(Thing):
+    def __init__(
+        self,
+        *,
+        particles: Optional[Vector] = ...,
+        emitter: Optional[str] = ...,
+        depth: Optional[float] = ...,
+        diameter: Optional[float] = ...,
+        cutoff: Optional[float] = ...,
+    ) -> None: ...
+
+class CohesionForceBetweenParticles(Thing):
+    def __init__(
+        self,
+        *,
+        particles: Optional[Vector] = ...,
+        emitter: Optional[str] = ...,
+        stiffness: float,
+        range: float,
+        damping: Optional[float] = ...,
+    ) -> None: ...
+
 class Frame(Thing):
     def __init__(
         self,
@@ -775,6 +824,17 @@ class Particle(Thing):
         opacity: Optional[float] = ...,
         size: Optional[float] = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+    ) -> None: ...
+
+class ParticleContacts(Thing):
+    def __init__(
+        self,
+        *,
+        restitution: Optional[float] = ...,
+        friction: Optional[float] = ...,
+        rolling_friction: Optional[float] = ...,
+        method: Optional[str] = ...,
+        impact_budget: Optional[int] = ...,
     ) -> None: ...
 
 class ParticleTable(Thing):

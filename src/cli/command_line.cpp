@@ -82,6 +82,14 @@ void CommandLine::add_version(std::function<std::string()> text) {
     app_->set_version_flag("--version", std::move(text), "Print the versions of ricochet and its libraries");
 }
 
+std::vector<std::string> CommandLine::commands() const {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    return names;
+}
+
 std::optional<int> CommandLine::parse(int argc, char** argv, const std::string& hint) {
     try {
         app_->parse(argc, argv);

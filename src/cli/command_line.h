@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -67,6 +68,9 @@ public:
     [[nodiscard]] Command program();
     /// Adds --version, which prints the text.
     void add_version(std::function<std::string()> text);
+
+    /// Names of the commands, in the order in which they were added.
+    [[nodiscard]] std::vector<std::string> commands() const;
 
     /// Reads the arguments and calls the commands that they name. Returns the exit code where help or version was asked
     /// for and printed, else nothing. Throws InputError on wrong arguments, with `hint` in brackets.

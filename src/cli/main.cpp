@@ -11,6 +11,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command_line.h"
@@ -22,6 +23,7 @@
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet {
 namespace {
@@ -56,11 +58,23 @@ int report_error(std::string message, int exit_code) {
     return exit_code;
 }
 
+// What is no command is told as such, with the one that may be meant.
+void check_command(const cli::CommandLine& line, int argc, char** argv) {
+    const std::string word = argc > 1 ? argv[1] : "";
+    const std::vector<std::string> known = line.commands();
+    if (word.empty() || word.front() == '-' || std::find(known.begin(), known.end(), word) != known.end()) return;
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    const std::vector<std::string_view> nearest = detail::nearest_names(word, names);
+    const std::string help = nearest.empty() ? "expected " + detail::quoted_list(names) : detail::did_you_mean(nearest);
+    throw InputError(fmt::format("unknown command \"{}\"; {}", word, help));
+}
+
 int parse_and_run(int argc, char** argv) {
     cli::CommandLine line("Particles against triangle meshes, exactly", "ricochet");
     line.add_version(version_text);
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(line.program(), exit_code);
+    check_command(line, argc, argv);
     if (const auto printed = line.parse(argc, argv, "ricochet --help lists commands and options")) return *printed;
     return exit_code;
 }

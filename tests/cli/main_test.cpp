@@ -36,5 +36,13 @@ TEST(CommandLine, EndsWithTwoAndOneLineForWrongArguments) {
     }
 }
 
+TEST(CommandLine, NamesTheCommandThatMayBeMeant) {
+    EXPECT_EQ(test::run_ricochet({"rnu", "scene.json"}).errors,
+              "ricochet: unknown command \"rnu\"; did you mean \"run\"?\n");
+    const std::string errors = test::run_ricochet({"juggle"}).errors;
+    EXPECT_TRUE(errors.starts_with("ricochet: unknown command \"juggle\"; expected \"bench\", ")) << errors;
+    EXPECT_NE(errors.find("\"view\""), std::string::npos) << errors;
+}
+
 }  // namespace
 }  // namespace ricochet

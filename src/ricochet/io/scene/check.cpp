@@ -404,8 +404,10 @@ private:
                      const std::string& path, std::set<std::string_view>& excused) {
         if (find_key(spec, variant, member.key) != nullptr) return;
         if (const std::string owners = variants_with(spec, member.key); !owners.empty()) {
+            const std::string help = did_you_mean(longer_names(member.key, names_of(keys_of(spec, variant))));
             diagnostics_.error(member.key_location, path_of_key(path, member.key),
-                               fmt::format("not a key of type \"{}\", it belongs to {}", variant->name, owners));
+                               fmt::format("not a key of type \"{}\", it belongs to {}{}{}", variant->name, owners,
+                                           help.empty() ? "" : "; ", help));
             return;
         }
         std::vector<std::string_view> known = names_of(keys_of(spec, variant));
@@ -414,6 +416,16 @@ private:
         report_unknown(member, path, nearest, known);
         excused.insert(nearest.begin(), nearest.end());
         if (nearest.size() == 1 && node.find(nearest[0]) == nullptr) member.key = nearest[0];
+    }
+
+    // Names that say more exactly what the word says: particle_size of size.
+    static std::vector<std::string_view> longer_names(const std::string& word,
+                                                      const std::vector<std::string_view>& known) {
+        std::vector<std::string_view> longer;
+        for (const std::string_view name : known) {
+            if (name.ends_with("_" + word)) longer.push_back(name);
+        }
+        return longer;
     }
 
     static std::string variants_with(const ObjectSpec& spec, std::string_view name) {

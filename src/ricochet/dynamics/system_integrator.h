@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/particle_system.h"
 
@@ -24,6 +26,24 @@ struct HeldMotion {
         for (std::uint8_t k = 0; k < count; ++k) v -= dot(v, directions[k]) * directions[k];
         return v;
     }
+    /// Holds what is free so far too, at this velocity across the directions, m/s.
+    void hold_all(const Vec3& velocity_across) {
+        velocity += velocity_across;
+        for (int axis = 0; axis < 3 && count < directions.size(); ++axis) {
+            Vec3 unit;
+            unit[axis] = 1.0;
+            const Vec3 free = across(unit);
+            if (length(free) > 0.5) directions[count++] = normalized(free);
+        }
+    }
+};
+
+/// How far the implicit method goes.
+struct ImplicitOptions {
+    /// Correction of a velocity, relative to the largest speed, that is not worth another iteration.
+    double tolerance = kNewtonTolerance;
+    /// Called between iterations, where there is any; what it throws comes out of the step. It lets others stop it.
+    std::function<void()> between = {};
 };
 
 /// One step of a system, as if there were no surfaces. Entries are those of its members.
@@ -54,10 +74,11 @@ struct SystemStep {
 /// other, but for ballistic: springs that are held over a step gain energy, so that it becomes velocity_verlet.
 ///
 /// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method with sparse
-/// factorizations: first with symmetric matrices in which, far from the solution, compressed springs count as slack
-/// across (which leads to the stable one of several solutions and changes none), then, where that is slow, with the
-/// exact one. Where a violent step is not solved by either, half of it is taken. Source: D. Baraff, A. Witkin, "Large
-/// Steps in Cloth Simulation", SIGGRAPH 1998.
+/// factorizations. Dampers resist (l1 - l0) / h in it, the mean rate of the length over the step: without forces that
+/// vary the equations are then those of the least of an energy, and each iteration leads downhill, with as much of the
+/// pressure in springs in the matrix as leaves it definite. Where a violent step is not solved half of it is taken.
+/// Sources: D. Baraff, A. Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998; the energy: S. Martin, B.
+/// Thomaszewski, E. Grinspun, M. Gross, "Example-Based Elastic Materials", SIGGRAPH 2011.
 [[nodiscard]] SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration,
                                      double first_try);
 
@@ -67,7 +88,8 @@ struct SystemStep {
 /// surfaces.
 /// guess: velocities near the solution, m/s; empty: none are known.
 [[nodiscard]] SystemStep implicit_system_step(const ParticleSystem& system, double duration,
-                                              std::span<const HeldMotion> held, std::span<const Vec3> guess);
+                                              std::span<const HeldMotion> held, std::span<const Vec3> guess,
+                                              const ImplicitOptions& options = {});
 
 /// The flight of member i in this step, along the path that the method gives it: lines for the Euler methods, the cubic
 /// Hermite polynomial for the others. For velocity_verlet too: unlike its parabola that is the same read backwards in

@@ -26,11 +26,17 @@ double negligible_energy(const SpringNetwork& network) {
     return sum;
 }
 
-/// Solutions of a step among surfaces before the last one is taken.
-constexpr int kMostForesights = 8;
+/// Solutions of a step among surfaces before half of it is tried.
+constexpr int kMostForesights = 4;
+
+/// Halvings of a step for which it does not settle what surfaces hold; then the last solution is taken, and counted.
+constexpr int kMostHalvings = 6;
 
 /// By which part of the largest speed what surfaces hold may differ from what the step was solved for.
 constexpr double kForesight = 1e-3;
+
+/// Tolerance of the solutions before it is known what surfaces hold: below what these may differ by.
+constexpr double kForesightTolerance = 1e-4;
 
 bool agree(std::span<const HeldMotion> a, std::span<const HeldMotion> b, std::span<const Vec3> velocities) {
     double fastest = 0.0;
@@ -78,7 +84,7 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     flights_.resize(system_.size());
     if (system_.size() == 0) return duration;
     const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
-    const SystemStep step = is_implicit ? among_surfaces(stepped(duration), particles, contacts) : stepped(duration);
+    const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
     if (!springs_.empty()) watch_energy(step);
     unsolved_steps_ += step.solved ? 0 : 1;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
@@ -128,21 +134,46 @@ SystemStep CoupledMotion::stepped(double duration) {
     return step;
 }
 
-/// The step with what surfaces hold in its equations: which they are follows from it, so that it is solved again until
-/// it agrees with what was foreseen for it. Where nothing is met it stays as it is.
-SystemStep CoupledMotion::among_surfaces(SystemStep step, const Particles& particles,
-                                         const PlannedContacts& contacts) const {
+/// The step with what surfaces hold in its equations. Where that goes on changing a part of it is taken: in half of the
+/// time springs carry less from one to the other. The next part begins with what has settled last.
+SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
-    std::vector<HeldMotion> held(system_.size());
-    for (int pass = 0; pass < kMostForesights; ++pass) {
-        const std::vector<Vec3>& free = step.free_velocities.empty() ? step.velocities : step.free_velocities;
-        std::vector<HeldMotion> found = contacts.find(system_, free, spins, step.duration);
-        if (agree(found, held, free)) break;
-        held = std::move(found);
-        step = implicit_system_step(system_, step.duration, held, step.velocities);
+    const bool is_part = first_try_ > 0.0 && first_try_ < 0.75 * duration;
+    double h = is_part ? first_try_ : duration;
+    for (int halvings = 0;; ++halvings, h *= 0.5) {
+        const Foreseen foreseen = foresee(h, spins, contacts);
+        if (!foreseen.has_settled && halvings < kMostHalvings) continue;
+        if (halvings > 0 || is_part) first_try_ = halvings > 0 ? h : 2.0 * h;
+        SystemStep step =
+            implicit_system_step(system_, foreseen.step.duration, foreseen.held, foreseen.step.velocities);
+        step.solved = step.solved && foreseen.has_settled;
+        return step;
     }
-    return step;
+}
+
+/// What surfaces hold follows from the step and decides it: it is solved again until it agrees with what was foreseen
+/// for it, and closely only then.
+CoupledMotion::Foreseen CoupledMotion::foresee(double duration, std::span<const Vec3> spins,
+                                               const PlannedContacts& contacts) const {
+    Foreseen foreseen;
+    SystemStep& step = foreseen.step;
+    step.duration = duration;
+    step.velocities = system_.velocities();
+    for (std::size_t k = 0; k < system_.size(); ++k) {
+        if (system_.is_pinned(k)) continue;
+        const Vec3& v = system_.velocities()[k];
+        step.velocities[k] += duration * system_.own_acceleration(k, system_.time(), system_.positions()[k], v);
+    }
+    foreseen.held = contacts.find(system_, step.velocities, spins, duration);
+    for (int pass = 0; pass < kMostForesights; ++pass) {
+        step = implicit_system_step(system_, step.duration, foreseen.held, step.velocities, {kForesightTolerance});
+        std::vector<HeldMotion> found = contacts.find(system_, step.free_velocities, spins, step.duration);
+        foreseen.has_settled = agree(found, foreseen.held, step.free_velocities);
+        if (foreseen.has_settled) break;
+        foreseen.held = std::move(found);
+    }
+    return foreseen;
 }
 
 double CoupledMotion::energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const {

@@ -68,7 +68,8 @@ public:
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
     /// Energy of the forces between particles, J; nothing where one of them has no potential.
     [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
-    /// Steps whose implicit equations were not solved to the tolerance.
+    /// Steps whose implicit equations were not solved to the tolerance, or for which what surfaces hold in them did not
+    /// settle.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
 
 private:
@@ -77,8 +78,15 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> members_of(const Particles& particles, double time) const;
     [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
-    [[nodiscard]] SystemStep among_surfaces(SystemStep step, const Particles& particles,
-                                            const PlannedContacts& contacts) const;
+    /// What surfaces hold in a step, and its solution with that.
+    struct Foreseen {
+        SystemStep step;
+        std::vector<HeldMotion> held;
+        bool has_settled = false;
+    };
+    [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
+                                            const PlannedContacts& contacts);
+    [[nodiscard]] Foreseen foresee(double duration, std::span<const Vec3> spins, const PlannedContacts& contacts) const;
     void plan_flights(const SystemStep& step);
     [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
     void watch_energy(const SystemStep& step);
@@ -93,7 +101,7 @@ private:
     std::vector<Flight> flights_;         // of the members
     std::vector<CoupledMember> coupled_;  // what the flights' starts point to
     Departures departures_;               // of the members, from the flights
-    double first_try_ = 0.0;              // s, of an adaptive method
+    double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.

@@ -13,8 +13,7 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 64;
 
-/// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2). Points, whose slip it
-/// may take as a whole, are foreseen like spheres: more of it does not settle where springs are stiff.
+/// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2).
 constexpr double kRollingShare = 2.0 / 7.0;
 
 }  // namespace
@@ -77,7 +76,12 @@ HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) con
     const Vec3 slip = held.across(v - cross(flown.spin, flown.radius * normal));
     const double speed = length(slip);
     if (!(speed > 0.0)) return held;
-    const double taken = std::min(friction * pressed, kRollingShare * speed);
+    const bool is_point = flown.radius == 0.0;
+    if (is_point && friction * pressed >= speed) {
+        held.hold_all(part * held.across(flown.before));
+        return held;
+    }
+    const double taken = std::min(friction * pressed, is_point ? speed : kRollingShare * speed);
     held.push = (-(1.0 - part) * taken / speed) * slip;
     return held;
 }

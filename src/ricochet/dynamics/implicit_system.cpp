@@ -1,0 +1,293 @@
+// The backward Euler step of a whole system: Newton's method, downhill in energy.
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/implicit_euler.h"
+#include "ricochet/dynamics/implicit_matrix.h"
+
+namespace ricochet {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+using Vector = Eigen::VectorXd;
+using Cholesky = Eigen::SimplicialLLT<Matrix>;
+
+/// Members per unit of parallel work.
+constexpr std::size_t kBlock = 256;
+
+/// Halvings of a step whose equations are not solved; then the whole step's last iterate is taken, and counted.
+constexpr int kMostHalvedSteps = 10;
+
+/// Halvings of a correction that leads too far.
+constexpr int kMostCuts = 12;
+
+/// Newton's steps before the last iterate is taken.
+constexpr int kMostSteps = 80;
+
+/// The least part of the pressure in springs with which it is worth to try.
+constexpr double kLeastPressure = 0.2;
+
+/// A correction, relative to the largest speed, from which on the equations' own method leads to their solution.
+constexpr double kNear = 1e-4;
+
+/// The part of the slope of the energy that a correction has to reach at least (L. Armijo, 1966).
+constexpr double kLeastDescent = 1e-4;
+
+/// Rounding of a sum of energies, relative to their sum.
+constexpr double kEnergyRounding = 1e-13;
+
+/// Solutions with one factorization that make a symmetric matrix's correction the exact one's, the part of the residual
+/// that they leave, and that by which each has to be better than the last.
+constexpr int kMostRefinements = 20;
+constexpr double kRefined = 1e-3;
+constexpr double kRefinesBy = 0.7;
+
+/// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
+constexpr double kPositionRounding = 0x1p-49;
+
+/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and the way to their solution. Dampers
+/// resist the mean rate of the length over the step.
+class BackwardEuler {
+public:
+    /// guess: velocities to begin with; empty: those of the start.
+    BackwardEuler(const ParticleSystem& system, double h, std::span<const HeldMotion> held, std::span<const Vec3> guess,
+                  const ImplicitOptions& options)
+        : system_(system),
+          h_(h),
+          held_(held),
+          options_(options),
+          v1_(system.velocities()),
+          x1_(system.size()),
+          is_symmetric_(system.has_uniform_forces()) {
+        if (!guess.empty()) v1_.assign(guess.begin(), guess.end());
+        for (std::size_t i = 0; i < held_.size(); ++i) {
+            if (held_[i].count > 0) v1_[i] = held_[i].across(v1_[i]) + held_[i].velocity;
+        }
+        for (const ParticleSystem::Bond& bond : system_.bonds()) {
+            lengths_.push_back(length(system_.positions()[bond.second] - system_.positions()[bond.first]));
+        }
+    }
+
+    SystemStep run() {
+        SystemStep step;
+        step.duration = step.next_duration = h_;
+        step.start_accelerations.resize(system_.size());
+        system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.start_accelerations);
+        solver_.analyzePattern(matrix({0.0, true}));
+        evaluate();
+        step.solved = solve();
+        step.positions = x1_;
+        step.velocities = v1_;
+        if (!held_.empty()) step.free_velocities = free_velocities();
+        return step;
+    }
+
+private:
+    [[nodiscard]] std::vector<Vec3> free_velocities() const {
+        std::vector<Vec3> result = v1_;
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            if (is_held(i)) result[i] = system_.velocities()[i] + gain(i);
+        }
+        return result;
+    }
+
+    [[nodiscard]] bool is_held(std::size_t i) const {
+        return !held_.empty() && (held_[i].count > 0 || held_[i].push != Vec3{});
+    }
+
+    /// Newton's method. The residual is the slope of an energy: the kinetic one, relative to the motion without
+    /// springs, that of springs, what dampers take, and the work of forces. Definite matrices lead downhill from any
+    /// start, past the saddles, to where it is least. Returns whether it converged.
+    bool solve() {
+        for (int iteration = 0; iteration < kMostSteps; ++iteration) {
+            if (is_solved()) return true;
+            if (options_.between) options_.between();
+            if (!factorize_definite()) return false;
+            const Vector correction = is_symmetric_ ? Vector(solver_.solve(right_)) : exact_correction();
+            const bool is_near = !is_symmetric_ || largest(correction) <= kNear * largest_speed();
+            if (!correction.allFinite() || !follow(correction, is_near)) return false;
+            if (largest(correction) <= options_.tolerance * largest_speed()) return true;
+        }
+        return false;
+    }
+
+    /// With as much of the pressure in springs as leaves the matrix definite: more next time where it was.
+    bool factorize_definite() {
+        for (;;) {
+            solver_.factorize(matrix({pressure_, true}));
+            if (solver_.info() == Eigen::Success) break;
+            if (pressure_ == 0.0) return false;
+            pressure_ = pressure_ > kLeastPressure ? 0.5 * pressure_ : 0.0;
+        }
+        pressure_ = std::min(1.0, std::max(2.0 * kLeastPressure, 2.0 * pressure_));
+        return true;
+    }
+
+    /// Solves with the matrix itself, by the symmetric one that was factorized where that is near enough.
+    Vector exact_correction() const {
+        const Matrix exact = matrix({1.0, false});
+        Vector correction = solver_.solve(right_);
+        Vector left = right_ - exact * correction;
+        double before = INFINITY;
+        for (int k = 0; k < kMostRefinements && left.norm() < kRefinesBy * before; ++k) {
+            if (left.norm() <= kRefined * right_.norm()) return correction;
+            before = left.norm();
+            correction += solver_.solve(left);
+            left = right_ - exact * correction;
+        }
+        return solved_without_symmetry(exact);
+    }
+
+    Vector solved_without_symmetry(const Matrix& exact) const {
+        Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> solver;
+        solver.compute(exact);
+        if (solver.info() != Eigen::Success) return solver_.solve(right_);
+        return solver.solve(right_);
+    }
+
+    void move(const std::vector<Vec3>& from, double part, const Vector& correction) {
+        for (std::size_t i = 0; i < v1_.size(); ++i) {
+            const auto at = static_cast<Eigen::Index>(3 * i);
+            v1_[i] = from[i] + part * Vec3{correction[at], correction[at + 1], correction[at + 2]};
+        }
+    }
+
+    /// Goes along the correction as far as the energy falls; near the solution, where energies differ by rounding, as
+    /// far as the residual does. False where neither does.
+    bool follow(const Vector& correction, bool is_near) {
+        const std::vector<Vec3> v_before = v1_;
+        const std::vector<Vec3> own_before = own_;
+        const double energy_before = energy_;
+        const double residual_before = right_.squaredNorm();
+        const double slope = correction.dot(right_);
+        double part = 1.0;
+        for (int cut = 0; cut <= kMostCuts; ++cut, part *= 0.5) {
+            move(v_before, part, correction);
+            evaluate();
+            if (is_near && right_.squaredNorm() <= residual_before) return true;
+            double change = energy_ - energy_before;
+            for (std::size_t i = 0; i < v1_.size(); ++i) {
+                change -= 0.5 * h_ * dot(own_before[i] + own_[i], v1_[i] - v_before[i]);
+            }
+            const double rounding = kEnergyRounding * (energy_ + energy_before);
+            if (change <= rounding - kLeastDescent * part * slope) return true;
+        }
+        return false;
+    }
+
+    void set_residual(std::size_t i) {
+        Vec3 missing = h_ * forces_[i] - system_.mass(i) * change_of(i);
+        if (system_.is_pinned(i)) missing = {};
+        if (is_held(i)) missing = held_[i].across(missing);
+        for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
+    }
+
+    /// What all forces give member i in the step, m/s.
+    [[nodiscard]] Vec3 gain(std::size_t i) const {
+        return system_.is_pinned(i) ? Vec3{} : (h_ / system_.mass(i)) * forces_[i];
+    }
+
+    /// What they have to have given it, m/s.
+    [[nodiscard]] Vec3 change_of(std::size_t i) const {
+        const Vec3 change = v1_[i] - system_.velocities()[i];
+        return is_held(i) ? change - held_[i].push : change;
+    }
+
+    /// Of the velocities: positions, forces, the energy and the negative residuals.
+    void evaluate() {
+        const std::size_t count = v1_.size();
+        own_.resize(count);
+        parallel_for_blocks(count, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                x1_[i] = system_.positions()[i] + h_ * v1_[i];
+                own_[i] = system_.is_pinned(i)
+                              ? Vec3{}
+                              : system_.mass(i) * system_.own_acceleration(i, system_.time() + h_, x1_[i], v1_[i]);
+            }
+        });
+        forces_ = own_;
+        energy_ = 0.0;
+        for (std::size_t k = 0; k < lengths_.size(); ++k) add_spring(k);
+        right_.resize(static_cast<Eigen::Index>(3 * count));
+        for (std::size_t i = 0; i < count; ++i) {
+            energy_ += 0.5 * system_.mass(i) * length_squared(change_of(i));
+            set_residual(i);
+        }
+    }
+
+    void add_spring(std::size_t k) {
+        const ParticleSystem::Bond& bond = system_.bonds()[k];
+        const Spring& spring = system_.spring_of(bond);
+        const Vec3 apart = x1_[bond.second] - x1_[bond.first];
+        const double now = length(apart);
+        const double stretch = now - spring.rest_length;
+        const double change = now - lengths_[k];
+        energy_ += 0.5 * (spring.stiffness * stretch * stretch + spring.damping / h_ * change * change);
+        if (!(now > 0.0)) return;
+        const Vec3 pull = ((spring.stiffness * stretch + spring.damping / h_ * change) / now) * apart;
+        forces_[bond.first] += pull;
+        forces_[bond.second] -= pull;
+    }
+
+    /// What is left is rounding of the positions, which stiff springs magnify.
+    [[nodiscard]] bool is_solved() const {
+        if (right_.size() == 0) return true;
+        double stiffest = 0.0;  // N
+        for (const ParticleSystem::Bond& bond : system_.bonds()) {
+            const double largest_coordinate = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
+            stiffest = std::max(stiffest, system_.spring_of(bond).stiffness * largest_coordinate);
+        }
+        return largest(right_) <= kPositionRounding * h_ * stiffest;
+    }
+
+    [[nodiscard]] Matrix matrix(const MatrixKind& kind) const {
+        return implicit_matrix({system_, h_, held_, x1_, v1_}, kind);
+    }
+
+    [[nodiscard]] static double largest(const Vector& vector) { return vector.lpNorm<Eigen::Infinity>(); }
+
+    [[nodiscard]] double largest_speed() const {
+        double largest = 0.0;
+        for (std::size_t i = 0; i < v1_.size(); ++i) {
+            largest = std::max({largest, max_abs(v1_[i]), max_abs(system_.velocities()[i]), max_abs(gain(i))});
+        }
+        return largest;
+    }
+
+    const ParticleSystem& system_;
+    double h_;
+    std::span<const HeldMotion> held_;
+    const ImplicitOptions& options_;
+    std::vector<double> lengths_;  // m, of the springs at the start, by bond
+    std::vector<Vec3> v1_;
+    std::vector<Vec3> x1_;
+    std::vector<Vec3> own_;     // N, of forces on single members
+    std::vector<Vec3> forces_;  // N, all
+    Cholesky solver_;
+    Vector right_;
+    double energy_ = 0.0;    // J
+    double pressure_ = 1.0;  // the part of it that the next matrix is to hold
+
+    bool is_symmetric_;  // the exact matrix
+};
+
+}  // namespace
+
+SystemStep implicit_system_step(const ParticleSystem& system, double duration, std::span<const HeldMotion> held,
+                                std::span<const Vec3> guess, const ImplicitOptions& options) {
+    SystemStep whole = BackwardEuler(system, duration, held, guess, options).run();
+    double h = duration;
+    for (int halvings = 0; !whole.solved && halvings < kMostHalvedSteps; ++halvings) {
+        h *= 0.5;
+        SystemStep part = BackwardEuler(system, h, held, {}, options).run();
+        if (part.solved) return part;
+    }
+    return whole;
+}
+
+}  // namespace ricochet

@@ -180,6 +180,49 @@ TEST(PublicFunctions, OfForcesRefuseThem) {
     EXPECT_GT(schiller_naumann_coefficient(1.0), 24.0);
 }
 
+TEST(PublicFunctions, OfForcesBetweenParticlesRefuseThem) {
+    GravitySettings gravity;
+    ChargeSettings charge;
+    for (const double bad : kNotFinite) {
+        SCOPED_TRACE(bad);
+        gravity = {};
+        gravity.constant = bad;
+        expect_refused("constant", [&] { (void)make_mutual_gravity(gravity); });
+        charge = {};
+        charge.constant = bad;
+        expect_refused("constant", [&] { (void)make_coulomb_force(charge); });
+        expect_refused("stiffness", [&] { (void)make_cohesion({bad, 1.0, 0.0}); });
+        expect_refused("damping", [&] { (void)make_cohesion({1.0, 1.0, bad}); });
+    }
+    for (const double bad : {-1.0, kNan, kInfinity, 1e80}) {
+        SCOPED_TRACE(bad);
+        gravity = {};
+        gravity.softening = bad;
+        expect_refused("softening", [&] { (void)make_mutual_gravity(gravity); });
+    }
+    for (const double bad : {0.0, -0.5, 1.5, kNan}) {
+        SCOPED_TRACE(bad);
+        charge = {};
+        charge.opening = bad;
+        expect_refused("opening", [&] { (void)make_coulomb_force(charge); });
+    }
+    charge = {};
+    charge.attribute.clear();
+    expect_refused("attribute", [&] { (void)make_coulomb_force(charge); });
+    for (const double bad : kNoLength) {
+        SCOPED_TRACE(bad);
+        expect_refused("range", [&] { (void)make_cohesion({1.0, bad, 0.0}); });
+        expect_refused("depth", [&] { (void)make_lennard_jones({bad, 1.0, 2.5}); });
+        expect_refused("diameter", [&] { (void)make_lennard_jones({1.0, bad, 2.5}); });
+        expect_refused("cutoff", [&] { (void)make_lennard_jones({1.0, 1.0, bad}); });
+        PairLaw law;
+        law.cutoff = bad;
+        law.force = [](const PairState&) { return Vec3{}; };
+        expect_refused("cutoff", [&] { (void)make_pair_force(law); });
+    }
+    expect_refused("function", [] { (void)make_pair_force({.cutoff = 1.0, .force = {}}); });
+}
+
 TEST(PublicFunctions, OfFlowsRefuseThem) {
     expect_refused("empty", [] { (void)make_flow({}); });
     expect_refused("null", [] { (void)make_flow_sum({nullptr}); });

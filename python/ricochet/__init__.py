@@ -7,13 +7,16 @@ objects of :mod:`ricochet.scene`. A drop-in for trimesh's ray interface: :mod:`r
 from __future__ import annotations
 
 from ._core import DivergedError, InputError, RunError, __version__, set_threads, thread_count
+from ._forces import CompiledForce, compiled_force
 from ._mesh import Mesh, as_mesh
-from ._results import AllHits, Hits, Particles, TriangleTotals
+from ._results import AllHits, ForceInput, Hits, Particles, TriangleTotals
 from ._simulation import Simulation
 
 __all__ = [
     "AllHits",
+    "CompiledForce",
     "DivergedError",
+    "ForceInput",
     "Hits",
     "InputError",
     "Mesh",
@@ -23,6 +26,7 @@ __all__ = [
     "TriangleTotals",
     "__version__",
     "as_mesh",
+    "compiled_force",
     "set_threads",
     "thread_count",
 ]

@@ -52,6 +52,17 @@ class Particles(NamedTuple):
     frozen: npt.NDArray[np.bool_]
 
 
+class ForceInput(NamedTuple):
+    """What a force of Python is given: the particles, in the order in which it is to return their forces."""
+
+    time: float
+    id: npt.NDArray[np.uint64]
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    radius: Floats
+
+
 class TriangleTotals(NamedTuple):
     """What particles have done to each triangle of a collider since the start."""
 

@@ -9,14 +9,17 @@ import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, Callable, List, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _core
 from ._core import InputError, Mesh
+from ._forces import CompiledForce
 from ._mesh import as_mesh
+from ._results import ForceInput
 
+Force = Union[CompiledForce, Callable[[ForceInput], Any]]
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 # Where a scene that is no file seems to lie, for its messages.
@@ -39,6 +42,11 @@ class Simulation(_core.Simulation):
     verify
         Check every step by code of its own, as the tool's --verify.
 
+    forces
+        Forces of your own besides the scene's: functions that get a :class:`ricochet.ForceInput` of all particles and
+        return their forces in newtons, shape (n, 3), or what :func:`ricochet.compiled_force` makes of one. They must be
+        pure: the same input, the same forces.
+
     Raises :class:`ricochet.InputError` with all that is wrong, one line each, as the tool prints it.
     """
 
@@ -49,23 +57,31 @@ class Simulation(_core.Simulation):
         *,
         contacts: bool = False,
         verify: bool = False,
+        forces: Sequence[Force] = (),
     ) -> None:
         changes = _changes(overrides)
         meshes: List[Mesh] = []
         text, file = _text_of(scene, meshes)
-        self._begin(text, file, meshes, changes, bool(contacts), bool(verify))
+        self._begin(text, file, meshes, changes, bool(contacts), bool(verify), list(forces))
 
     def _begin(
-        self, text: str, file: str, meshes: List[Mesh], changes: List[str], contacts: bool, verify: bool
+        self,
+        text: str,
+        file: str,
+        meshes: List[Mesh],
+        changes: List[str],
+        contacts: bool,
+        verify: bool,
+        forces: List[Force],
     ) -> None:
-        self._made_from = (text, file, meshes, changes, contacts, verify)
+        self._made_from = (text, file, meshes, changes, contacts, verify, forces)
         if not meshes:
-            super().__init__(text, file, changes, contacts, verify)
+            super().__init__(text, file, changes, contacts, verify, forces)
             return
         with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
             for number, mesh in enumerate(meshes):
                 _write(mesh, Path(folder) / f"{number}.off")
-            super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify)
+            super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify, forces)
 
     def step(self) -> None:
         """Makes one step."""

@@ -97,6 +97,9 @@ class SenselessArguments(unittest.TestCase):
         for a in NONSENSE:
             self.tried(ricochet.Simulation, a)
             self.tried(ricochet.Simulation, bouncing(), a)
+            self.tried(ricochet.Simulation, bouncing(), forces=a)
+            self.tried(ricochet.Simulation(bouncing(), forces=[lambda particles, a=a: a]).step)
+            self.tried(simulation.render, 8, 8, 1, a, a)
             self.tried(ricochet.Simulation, bouncing(particles=a))
             self.tried(ricochet.Simulation, bouncing(simulation={"time_step": a}))
             self.tried(simulation.run, a)

@@ -247,13 +247,12 @@ auto reader(Value (Simulation::*function)() const) {
     };
 }
 
-std::unique_ptr<Handle> restored(const py::tuple& state) {
-    if (state.size() != 6) throw InputError("Simulation: this is not what one is pickled as");
-    auto handle = std::make_unique<Handle>(state[0].cast<std::string>(), state[1].cast<std::string>(),
-                                           state[2].cast<std::vector<std::string>>(), state[3].cast<bool>(),
-                                           state[4].cast<bool>());
-    handle->restore(state[5].cast<std::string>());
-    return handle;
+std::unique_ptr<Handle> made(std::string text, std::string file, std::vector<std::string> overrides, bool contacts,
+                             bool verify, const std::vector<py::object>& forces) {
+    std::vector<ParticlesForceEntry> entries;
+    for (const py::object& force : forces) entries.push_back({force_of(force)});
+    return std::make_unique<Handle>(std::move(text), std::move(file), std::move(overrides), contacts, verify,
+                                    std::move(entries));
 }
 
 void bind_state(py::class_<Handle>& type) {
@@ -318,13 +317,7 @@ void bind_changes(py::class_<Handle>& type) {
             "save", [](const Handle& handle) { return py::bytes(handle.save()); },
             "All that steps have left behind, for restore() in a simulation of the same scene.")
         .def(
-            "restore", [](Handle& handle, const py::bytes& state) { handle.restore(state); }, arg("state"))
-        .def(py::pickle(
-            [](const Handle& handle) {
-                return py::make_tuple(handle.text(), handle.file(), handle.overrides(), handle.keeps_contacts(),
-                                      handle.verifies(), py::bytes(handle.save()));
-            },
-            &restored));
+            "restore", [](Handle& handle, const py::bytes& state) { handle.restore(state); }, arg("state"));
 }
 
 }  // namespace
@@ -332,8 +325,8 @@ void bind_changes(py::class_<Handle>& type) {
 void bind_simulation(py::module_& module) {
     using py::arg;
     py::class_<Handle> type(module, "Simulation", "A simulation of a scene that is given as text.");
-    type.def(py::init<std::string, std::string, std::vector<std::string>, bool, bool>(), arg("text"), arg("file"),
-             arg("overrides"), arg("contacts"), arg("verify"));
+    type.def(py::init(&made), arg("text"), arg("file"), arg("overrides"), arg("contacts"), arg("verify"),
+             arg("forces"));
     bind_state(type);
     bind_changes(type);
     bind_picture(type);

@@ -47,7 +47,7 @@ private:
 }  // namespace
 
 SimulationHandle::SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides,
-                                   bool keeps_contacts, bool verifies)
+                                   bool keeps_contacts, bool verifies, std::vector<ParticlesForceEntry> forces)
     : text_(std::move(text)),
       file_(std::move(file)),
       overrides_(std::move(overrides)),
@@ -57,6 +57,7 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
+    for (ParticlesForceEntry& force : forces) scene_.setup.particles_forces.push_back(std::move(force));
     simulation_ = std::make_unique<Simulation>(std::move(scene_.setup));
     if (!keeps_contacts) return;
     simulation_->on_contact([this](std::span<const ContactRecord> records) {

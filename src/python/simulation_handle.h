@@ -27,9 +27,10 @@ struct LentParticles {
 
 class SimulationHandle {
 public:
-    /// text: a scene; file: its name in messages, to whose folder its paths are relative.
+    /// forces: of the user's own, besides the scene's. text: a scene; file: its name in messages, to whose folder its
+    /// paths are relative.
     SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides, bool keeps_contacts,
-                     bool verifies);
+                     bool verifies, std::vector<ParticlesForceEntry> forces);
     ~SimulationHandle();
     SimulationHandle(const SimulationHandle&) = delete;
     SimulationHandle& operator=(const SimulationHandle&) = delete;
@@ -94,6 +95,8 @@ private:
     mutable std::atomic<bool> is_busy_ = false;
 };
 
+/// A force that is a function of Python, or a compiled one. Throws InputError for anything else.
+[[nodiscard]] std::shared_ptr<const ParticlesForce> force_of(const py::object& force);
 void bind_picture(py::class_<SimulationHandle>& type);
 
 }  // namespace ricochet::python

@@ -133,7 +133,11 @@ HardRay hard_ray(const TriangleMesh& mesh, double unit, RandomSequence& random) 
                            double(below(2 * reach + 1) - reach)};
     };
     const Vec3 aim = p[0] + lattice_step(4000);
-    const auto nudged = [&](double x) { return std::nextafter(x, below(2) == 0 ? -1e300 : 1e300); };
+    // Smaller components of a direction count as zero.
+    const auto nudged = [&](double x) {
+        const double to = below(2) == 0 ? -1e300 : 1e300;
+        return x == 0.0 ? std::copysign(unit * 0x1p-80, to) : std::nextafter(x, to);
+    };
     switch (below(8)) {
         case 0:
             return {aim, p[0] - aim};  // at a corner

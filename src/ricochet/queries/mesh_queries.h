@@ -52,7 +52,8 @@ struct NearestPoints {
 /// all, or one each.
 struct RayBatch {
     std::span<const Vec3> origins;
-    std::span<const Vec3> directions;  ///< of any length above 0
+    /// Of any length above 0. Components below 2^-287 of the largest count as zero, as do coordinates below 2^-287 m.
+    std::span<const Vec3> directions;
     std::span<const double> most = {};
 };
 

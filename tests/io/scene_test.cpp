@@ -331,7 +331,7 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:65: emitters[0].radius: not a key of type \"box\", it belongs to \"disk\", \"sphere\"; did you mean "
      "\"particle_radius\"?"},
     {R"("emitters": [{"type": "point", "center": [0, 0, 0], "size": 0.1, "burst": 1}])",
-     "s.json:1:68: emitters[0].size: not a key of type \"point\", it belongs to \"box\"; did you mean "
+     "s.json:1:69: emitters[0].size: not a key of type \"point\", it belongs to \"box\"; did you mean "
      "\"particle_size\"?"},
     {R"("colliders": [{"type": "plane"}])",
      "s.json:1:31: colliders[0].normal: missing, expected [x, y, z], not all zero"},

@@ -123,7 +123,7 @@ TEST(PairGas, MeanFreePathIsThatOfEnskog) {
 // number of impacts, which Enskog's rate turns into Haff's law.
 TEST(PairGas, AnInelasticGasCoolsAsHaffSays) {
     const Gas gas{0.05, static_cast<std::size_t>(test::scaled(8000)), 0.9};
-    Simulation simulation(gas.setup(0.3, 24.0));
+    Simulation simulation(gas.setup(0.3, 30.0));
     double first_energy = 0.0;
     std::uint64_t first_impacts = 0;
     while (!simulation.finished()) {

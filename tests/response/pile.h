@@ -34,8 +34,10 @@ public:
 
     void step(double duration) {
         std::vector<NetworkMember> members;
-        for (MovingParticle& particle : particles_) members.push_back({&particle, particle.state.radius, false, {}});
+        for (MovingParticle& particle : particles_)
+            members.push_back({&particle, particle.state.radius, false, duration, {}});
         course_.scratch.segments.clear();
+        course_.scratch.hits.clear();
         course_.scratch.record_segments = true;
         const NetworkReport report = island_.plan(members, pairs(duration), duration, memory_, course_.scratch);
         unsolved += report.is_converged ? 0 : 1;

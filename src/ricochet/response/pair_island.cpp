@@ -78,7 +78,7 @@ std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span
     return std::nullopt;
 }
 
-void PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch) {
+bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, std::size_t most_impacts) {
     members_ = &members;
     scratch_ = &scratch;
     impacts_.clear();
@@ -92,14 +92,16 @@ void PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch) {
     while (true) {
         const auto first = std::min_element(next_.begin(), next_.end(),
                                             [](const Meeting& a, const Meeting& b) { return a.time < b.time; });
-        if (!std::isfinite(first->time)) break;
+        if (!std::isfinite(first->time) || impacts_.size() > most_impacts) break;
         const double time = first->time;
         std::vector<PairContact> contacts = contacts_at(time);
         keep_fastest(contacts, time);
         answer(contacts, time);
     }
-    for (std::size_t m = 0; m < members.size(); ++m) commit(m);
     scratch.record_flown = false;
+    if (impacts_.size() > most_impacts) return false;
+    for (std::size_t m = 0; m < members.size(); ++m) commit(m);
+    return true;
 }
 
 /// The path of a member to the end of its part of the step.

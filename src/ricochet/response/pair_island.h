@@ -92,8 +92,10 @@ public:
         : response_(response), settings_(settings) {}
 
     /// Moves the members to the end of the step. The result does not depend on their order, but for the last bits of
-    /// impacts that several of them share. scratch: says what is to be recorded; its lists are used.
-    void run(std::vector<IslandMember>& members, MoveScratch& scratch);
+    /// impacts that several of them share. scratch: says what is to be recorded; its lists are used. False where there
+    /// are more impacts than most_impacts: the members are anywhere then.
+    bool run(std::vector<IslandMember>& members, MoveScratch& scratch,
+             std::size_t most_impacts = std::numeric_limits<std::size_t>::max());
 
     /// Impacts of the last run, in the order of time.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }

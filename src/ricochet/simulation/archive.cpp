@@ -132,6 +132,7 @@ void Simulation::Impl::archive(Archive& a) {
     recorder.totals().archive(a);
     for (ColliderTotals& load : recorder.loads()) a(load.hits), a(load.impulse), a(load.moment), a(load.work);
     coupled.archive(a);
+    if (pairs) pairs->archive(a);
     expect(a, static_cast<std::uint64_t>(driven.bodies().size()), "the state belongs to other bodies");
     driven.archive(a);
 }

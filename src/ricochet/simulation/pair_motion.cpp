@@ -14,6 +14,9 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
 
+/// Impacts per sphere and step beyond which an island is dense.
+constexpr std::size_t kMostImpacts = 4;
+
 Box3 ball_box(const Vec3& center, double radius) {
     const Vec3 r{radius, radius, radius};
     return {center - r, center + r};
@@ -162,18 +165,35 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
         for (std::size_t n = begin; n < end; ++n) {
             Island& island = islands[n];
             if (!island.members.empty()) continue;  // as before
-            for (const std::uint32_t k : island.particles) {
-                if (auto member = mover_.member_of(first_ + k, step)) island.members.push_back(std::move(*member));
+            take_members(island, step);
+            bool is_dense = begins_dense(island);
+            const bool may_give_up = may_be_dense() && settings_.method == PairMethod::automatic;
+            if (!is_dense && may_give_up) {
+                is_dense = !worker.run(island.members, scratch, kMostImpacts * island.members.size());
+                if (is_dense) take_members(island, step);
+            } else if (!is_dense) {
+                worker.run(island.members, scratch);
             }
-            // By place, not by id, so that ids do not decide.
-            std::sort(island.members.begin(), island.members.end(), [](const IslandMember& a, const IslandMember& b) {
-                const Vec3& p = a.moving.state.position;
-                const Vec3& q = b.moving.state.position;
-                return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-            });
-            worker.run(island.members, scratch);
+            if (is_dense) {
+                run_dense(island, step);
+                continue;
+            }
             island.impacts = worker.impacts();
         }
+    });
+}
+
+/// As they are at the step's begin.
+void PairMotion::take_members(Island& island, const TimeSpan& step) {
+    island.members.clear();
+    for (const std::uint32_t k : island.particles) {
+        if (auto member = mover_.member_of(first_ + k, step)) island.members.push_back(std::move(*member));
+    }
+    // By place, not by id, so that ids do not decide.
+    std::sort(island.members.begin(), island.members.end(), [](const IslandMember& a, const IslandMember& b) {
+        const Vec3& p = a.moving.state.position;
+        const Vec3& q = b.moving.state.position;
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
     });
 }
 
@@ -254,9 +274,14 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
                 mover_.take_over(member, step, blocks[first_block + block]);
         }
     });
+    std::vector<NetworkMemory::Entry> pressed;
     for (const Island& island : islands_) {
         impacts_.insert(impacts_.end(), island.impacts.begin(), island.impacts.end());
+        pressed.insert(pressed.end(), island.pressed.begin(), island.pressed.end());
+        unsolved_ += island.is_unsolved ? 1 : 0;
     }
+    if (first_ == 0) memory_.replace({});
+    memory_.add(pressed);
     counts_.impacts = impacts_.size();
     measure_overlaps();
     islands_.clear();

@@ -5,12 +5,17 @@
 /// but for two that fly freely and do not meet; PairIsland works them off, in parallel, and all others go the ordinary
 /// way. A member that has met another, or has left its box, may have missed somebody: its island and those that it
 /// would have met are joined and worked off again from the step's begin, until there are none.
+///
+/// Islands in which spheres press on each other, or in which impact would follow impact, are dense: their members are
+/// planned together, by the problem of all their contacts (NetworkIsland).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/response/network/network_island.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/active_mover.h"
 
@@ -40,11 +45,23 @@ public:
     /// Impacts of the last step's islands, island by island.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
 
+    /// Islands that were dense and not solved to the tolerance, in all steps.
+    [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
+
+    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        memory_.archive(a);
+        a(unsolved_);
+    }
+
 private:
     struct Island {
         std::vector<std::uint32_t> particles;  ///< ascending
         std::vector<IslandMember> members;
         std::vector<PairImpactRecord> impacts;
+        std::vector<NetworkMemory::Entry> pressed;  ///< where it is dense: what its contacts do
+        bool is_unsolved = false;
     };
 
     [[nodiscard]] Box3 declared_box(std::size_t i, const TimeSpan& step) const;
@@ -62,6 +79,11 @@ private:
     [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
     void run(std::vector<Island>& islands, const TimeSpan& step);
     [[nodiscard]] bool join_those_met(const TimeSpan& step);
+    void take_members(Island& island, const TimeSpan& step);
+    [[nodiscard]] bool may_be_dense() const;
+    [[nodiscard]] bool begins_dense(const Island& island) const;
+    void run_dense(Island& island, const TimeSpan& step);
+    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> near_pairs(const Island& island) const;
     void rebuild(const TimeSpan& step);
     void measure_overlaps();
 
@@ -79,6 +101,8 @@ private:
     std::vector<Island> islands_;
     std::vector<PairImpactRecord> impacts_;
     PairCounts counts_;
+    NetworkMemory memory_;  // of the contacts of dense islands
+    std::uint64_t unsolved_ = 0;
 };
 
 }  // namespace ricochet

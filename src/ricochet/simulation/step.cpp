@@ -213,7 +213,7 @@ void Simulation::Impl::end_step() {
     SimulationStatistics& statistics = recorder.statistics();
     statistics.springs_broken = coupled.springs().broken();
     statistics.springs_lost = coupled.springs().lost();
-    statistics.unsolved_steps = coupled.unsolved_steps();
+    statistics.unsolved_steps = coupled.unsolved_steps() + (pairs ? pairs->unsolved() : 0);
     ++statistics.steps;
     inside_step = false;
 }

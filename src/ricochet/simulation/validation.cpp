@@ -365,9 +365,6 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     subject.require_not_negative(contacts.friction, "friction", "");
     subject.require_not_negative(contacts.rolling_friction, "rolling_friction", "");
     if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
-    if (contacts.method == PairMethod::contacts) {
-        subject.refuse("method", "contacts", "auto or events: all contacts at once are not built yet");
-    }
     if (setup.options.response != ResponseKind::exact) {
         subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
     }
@@ -380,6 +377,9 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     }
     const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
                                    [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+    if (moves && contacts.method == PairMethod::contacts) {
+        subject.refuse("method", "contacts", "auto or events where colliders move");
+    }
     if (moves && kicks_first(setup.options.integrator.kind)) {
         subject.refuse("integrator", name_of(setup.options.integrator.kind),
                        "another one where colliders move: its kick would be given twice");

@@ -167,9 +167,13 @@ const ObjectSpec& particle_contacts_spec() {
          {"rolling_friction", &P::rolling_friction, kNotNegative, "",
           "Moment that resists turning relative to each other, over the reduced radius times the normal impulse."},
          {"method", &P::method, "How spheres that meet are moved.",
-          Choices{choice(PairMethod::automatic, "auto", "as fits; in this version as `events`"),
+          Choices{choice(PairMethod::automatic, "auto",
+                         "impact by impact, and as `contacts` where spheres press on each other or one impact would "
+                         "follow another; where colliders "
+                         "move always as `events`"),
                   choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-                  choice(PairMethod::contacts, "contacts", "all contacts of a step at once; not built yet, refused")}},
+                  choice(PairMethod::contacts, "contacts",
+                         "all contacts of a step at once, with its length as the error; not where colliders move")}},
          {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
           "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the rest of "
           "the step, and the time left out is counted."}});
@@ -181,9 +185,6 @@ void build_particle_contacts(const SceneContext& context, SimulationSetup& setup
     if (!context.root().has("particle_contacts")) return;
     const ObjectView view = context.root().object("particle_contacts");
     setup.options.particle_contacts = view.read<PairContactSettings>();
-    if (setup.options.particle_contacts->method == PairMethod::contacts) {
-        context.error(view, "method", "found \"contacts\", which is not built yet, expected \"auto\" or \"events\"");
-    }
     const auto refuse = [&](bool refused, std::string_view what) {
         if (refused)
             context.error(context.root(), "particle_contacts", fmt::format("does not go together with {}", what));

@@ -16,6 +16,10 @@ constexpr int kMostSweeps = 300;
 /// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
 constexpr double kSlow = 0.1;
 
+/// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
+constexpr std::size_t kFewContacts = 64;
+constexpr double kRounding = 1e-12;
+
 /// Part of a radius beside it in which contacts are looked for even where nothing moves.
 constexpr double kReach = 0.05;
 
@@ -29,6 +33,8 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
     duration_ = duration;
     contacts_.clear();
     keys_.clear();
+    surfaces_.clear();
+    first_wall_.clear();
     add_bodies(members);
     add_pairs(members, pairs, memory);
     add_walls(members, memory, scratch);
@@ -44,7 +50,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
         if (member.is_fixed) {
             body.inverse_mass = 0.0;
         } else {
-            body.velocity = state.velocity + duration_ * rules_.forces.acceleration(state);
+            body.velocity = state.velocity + member.duration * rules_.forces.acceleration(state);
             body.spin = (state.radius / member.radius) * member.moving->spin;
             body.inverse_mass = 1.0 / state.mass;
             body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
@@ -83,7 +89,9 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
 void NetworkIsland::add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory,
                               MoveScratch& scratch) {
     const SurfaceGeometry geometry(rules_.world, scratch.contacts.plane_cache);
+    surfaces_.resize(contacts_.size());
     for (std::uint32_t i = 0; i < members.size(); ++i) {
+        first_wall_.push_back(contacts_.size());
         if (members[i].is_fixed) continue;
         const ForceInput& state = members[i].moving->state;
         walls_.clear();
@@ -91,6 +99,7 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, const Netw
                            walls_);
         for (const WallContact& wall : walls_) add_wall(i, members[i], wall, memory);
     }
+    first_wall_.push_back(contacts_.size());
 }
 
 void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
@@ -110,6 +119,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     const double approach = -dot(state.velocity, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
     warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface), memory);
+    surfaces_.push_back(wall.surface);
 }
 
 void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory) {
@@ -141,6 +151,7 @@ NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) 
     const double still = kNetworkStill * smallest / duration_;
     settings.enough = std::min(kNetworkOverlap * smallest / duration_, std::max(kSlow * fastest, still));
     settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * fastest, still));
+    if (contacts_.size() <= kFewContacts) settings.tolerance = std::min(still, kRounding * fastest);
     settings.sweeps = kSweeps;
     settings.most_sweeps = kMostSweeps;
     return settings;
@@ -150,7 +161,17 @@ void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& 
     if (member.is_fixed) return;
     const double core = member.moving->state.radius;  // which turns faster than the whole sphere
     const Vec3 spin = core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{};
-    member.outcome = move_as_planned(rules_, *member.moving, bodies_[index].velocity, spin, duration_, scratch);
+    member.outcome = move_as_planned(rules_, *member.moving, bodies_[index].velocity, spin, member.duration, scratch);
+    record_hits(index, scratch);
+}
+
+/// What it gives to the walls in the step.
+void NetworkIsland::record_hits(std::size_t index, MoveScratch& scratch) const {
+    for (std::size_t i = first_wall_[index]; i < first_wall_[index + 1]; ++i) {
+        const NetworkImpulse& impulse = solver_.impulses()[i];
+        if (impulse.normal == 0.0) continue;
+        scratch.hits.push_back({surfaces_[i], -(impulse.normal * contacts_[i].normal + impulse.tangential), false});
+    }
 }
 
 std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {

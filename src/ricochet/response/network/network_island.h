@@ -27,6 +27,7 @@ struct NetworkMember {
     MovingParticle* moving = nullptr;
     double radius = 0.0;    ///< m, as others meet it
     bool is_fixed = false;  ///< nothing moves it
+    double duration = 0.0;  ///< s, of its part of the step
     // Out:
     MoveOutcome outcome{};
 };
@@ -58,6 +59,7 @@ private:
     void add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory, MoveScratch& scratch);
     void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
                   const NetworkMemory& memory);
+    void record_hits(std::size_t index, MoveScratch& scratch) const;
     void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
@@ -69,6 +71,8 @@ private:
     std::vector<NetworkContact> contacts_;
     std::vector<NetworkKey> keys_;  // of the contacts
     std::vector<WallContact> walls_;
+    std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
+    std::vector<SurfaceId> surfaces_;      // of the contacts; of walls
     NetworkSolver solver_;
 };
 

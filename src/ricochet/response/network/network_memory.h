@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/binary_archive.h"
 #include "ricochet/response/network/contact_network.h"
 
 namespace ricochet {
@@ -21,6 +22,7 @@ struct NetworkKey {
     [[nodiscard]] static NetworkKey of_wall(std::uint64_t particle, std::uint64_t surface) {
         return {particle, surface | std::uint64_t{1} << 63U};
     }
+    [[nodiscard]] bool is_wall() const { return (other >> 63U) != 0; }
 
     friend auto operator<=>(const NetworkKey&, const NetworkKey&) = default;
 };
@@ -38,18 +40,38 @@ public:
         entries_ = std::move(entries);
         std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
     }
+    /// Adds more of the same step.
+    void add(const std::vector<Entry>& more) {
+        std::vector<Entry> all = std::move(entries_);
+        all.insert(all.end(), more.begin(), more.end());
+        replace(std::move(all));
+    }
     /// Null where there was no such contact.
     [[nodiscard]] const NetworkImpulse* find(const NetworkKey& key) const {
         const auto found = std::lower_bound(entries_.begin(), entries_.end(), key,
                                             [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
         return found != entries_.end() && found->key == key ? &found->impulse : nullptr;
     }
+    /// True where one of a list of particles pressed on another one.
+    template <class Iterator, class IdOf>
+    [[nodiscard]] bool has_pair_of(Iterator begin, Iterator end, const IdOf& id_of) const {
+        if (entries_.empty()) return false;
+        return std::any_of(begin, end, [&](const auto& particle) {
+            const NetworkKey first = NetworkKey::of_pair(id_of(particle), 0);
+            const auto found = std::lower_bound(entries_.begin(), entries_.end(), first,
+                                                [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
+            return found != entries_.end() && found->key.particle == first.particle && !found->key.is_wall();
+        });
+    }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
     /// Saves or restores it; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
-        a(entries_);
+        archive_entries(a, entries_, [&](Entry& entry) {
+            a(entry.key.particle), a(entry.key.other);
+            a(entry.impulse.normal), a(entry.impulse.tangential), a(entry.impulse.moment);
+        });
     }
 
 private:

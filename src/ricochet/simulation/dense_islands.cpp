@@ -1,0 +1,81 @@
+// Islands of spheres in which contacts last: planned together, moved each for itself.
+#include <algorithm>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/simulation/pair_motion.h"
+
+namespace ricochet {
+namespace {
+
+/// Spheres of an island that are looked at impact by impact, where impacts lose energy.
+constexpr std::size_t kMostInFreeIsland = 300;
+
+Box3 ball_box(const Vec3& center, double radius) {
+    const Vec3 r{radius, radius, radius};
+    return {center - r, center + r};
+}
+
+}  // namespace
+
+bool PairMotion::may_be_dense() const {
+    return settings_.method != PairMethod::events && response_.rules().bodies == nullptr;
+}
+
+/// Where spheres pressed on each other in the last step they still do; many that lose energy soon will.
+bool PairMotion::begins_dense(const Island& island) const {
+    if (!may_be_dense() || island.particles.size() < 2) return false;
+    if (settings_.method == PairMethod::contacts) return true;
+    if (settings_.restitution < 1.0 && island.members.size() > kMostInFreeIsland) return true;
+    return memory_.has_pair_of(island.members.begin(), island.members.end(),
+                               [](const IslandMember& member) { return member.moving.id; });
+}
+
+std::vector<std::array<std::uint32_t, 2>> PairMotion::near_pairs(const Island& island) const {
+    std::vector<Box3> boxes;
+    for (const IslandMember& member : island.members) {
+        const ForceInput& state = member.moving.state;
+        const double duration = member.end - state.time;
+        const Vec3 velocity = state.velocity + duration * response_.rules().forces.acceleration(state);
+        boxes.push_back(
+            ball_box(state.position, member.radius() + NetworkIsland::reach(velocity, member.radius(), duration)));
+    }
+    NeighbourGrid grid;
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (const NeighbourPair& pair : grid.find_pairs(boxes)) pairs.push_back({pair.first, pair.second});
+    return pairs;
+}
+
+void PairMotion::run_dense(Island& island, const TimeSpan& step) {
+    NetworkIsland network(response_.rules(), {settings_.restitution, settings_.friction, settings_.rolling_friction});
+    std::vector<NetworkMember> members;
+    for (IslandMember& member : island.members) {
+        const double duration = std::max(0.0, member.end - member.moving.state.time);
+        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, {}});
+    }
+    MoveScratch scratch;
+    const NetworkReport report = network.plan(members, near_pairs(island), step.end - step.begin, memory_, scratch);
+    island.is_unsolved = !report.is_converged;
+    island.pressed = network.entries();
+    parallel_for_blocks(members.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        MoveScratch own;
+        mover_.prepare(own);
+        own.record_flown = true;
+        for (std::size_t i = begin; i < end; ++i) {
+            IslandMember& member = island.members[i];
+            own.flown.clear();
+            const Vec3 from = member.moving.state.position;
+            network.move(i, members[i], own);
+            member.outcome = members[i].outcome;
+            member.is_free = false;
+            member.lists.take(own);
+            member.swept = ball_box(from, member.radius());
+            for (const FlownPiece& piece : own.flown) {
+                const Box3 ball = ball_box(piece.path.end, member.radius());
+                member.swept.include(ball.lower);
+                member.swept.include(ball.upper);
+            }
+        }
+    });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/simple_meshes.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::mesh_collider;
+using testing::particle_of;
+using testing::setup_of;
+
+constexpr double kRadius = 0.005;
+
+/// Spheres of 5 mm in a box of 12 radii, open above.
+SimulationSetup box_setup(double duration, PairMethod method) {
+    Material rough{"", 0.5, 0.5};
+    SimulationSetup setup = setup_of(1e-3, duration, rough, {0, 0, -9.81});
+    const double side = 12.0 * kRadius;
+    setup.colliders = {mesh_collider(testing::flipped(testing::box_mesh({0, 0, 0}, {side, side, 1.0})))};
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.5, .friction = 0.5, .method = method};
+    setup.options.verify = true;
+    return setup;
+}
+
+void fill_loosely(SimulationSetup& setup, int count) {
+    RandomSequence random(1, 0, 0);
+    for (int k = 0; k < count; ++k) {
+        const double radius = kRadius * (0.8 + 0.4 * random.uniform());
+        const double pitch = 3.0 * kRadius;
+        const Vec3 place{pitch * (k % 4 + 0.5), pitch * (k / 4 % 4 + 0.5), pitch * (k / 16 + 0.5)};
+        Particle particle = particle_of(place + (0.2 * kRadius) * random.unit_vector(), {}, radius);
+        particle.mass = 2500.0 * 4.18879020478639 * radius * radius * radius;
+        setup.particles.push_back(particle);
+    }
+}
+
+void advance(Simulation& simulation, int steps) {
+    for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
+}
+
+TEST(DenseContacts, WhatIsPouredIntoABoxSettlesThereWithHardlyAnyOverlap) {
+    SimulationSetup setup = box_setup(0.5, PairMethod::automatic);
+    fill_loosely(setup, 96);
+    Simulation simulation(std::move(setup));
+    advance(simulation, 1000);
+    const SimulationStatistics& statistics = simulation.statistics();
+    EXPECT_EQ(statistics.violations, 0U);
+    EXPECT_EQ(statistics.energy_violations, 0U);
+    EXPECT_EQ(statistics.unsimulated_time, 0.0);
+    EXPECT_LT(statistics.overlap_largest, 5e-3);
+    double energy = 0.0;
+    for (const Vec3& v : simulation.particles().velocity) energy = std::max(energy, length(v));
+    EXPECT_LT(energy, 0.1);
+}
+
+/// What is to be dense from the begin does not overlap; by itself it becomes so with the second step, and what has
+/// fallen in the first is undone.
+TEST(DenseContacts, AColumnStands) {
+    for (const PairMethod method : {PairMethod::contacts, PairMethod::automatic}) {
+        SimulationSetup setup = box_setup(0.3, method);
+        for (int i = 0; i < 20; ++i) {
+            Particle particle = particle_of({0.03, 0.03, kRadius * (2 * i + 1)}, {}, kRadius);
+            particle.mass = 1e-3;
+            setup.particles.push_back(particle);
+        }
+        Simulation simulation(std::move(setup));
+        const std::vector<Vec3> start = simulation.particles().position;
+        advance(simulation, 300);
+        for (std::size_t i = 0; i < start.size(); ++i) {
+            EXPECT_LT(length(simulation.particles().position[i] - start[i]), 1e-3 * kRadius) << i;
+        }
+        EXPECT_LT(simulation.statistics().overlap_largest, method == PairMethod::contacts ? 1e-3 : 5e-3);
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+    }
+}
+
+TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
+    const auto made = [] {
+        SimulationSetup setup = box_setup(0.3, PairMethod::automatic);
+        fill_loosely(setup, 96);
+        return setup;
+    };
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 7}) {
+        const ThreadLimit limit(threads);
+        Simulation simulation(made());
+        advance(simulation, 300);
+        hashes.push_back(simulation.state_hash());
+    }
+    Simulation first(made());
+    advance(first, 200);
+    std::vector<std::byte> bytes;
+    first.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    Simulation resumed(made());
+    std::size_t at = 0;
+    resumed.restore([&](std::span<std::byte> part) {
+        std::memcpy(part.data(), bytes.data() + at, part.size());
+        at += part.size();
+    });
+    advance(resumed, 100);
+    hashes.push_back(resumed.state_hash());
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
+}
+
+}  // namespace
+}  // namespace ricochet

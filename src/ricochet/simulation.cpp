@@ -136,7 +136,7 @@ std::vector<BodyState> Simulation::bodies() const {
     for (const DrivenBody& body : impl().driven.bodies()) {
         states.push_back({body.description().frame, body.center(), body.velocity(), body.angular_velocity(),
                           body.angular_momentum(), body.description().mass, body.coordinate(), body.rate(),
-                          body.kinetic_energy()});
+                          body.kinetic_energy(), body.world_from_frame()});
     }
     return states;
 }

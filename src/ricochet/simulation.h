@@ -122,6 +122,7 @@ struct BodyState {
     double coordinate = 0.0;      ///< of a joint: rad or m from where it started
     double rate = 0.0;            ///< of that, per s
     double kinetic_energy = 0.0;  ///< J
+    AffineMap world_from_frame;   ///< where its frame is, m, and how it is turned
 };
 
 class CollisionWorld;

@@ -146,6 +146,45 @@ TEST(MomentumAndAngularMomentum, AreClosedWithFrictionAndSpinToo) {
     }
 }
 
+// Points and spheres that slide, roll and rest on trays that swing, turn and are shaken: what the trays are recorded to
+// have been given is what particles have lost, also where contact lasts.
+TEST(MomentumOfContactThatLasts, IsClosedWithWhatCollidersAreGiven) {
+    for (const double radius : {0.0, 0.05}) {
+        const Vec3 gravity{0, 0, -9.81};
+        SimulationSetup setup = setup_of(
+            {frame_of("table", {Spin{{0, 0, 1}, 40.0}}),
+             frame_of("swing", {Swing{{0, 1, 0}, 12.0, 0.4, 0.0}, Oscillation{{0.1, 0, 0.02}, 0.7, 30.0}}, {6, 0, 0})},
+            {{"table", CuboidShape{{3, 3, 0.2}, {{0, 0, -0.1}}}, 0, "table"},
+             {"swing", CuboidShape{{3, 3, 0.2}, {{0, 0, -0.1}}}, 0, "swing"}},
+            0.01, 2.0);
+        setup.materials = {{"felt", 0.3, 0.2}};
+        setup.forces.push_back(make_gravity(gravity));
+        RandomSequence random(24, 0, 0);
+        for (int k = 0; k < test::scaled(60); ++k) {
+            const Vec3 place{2.0 * random.uniform() - 1.0 + (k % 2) * 6.0, 2.0 * random.uniform() - 1.0, 0.5};
+            setup.particles.push_back(particle_of(place, 0.3 * random.unit_vector(), radius));
+        }
+        Simulation simulation(std::move(setup));
+        const double mass = static_cast<double>(simulation.particles().size());  // kg
+        Vec3 given;
+        while (!simulation.finished()) {
+            const Sums before = sums_of(simulation.particles());
+            const double from = simulation.time();
+            simulation.step();
+            const Sums after = sums_of(simulation.particles());
+            Vec3 now;
+            for (const ColliderTotals& totals : simulation.collider_totals()) now += totals.impulse;
+            const Vec3 by_gravity = (mass * (simulation.time() - from)) * gravity;
+            ASSERT_LT(length(after.momentum - before.momentum - by_gravity + (now - given)),
+                      1e-12 * (before.scale + after.scale + length(by_gravity) + length(now)))
+                << simulation.time();
+            given = now;
+        }
+        EXPECT_GT(length(given), 0.5 * mass * 2.0 * 9.81);
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+    }
+}
+
 // A plate that turns in a cold beam along -z of speed u. At the lever s the beam comes with u cos(angle) + w s along
 // its normal, and as many particles a second as that says; each gives twice its momentum. Integrated over the plate and
 // over the angle, from -a to a:  impulse along z  2 rho d / w  int cos (2 h u^2 cos^2 + 2/3 h^3 w^2),  angular impulse

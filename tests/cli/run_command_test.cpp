@@ -159,6 +159,13 @@ TEST(RunCommand, WritesWhatIsDoneToBodiesAndHowTheyMove) {
     EXPECT_GT(rate, 0.01);
     EXPECT_NEAR(torque, (3.0 * 1.01 / 12.0 + 0.75) * rate, 1e-12);
     EXPECT_EQ(rate, summary["bodies"][0]["rate"].get<double>());
+    // Turned about y by half the coordinate, as quaternions say it.
+    ASSERT_EQ(bodies.back().size(), 18U);
+    const double angle = std::stod(bodies.back().at(11));
+    EXPECT_NEAR(std::stod(bodies.back().at(14)), std::cos(0.5 * angle), 1e-14);
+    EXPECT_EQ(std::stod(bodies.back().at(15)), 0.0);
+    EXPECT_NEAR(std::stod(bodies.back().at(16)), std::sin(0.5 * angle), 1e-14);
+    EXPECT_EQ(std::stod(bodies.back().at(17)), 0.0);
 }
 
 // A box that goes from -1 to 1 m and a quarter turn round, beside one at rest.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/collision/overlap.h"
 #include "ricochet/core/random.h"
 
 namespace ricochet {
@@ -72,6 +73,38 @@ TEST(MovingColliders, NearABoxAreAllThatDoNotStayOutOfItInTheirOrder) {
             }
         }
     }
+}
+
+// What is born is looked for near its place only; where nothing is known of the time, among all bodies.
+TEST(Births, FindTheBodiesThatLookingAtEachOfThemFinds) {
+    ManyBodies near(60, 5);
+    ManyBodies all(60, 5);
+    RandomSequence random(5, 2, 0);
+    std::size_t found = 0;
+    for (int step = 0; step < 3; ++step) {
+        near.bodies->begin_step(0.1 * step, 0.1 * (step + 1));
+        for (int birth = 0; birth < 300; ++birth) {
+            const double time = 0.1 * (step + random.uniform());
+            const Vec3 center = (4.5 + 3.0 * random.uniform()) * random.unit_vector();
+            const double radius = random.uniform();
+            std::vector<BodyId> asked;
+            all.bodies->near_at({center, center}, time, asked);
+            EXPECT_EQ(asked.size(), all.bodies->size());
+            const auto expected = deepest_overlap(*all.at_rest, all.bodies.get(), center, radius, time);
+            const auto overlap = deepest_overlap(*near.at_rest, near.bodies.get(), center, radius, time);
+            ASSERT_EQ(overlap.has_value(), expected.has_value());
+            if (overlap) {
+                EXPECT_EQ(overlap->surface, expected->surface);
+            }
+            found += overlap ? 1 : 0;
+            EXPECT_EQ(off_bodies(*near.bodies, center, time), off_bodies(*all.bodies, center, time));
+            // Exactly on a body: it is put off it.
+            const MovingPose pose = near.bodies->pose(0, time);
+            const Vec3 on = pose.point({0.3, 0.2, -50.0});
+            EXPECT_EQ(off_bodies(*near.bodies, on, time), off_bodies(*all.bodies, on, time));
+        }
+    }
+    EXPECT_GT(found, 50U);
 }
 
 // Poses are remembered: those of other times, bodies, steps and scenes are never mixed up.

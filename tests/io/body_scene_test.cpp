@@ -80,6 +80,37 @@ TEST(BodyScene, SaysWhatCannotBeABody) {
                "above the sum of the others, products that go with them)"}));
 }
 
+TEST(BodyScene, RefusesAMotorThatHasNoForceAndNamesOnlyTheValueThatIsWrong) {
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "joint": "hinge", "motor_rate": 2)")),
+              (Lines{"frames.wheel.body.motor_rate: only goes together with the key \"motor_most\""}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "inertia_products": [0, 0, 0])")),
+              (Lines{"frames.wheel.body.inertia_products: only goes together with the key \"inertia\""}));
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 0)")),
+              (Lines{"frames.wheel.body.mass: found 0, expected a number > 0 (kg)"}));
+}
+
+// What lies in two colliders would count twice.
+TEST(BodyScene, WarnsOfCollidersThatOverlapWhereTheirVolumeCounts) {
+    const auto boxes = [](double apart, const char* more) {
+        const std::string box = R"({"type": "box", "size": [1, 1, 1], "frame": "wheel", "name": )";
+        return parse_scene(
+                   scene_of(R"("density": 1)" + std::string(more),
+                            box + R"("a"}, )" + box + R"("b", "position": [)" + std::to_string(apart) + R"(, 0, 0]})"),
+                   "s.json")
+            .warnings;
+    };
+    EXPECT_EQ(boxes(1.0, ""), Lines{});
+    EXPECT_EQ(boxes(0.2, R"(, "center": [0, 0, 0])").size(), 1U);
+    const Lines overlapping = boxes(0.2, "");
+    ASSERT_EQ(overlapping.size(), 1U);
+    EXPECT_NE(overlapping[0].find("frames.wheel.body: the colliders \"a\" and \"b\" overlap"), std::string::npos)
+        << overlapping[0];
+    // Given numbers count no volume.
+    const std::string given = R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1])";
+    const std::string ball = R"({"type": "sphere", "radius": 1, "frame": "wheel", "name": )";
+    EXPECT_EQ(parse_scene(scene_of(given, ball + R"("a"}, )" + ball + R"("b"})"), "s.json").warnings, Lines{});
+}
+
 TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
                                  R"(, "emitters": [{"type": "point", "frame": "wheel", "rate": 5}])")),

@@ -75,6 +75,48 @@ struct PieceQuery {
     }
 };
 
+/// When a path first comes near a triangle, piece by piece.
+struct ClearQuery {
+    const CollisionWorld& world;
+    const QueryMargins& margins;
+    const Path& path;
+    double until;  ///< s, of interest, and then what has been found
+
+    void test_piece(double from, double to, int depth) {
+        if (from >= until) return;
+        const double margin = broad_phase_margin(path, margins);
+        if (path.degree > 1) from = std::max(from, time_clear_of_field(path, world.distance_field(), margin, from));
+        if (from >= std::min(to, until)) return;
+        if (covers_chord(world, margins, path, from, to)) {
+            query_chord(from, to, margin);
+        } else if (depth == 0) {
+            until = from;
+        } else {
+            const double middle = 0.5 * (from + to);
+            test_piece(from, middle, depth - 1);
+            test_piece(middle, to, depth - 1);
+        }
+    }
+
+    void query_chord(double from, double to, double margin) {
+        const double span = to - from;
+        const Tube tube(path.position(from), path.position(to), margin + path.sagitta(from, to));
+        margins.bvh->query_tube(tube, [&](std::uint32_t triangle, double enter, double /*leave*/) {
+            if (!world.is_degenerate(triangle)) until = std::min(until, from + enter * span);
+            return until < to ? std::max(0.0, (until - from) / span) : 1.0;
+        });
+    }
+};
+
+double time_clear_of_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                               double until) {
+    if (world.triangles().empty() || !may_reach_triangles(world, margins, path, 0.0, until)) return until;
+    if (!world.culls() || kPathRounding * margins.largest > margins.bvh->slack()) return 0.0;
+    ClearQuery query{world, margins, path, until};
+    query.test_piece(0.0, until, kPieceDepth);
+    return query.until;
+}
+
 }  // namespace
 
 double broad_phase_margin(const Path& path, const QueryMargins& margins) {
@@ -98,6 +140,19 @@ CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins
         query.test_all();
     }
     return query.candidates;
+}
+
+double time_clear_of(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double least) {
+    double until = path.duration;
+    const double margin = margins.radius + margins.slack;
+    for (const auto& [plane, surface] : world.planes()) {
+        while (until >= least && !stays_on_one_side(shortened(path, until), plane, margin)) until *= 0.5;
+    }
+    for (const CollisionWorld::ShapeSurface& shape : world.shapes()) {
+        while (until >= least && !shape.shape.can_cull(shortened(path, until), margin)) until *= 0.5;
+    }
+    if (until >= least) until = time_clear_of_triangles(world, margins, path, until);
+    return until < least ? 0.0 : until;
 }
 
 }  // namespace ricochet

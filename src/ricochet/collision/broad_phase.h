@@ -25,4 +25,10 @@ enum class CandidateSet {
 [[nodiscard]] CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins,
                                                const Path& path, NarrowPhase& narrow_phase);
 
+/// The time for which no surface of the world comes near the path, s, at most its duration: a query of what the path
+/// does until then finds no surface, and no chord that covers_chord() accepts intersects one. Errs on the side of less;
+/// 0 where it is less than `least`, s.
+[[nodiscard]] double time_clear_of(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
+                                   double least);
+
 }  // namespace ricochet

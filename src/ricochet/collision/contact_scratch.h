@@ -109,6 +109,8 @@ struct ContactScratch {
     struct Sweep {
         std::vector<BodyId> near;
         std::vector<double> tolerances;
+        std::vector<double> fourth;  ///< of the bodies near: bounds of the fourth derivative in their frames, m/s^4
+        std::vector<double> besides;
         std::vector<double> cuts;
         std::vector<double> keys;
     };

@@ -66,7 +66,10 @@ double time_outside(const Path& path, const Box3& box) {
 // Within t the particle gets no further than v t + a t^2 / 2, which is the clearance at the root in the form without
 // cancellation.
 double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from) {
-    const double acceleration = 2.0 * length(path.c[2]);
+    double acceleration = 2.0 * length(path.c[2]);
+    if (path.degree > 2) {
+        acceleration = std::max(acceleration, length(2.0 * path.c[2] + (6.0 * path.duration) * path.c[3]));
+    }
     double time = from;
     for (int step = 0; step < kMostTracingSteps && time < path.duration; ++step) {
         const double clearance = field.lower_bound(path.position(time)) - margin;

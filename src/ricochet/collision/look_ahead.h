@@ -31,7 +31,7 @@ namespace ricochet {
 
 /// The time until which every point of the path from `from` on is certainly further than `margin` from the triangles of
 /// the distance field, s, at most its duration; `from` where the field cannot tell. Method: sphere tracing (J. C. Hart,
-/// The Visual Computer 12, 1996). For paths of degree 1 or 2.
+/// The Visual Computer 12, 1996).
 [[nodiscard]] double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from);
 
 /// A time after which the path certainly stays out of the box, s, at most its duration; 0 when it never comes near it.

@@ -186,6 +186,21 @@ void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& 
     std::sort(out.begin() + before, out.end());
 }
 
+void MovingColliders::near_at(const Box3& box, double time, std::vector<BodyId>& out) const {
+    if (begin_ < end_ && time >= begin_ && time <= end_) {
+        near(box, kAtRest, out);
+        return;
+    }
+    for (BodyId body = 0; body < bodies_.size(); ++body) out.push_back(body);
+}
+
+bool MovingColliders::all_stay_out(const Box3& box) const {
+    bool meets =
+        std::any_of(unbounded_.begin(), unbounded_.end(), [&](BodyId body) { return meet(bodies_[body].swept, box); });
+    if (!meets && BoxTree::meet(swept_.bounds(), box)) swept_.near(box, [&](std::uint32_t) { meets = true; });
+    return !meets && (deforming_.empty() || deforming_.stay_out(box));
+}
+
 const MotionBounds& MovingColliders::bounds(BodyId body) const {
     static const MotionBounds at_rest{};
     return body == kAtRest || is_deforming(body) ? at_rest : bodies_[body].bounds;

@@ -64,6 +64,11 @@ public:
     /// Appends the bodies that come into the box during the step, kAtRest first where its colliders do, in their order;
     /// without `except`.
     void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
+    /// Appends the bodies with a frame that may be in the box at a time, s, in their order: all of them where the time
+    /// is not in the step.
+    void near_at(const Box3& box, double time, std::vector<BodyId>& out) const;
+    /// True where all bodies certainly stay out of the box during the step.
+    [[nodiscard]] bool all_stay_out(const Box3& box) const;
     /// True where a body certainly stays out of the box during the step.
     [[nodiscard]] bool stays_out(BodyId body, const Box3& box) const;
     /// Bounds of a body's motion during the step.

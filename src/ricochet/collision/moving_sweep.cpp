@@ -14,6 +14,19 @@ namespace {
 /// Of a path's duration: as near to its ends as a key of a mesh that deforms may cut it.
 constexpr double kLeastPart = 0x1p-45;
 
+/// A cubic that has the values and velocities of a function at both ends of a time h is within h^4 / kHermiteError
+/// times the fourth derivative of it.
+constexpr double kHermiteError = 384.0;
+
+/// What is left of a path may be so much longer than a fine piece, by rounding, and still be one.
+constexpr double kAlmostOne = 1.0 + 1e-9;
+
+/// Most fine pieces that a piece which meets nothing is as long as: its cubic may err by the fourth power of that more.
+constexpr double kLongestPiece = 16.0;
+
+/// Most fine pieces in a row before a longer one is tried again.
+constexpr int kMostFinePieces = 64;
+
 /// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
 constexpr int kNewtonSteps = 4;
 
@@ -163,6 +176,10 @@ double MovingSweep::rounding() const {
 void MovingSweep::cut() {
     const double duration = query_.path.duration;
     const PathClock& clock = view_.clock();
+    if (view_.home() == kAtRest && lists_.near.empty() && deforming_.empty()) {
+        lists_.cuts.assign({0.0, duration});
+        return;
+    }
     std::vector<double>& keys = lists_.keys;
     keys.assign(1, 0.0);
     const auto add_keys = [&](BodyId body) {
@@ -178,26 +195,94 @@ void MovingSweep::cut() {
     for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
     std::sort(keys.begin(), keys.end());
-    double rate = 0.0;  // pieces a second
-    const bool is_alone = lists_.near.empty() && deforming_.empty();
-    const DerivativeBounds world = is_alone ? DerivativeBounds{} : world_bounds();
+    find_rates();
+    lists_.cuts.assign(1, 0.0);
+    for (const double key : keys) {
+        if (key > lists_.cuts.back()) lists_.cuts.push_back(key);
+    }
+    if (lists_.cuts.size() == 1) lists_.cuts.push_back(duration);
+    if (deforming_.empty()) return;
+    cut_finely();
+    set_times();
+}
+
+void MovingSweep::find_rates() {
+    lists_.fourth.clear();
+    rate_ = 0.0;
+    if (lists_.near.empty() && deforming_.empty()) return;
+    const DerivativeBounds world = world_bounds();
+    const auto rate_of = [](double fourth, double tolerance) {
+        return std::sqrt(std::sqrt(fourth / (kHermiteError * tolerance)));
+    };
     for (const BodyId body : lists_.near) {
-        rate = std::max(rate, std::sqrt(std::sqrt(fourth_derivative(body, world) / (384.0 * tolerance_of(body)))));
+        lists_.fourth.push_back(fourth_derivative(body, world));
+        rate_ = std::max(rate_, rate_of(lists_.fourth.back(), tolerance_of(body)));
     }
     if (view_.home() != kAtRest && !deforming_.empty()) {
-        const double derivative = fourth_derivative(kAtRest, world);
-        rate = std::max(rate, std::sqrt(std::sqrt(derivative / (384.0 * tolerance_of(kAtRest)))));
+        rate_ = std::max(rate_, rate_of(fourth_derivative(kAtRest, world), tolerance_of(kAtRest)));
     }
-    lists_.cuts.assign(1, 0.0);
+}
+
+double MovingSweep::pieces_within(double span) const {
+    return std::clamp(std::ceil(span * rate_), 1.0, kMostMovingPieces);
+}
+
+void MovingSweep::cut_finely() {
+    const std::vector<double> keys = std::exchange(lists_.cuts, {0.0});
     for (std::size_t k = 1; k < keys.size(); ++k) {
         const double span = keys[k] - keys[k - 1];
-        if (!(span > 0.0)) continue;
-        const double count = std::clamp(std::ceil(span * rate), 1.0, kMostMovingPieces);
+        const double count = pieces_within(span);
         for (double i = 1.0; i < count; ++i) lists_.cuts.push_back(keys[k - 1] + span * (i / count));
         lists_.cuts.push_back(keys[k]);
     }
-    if (lists_.cuts.size() == 1) lists_.cuts.push_back(duration);
-    if (!deforming_.empty()) set_times();
+}
+
+/// s along the path: the next cut, or before that as far as a fine piece goes, or one that meets nothing.
+double MovingSweep::end_of_piece(const WayPoint& start) {
+    is_clear_ = false;
+    const double cut = lists_.cuts[next_];
+    if (!deforming_.empty()) return cut;
+    const double whole = cut - lists_.cuts[next_ - 1];
+    const double fine = whole / pieces_within(whole);
+    if (!(cut - begin_ > kAlmostOne * fine)) return cut;
+    if (fine_left_ == 0) {
+        const double clear = clear_until(start, fine);
+        is_clear_ = clear > begin_;
+        if (is_clear_) return clear;
+        fine_left_ = fine_after_next_;
+        fine_after_next_ = std::min(2 * fine_after_next_, kMostFinePieces);
+    }
+    --fine_left_;
+    return begin_ + fine;
+}
+
+/// s along the path until which nothing of other frames comes near it; where it begins when that is less than a fine
+/// piece. Looks as far as cubics are within what the boxes of all bodies leave for that.
+double MovingSweep::clear_until(const WayPoint& start, double fine) {
+    double longest = kLongestPiece * fine;
+    std::vector<double>& besides = lists_.besides;
+    besides.clear();
+    for (std::size_t k = 0; k < lists_.near.size(); ++k) {
+        const CollisionWorld& world = view_.bodies().world(lists_.near[k]);
+        double error = kLongestPiece * kLongestPiece * kLongestPiece * kLongestPiece * lists_.tolerances[k];
+        if (!world.triangles().empty()) {
+            error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
+        }
+        longest = std::min(longest, std::sqrt(std::sqrt(kHermiteError * error / lists_.fourth[k])));
+        // The pieces that are made of it lie as far beside the true way on its other side.
+        besides.push_back(beside_in_bodies() + 2.0 * error);
+    }
+    if (!(longest >= 2.0 * fine)) return begin_;
+    set_piece(std::min(lists_.cuts[next_], begin_ + longest), start);
+    const MovingView view(view_.bodies(), view_.home(), clock_);
+    double clear = piece_.duration;
+    for (std::size_t k = 0; k < lists_.near.size() && clear > 0.0; ++k) {
+        const CollisionWorld& world = view.bodies().world(lists_.near[k]);
+        const Path path = path_in(lists_.near[k], view, {start.position, 0.0, start.world});
+        const QueryMargins margins(world, path, query_.radius, besides[k]);
+        clear = std::min(clear, time_clear_of(world, margins, path, fine));
+    }
+    return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
 }
 
 /// s, all keys of meshes that deform within the path's time, where some are near.
@@ -311,15 +396,29 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView
     }
 }
 
-ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) {
-    const double from = lists_.cuts[piece];
-    const double to = lists_.cuts[piece + 1];
-    piece_ = piece_of(query_.path, from, to, start.position);
-    clock_ = view_.clock().piece(from, to);
-    if (!times_.empty()) {
-        clock_.begin = times_[piece];
-        clock_.end = times_[piece + 1];
-    }
+/// m, as far as positions beside the path here may lie beside the cubics that bodies see.
+double MovingSweep::beside_in_bodies() const { return 2.0 * (query_.beside + beside_path()); }
+
+/// m, by which what is asked about lies beside the path here: what a body sees beside its cubic.
+double MovingSweep::beside_path() const {
+    double tolerance = 0.0;
+    for (const double one : lists_.tolerances) tolerance = std::max(tolerance, one);
+    return 4.0 * tolerance + rounding();
+}
+
+void MovingSweep::set_piece(double to, const WayPoint& start) {
+    piece_ = piece_of(query_.path, begin_, to, start.position);
+    clock_ = view_.clock().piece(begin_, to);
+    if (times_.empty()) return;
+    clock_.begin = times_[next_ - 1];
+    clock_.end = times_[next_];
+}
+
+ContactQueryResult MovingSweep::sweep(const WayPoint& start) {
+    const double to = end_of_piece(start);
+    set_piece(to, start);
+    begin_ = to;
+    if (to >= lists_.cuts[next_]) ++next_;
     const MovingView view(view_.bodies(), view_.home(), clock_);
     const WayPoint first_point{start.position, 0.0, start.world};
     if (foreign_) {
@@ -327,27 +426,33 @@ ContactQueryResult MovingSweep::sweep(std::size_t piece, const WayPoint& start) 
     } else {
         foreign_.emplace(view, first_point);
     }
-    double tolerance = 0.0;
-    for (const double one : lists_.tolerances) tolerance = std::max(tolerance, one);
-    // What lies beside the path here lies further beside the cubic that a body sees.
-    const double beside = query_.beside + 4.0 * tolerance + rounding();
-    const double beside_there = 2.0 * beside;
+    const double beside = query_.beside + beside_path();
     ContactQueryResult own =
         find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
-    std::optional<Contact>& first = own.contact;  // what is copied here is large
+    meet_bodies(view, first_point, own.contact);
+    if (!deforming_.empty()) meet_deforming(view, first_point, beside_in_bodies(), own.contact);
+    own.near.join(*foreign_);
+    return own;
+}
+
+void MovingSweep::meet_bodies(const MovingView& view, const WayPoint& start, std::optional<Contact>& first) {
+    const double beside = beside_in_bodies();
     while (scratch_.foreign.size() < lists_.near.size()) scratch_.foreign.push_back(std::make_unique<ContactScratch>());
     for (std::size_t k = 0; k < lists_.near.size(); ++k) {
         ContactScratch& scratch = *scratch_.foreign[k];
         const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
-        const Path path = path_in(lists_.near[k], view, first_point);
+        const Path path = path_in(lists_.near[k], view, start);
+        if (is_clear_) {
+            scratch.clear();
+            const QueryMargins margins(geometry.world(), path, query_.radius, beside);
+            foreign_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
+            continue;
+        }
         const ContactQueryResult found =
-            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside_there}, scratch);
+            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside}, scratch);
         if (found.contact) take(*found.contact, lists_.near[k], view, first);
         foreign_->add({lists_.near[k], path, found.near});
     }
-    if (!deforming_.empty()) meet_deforming(view, first_point, beside_there, first);
-    own.near.join(*foreign_);
-    return own;
 }
 
 /// beside: m, as far beside the path positions may be asked about.
@@ -367,12 +472,13 @@ void MovingSweep::meet_deforming(const MovingView& view, const WayPoint& start, 
 }
 
 std::optional<Contact> MovingSweep::first_contact() {
-    for (std::size_t k = 0; k < pieces(); ++k) {
-        const MovingView view(view_.bodies(), view_.home(), view_.clock());
-        const WayPoint start = k == 0 ? start_ : view.point_at(query_.path.position(lists_.cuts[k]), lists_.cuts[k]);
-        std::optional<Contact> contact = sweep(k, start).contact;
+    const MovingView view(view_.bodies(), view_.home(), view_.clock());
+    while (!is_done()) {
+        const double from = begin_;
+        std::optional<Contact> contact =
+            sweep(from == 0.0 ? start_ : view.point_at(query_.path.position(from), from)).contact;
         if (!contact) continue;
-        contact->time += lists_.cuts[k];
+        contact->time += from;
         return contact;
     }
     return std::nullopt;

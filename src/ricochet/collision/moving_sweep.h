@@ -7,6 +7,9 @@
 /// are swept as all paths are; the time of an impact is then found again on the true way. What is left of the
 /// approximation moves a graze; it lets nothing through, since every link is certified for stored positions.
 ///
+/// Where that takes many pieces, a longer cubic is looked at first, with as much more room about it as it may lie
+/// beside the true way. Until something comes near that, the path is one piece, which meets nothing of other frames.
+///
 /// Meshes that deform are met in the world, where path and vertices are polynomials. Pieces end at their keys, whose
 /// times are those that positions are stored with: no link leads over one.
 #pragma once
@@ -32,14 +35,14 @@ public:
     MovingSweep(const MovingSweep&) = delete;
     MovingSweep& operator=(const MovingSweep&) = delete;
 
-    /// How many pieces there are; each is swept by itself.
-    [[nodiscard]] std::size_t pieces() const { return lists_.cuts.size() - 1; }
-    /// When a piece begins, s along the path; of the number after the last: its duration.
-    [[nodiscard]] double begin_of(std::size_t piece) const { return lists_.cuts[piece]; }
+    /// True when all of the path has been swept.
+    [[nodiscard]] bool is_done() const { return next_ >= lists_.cuts.size(); }
+    /// When the next piece begins, s along the path; its duration when all is done.
+    [[nodiscard]] double begin() const { return begin_; }
 
-    /// Sweeps a piece. start: where it begins, stored. The result is in times of the piece, and is valid until the next
-    /// call; path() is then the piece in the frame of the query.
-    [[nodiscard]] ContactQueryResult sweep(std::size_t piece, const WayPoint& start);
+    /// Sweeps the next piece, unless all is done. start: where it begins, stored. The result is in times of the piece,
+    /// and is valid until the next call; path() is then the piece in the frame of the query.
+    [[nodiscard]] ContactQueryResult sweep(const WayPoint& start);
     [[nodiscard]] const Path& path() const { return piece_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
@@ -50,6 +53,15 @@ private:
     void find_near();
     void find_deforming(const Box3& box);
     void cut();
+    void find_rates();
+    void cut_finely();
+    [[nodiscard]] double end_of_piece(const WayPoint& start);
+    [[nodiscard]] double clear_until(const WayPoint& start, double fine);
+    void set_piece(double to, const WayPoint& start);
+    void meet_bodies(const MovingView& view, const WayPoint& start, std::optional<Contact>& first);
+    [[nodiscard]] double pieces_within(double span) const;
+    [[nodiscard]] double beside_path() const;
+    [[nodiscard]] double beside_in_bodies() const;
     void set_times();
     [[nodiscard]] std::vector<double> deforming_keys() const;
     [[nodiscard]] double path_time_of(double key) const;
@@ -72,6 +84,12 @@ private:
     ContactScratch::Sweep lists_;
     std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
     std::vector<double> times_;         // s, simulation times of the cuts; only where something that deforms is near
+    double rate_ = 0.0;                 // pieces a second
+    std::size_t next_ = 1;              // the cut at which the next piece ends, or after it
+    double begin_ = 0.0;                // s, of the next piece
+    bool is_clear_ = false;             // nothing of other frames comes near the piece
+    int fine_left_ = 0;                 // pieces until a longer one is tried again
+    int fine_after_next_ = 1;           // that many after the next one that is of no use
     std::optional<ForeignSurfaces> foreign_;
     Path piece_;
     PathClock clock_;

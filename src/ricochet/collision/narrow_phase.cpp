@@ -51,7 +51,7 @@ QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double
       tolerance(0.0),
       largest(largest_coordinate(path)),
       slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset + beside),
-      curvature(bvh->margin() - radius) {
+      curvature(bvh->margin() - radius - 2.0 * beside) {
     if (radius > 0.0) tolerance = sphere_tolerance(radius, largest);
 }
 

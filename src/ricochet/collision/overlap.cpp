@@ -9,6 +9,10 @@
 namespace ricochet {
 namespace {
 
+/// Parts of the largest coordinate within which surfaces are touched, by far; positions change by less where several
+/// bodies push one off.
+constexpr double kBirthReach = 0x1p-30;
+
 /// Calls within = consider(surface, distance) for all planes and shapes, and for the triangles within that distance.
 template <class Consider>
 void visit_distances(const CollisionWorld& world, const Vec3& center, double within, const Consider& consider) {
@@ -38,6 +42,15 @@ std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3&
 
 }  // namespace
 
+std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius, double time) {
+    const double reach =
+        radius + kBirthReach * (max_abs(center) + radius) + 2.0 * kTouchingOffsets * contact_offset(center);
+    const Vec3 by{reach, reach, reach};
+    std::vector<BodyId> near;
+    bodies.near_at({center - by, center + by}, time, near);
+    return near;
+}
+
 std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius) {
     if (!(radius > 0.0) || !is_finite(center)) return std::nullopt;
     const double least = radius - sphere_tolerance(radius, max_abs(center));
@@ -54,11 +67,11 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& 
 std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies, const Vec3& center,
                                        double radius, double time) {
     std::optional<Overlap> deepest = deepest_overlap(at_rest, center, radius);
-    for (BodyId body = 0; bodies != nullptr && body < bodies->size(); ++body) {
+    if (bodies == nullptr || !(radius > 0.0) || !is_finite(center)) return deepest;
+    for (const BodyId body : bodies_near(*bodies, center, radius, time)) {
         const auto overlap = deepest_overlap(bodies->world(body), bodies->pose(body, time).image(center), radius);
         if (overlap && (!deepest || overlap->distance < deepest->distance)) deepest = overlap;
     }
-    if (bodies == nullptr || !(radius > 0.0) || !is_finite(center)) return deepest;
     const double least = radius - sphere_tolerance(radius, max_abs(center));
     for (const SurfaceId surface : near_deforming(*bodies, center, radius)) {
         const double distance = bodies->deforming().nearest(surface, center, time).distance;
@@ -70,7 +83,7 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const Movi
 std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time) {
     constexpr double kOffsets = 4.0;
     std::optional<Vec3> off;
-    for (BodyId body = 0; body < bodies.size(); ++body) {
+    for (const BodyId body : bodies_near(bodies, center, 0.0, time)) {
         const MovingPose pose = bodies.pose(body, time);
         const CollisionWorld& world = bodies.world(body);
         const Vec3 position = off.value_or(center);

@@ -21,6 +21,11 @@ struct Overlap {
 /// triangles: one query of a point. Safe from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
 
+/// The bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, s, and maybe some
+/// more; in their order.
+[[nodiscard]] std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius,
+                                              double time);
+
 /// The same among colliders of all frames, as they stand at a time, s. bodies: null where none moves.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies,
                                                      const Vec3& center, double radius, double time);

@@ -81,6 +81,7 @@ public:
     [[nodiscard]] Vec3 velocity_change(const Wrench& wrench, const Vec3& where) const;
 
     [[nodiscard]] double kinetic_energy() const;                                    ///< J
+    [[nodiscard]] const AffineMap& world_from_frame() const { return map_; }        ///< where its frame is
     [[nodiscard]] const Vec3& center() const { return center_; }                    ///< of mass, m
     [[nodiscard]] Vec3 velocity() const;                                            ///< of that, m/s
     [[nodiscard]] Vec3 angular_velocity() const;                                    ///< rad/s

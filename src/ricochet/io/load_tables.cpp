@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -22,6 +25,30 @@ std::string field(const std::string& name) {
     std::string quoted = "\"";
     for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + "\"";
+}
+
+/// The rotation as a unit quaternion (w, x, y, z), w >= 0. Source: S. W. Shepperd, "Quaternion from Rotation Matrix",
+/// J. Guidance and Control 1, 1978: from the largest of the components, so that nothing cancels.
+std::array<double, 4> quaternion_of(const AffineMap& map) {
+    const double xx = map.row_x.x;
+    const double yy = map.row_y.y;
+    const double zz = map.row_z.z;
+    // Four times the squares of w, x, y and z.
+    const std::array<double, 4> squares{1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz};
+    const Vec3 turn{map.row_z.y - map.row_y.z, map.row_x.z - map.row_z.x, map.row_y.x - map.row_x.y};
+    const Vec3 mixed{map.row_z.y + map.row_y.z, map.row_x.z + map.row_z.x, map.row_y.x + map.row_x.y};
+    // Rows of 4 q q^T.
+    const std::array<std::array<double, 4>, 4> rows{{{squares[0], turn.x, turn.y, turn.z},
+                                                     {turn.x, squares[1], mixed.z, mixed.y},
+                                                     {turn.y, mixed.z, squares[2], mixed.x},
+                                                     {turn.z, mixed.y, mixed.x, squares[3]}}};
+    const auto largest = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+    std::array<double, 4> q = rows[largest];
+    double norm = 0.0;
+    for (const double component : q) norm += component * component;
+    const double factor = (q[0] < 0.0 ? -1.0 : 1.0) / std::sqrt(norm);
+    for (double& component : q) component *= factor;
+    return q;
 }
 
 /// s from the begin of an interval, which may be empty, as a factor of rates.
@@ -54,8 +81,9 @@ void LoadTables::add(const Simulation& simulation) {
     for (const BodyState& body : simulation.bodies()) {
         fmt::format_to(std::back_inserter(rows_.bodies), "{:.17g},{}", now, field(body.frame));
         for (const Vec3& v : {body.center, body.velocity, body.angular_velocity}) append(rows_.bodies, v);
-        fmt::format_to(std::back_inserter(rows_.bodies), ",{:.17g},{:.17g},{:.17g}\n", body.coordinate, body.rate,
-                       body.kinetic_energy);
+        const auto [w, x, y, z] = quaternion_of(body.world_from_frame);
+        fmt::format_to(std::back_inserter(rows_.bodies), ",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                       body.coordinate, body.rate, body.kinetic_energy, w, x, y, z);
     }
     rows_.since = now;
     rows_.totals = totals;
@@ -69,7 +97,8 @@ void LoadTables::write(const Simulation& simulation) const {
     if (!simulation.bodies().empty()) {
         write_file(folder_ / kBodyTableFile,
                    "time,name,x,y,z,velocity_x,velocity_y,velocity_z,angular_velocity_x,angular_velocity_y,"
-                   "angular_velocity_z,coordinate,rate,kinetic_energy\n" +
+                   "angular_velocity_z,coordinate,rate,kinetic_energy,orientation_w,orientation_x,orientation_y,"
+                   "orientation_z\n" +
                        rows_.bodies);
     }
 }

@@ -18,6 +18,10 @@ namespace {
 /// to 9 % (docs/decisions/2026-11-23-what-pays.md).
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
 
+/// Contacts with surfaces of several frames at once in one step, each of up to 64 intervals, before the particle counts
+/// as jammed: more than any that comes out needs.
+constexpr int kMostShared = 64;
+
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
@@ -65,6 +69,19 @@ private:
     [[nodiscard]] std::optional<Contact> wait_for_body(const Contact& contact);
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
+    template <class Go>
+    std::optional<Contact> ride_unsettled(BodyId body, Contact* contact, const Go& go);
+    [[nodiscard]] std::optional<Contact> follow_shared();
+    /// What a particle has been given since, with its state then.
+    struct Account {
+        Vec3 velocity;           ///< m/s, in the world
+        Vec3 pushed;             ///< ImpactAnswer::pushed()
+        double remaining = 0.0;  ///< s, of the step
+    };
+    [[nodiscard]] Account open_account() {
+        return {particle_.state.velocity, step_.impact().pushed(), step_.remaining()};
+    }
+    void settle(const Account& account, SurfaceId surface);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
 
     const ResponseRules& rules_;
@@ -74,6 +91,7 @@ private:
     ContactPhase contact_phase_;
     std::uint32_t bounces_at_look_ = 0;  // of has_room()
     double remaining_at_look_ = std::numeric_limits<double>::infinity();
+    int shared_count_ = 0;     // of contacts with several frames at once
     bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
     /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
     bool is_without_kick_ = false;
@@ -104,7 +122,10 @@ MoveOutcome ParticleMover::run() {
 
 /// Among colliders that move: what a kick has done for the time that is left is taken back, and done by the forces.
 std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, const Contact& contact) {
-    if (!flies_anew_) particle_.state.velocity -= step_.remaining() * flight.acceleration;
+    if (!flies_anew_) {
+        particle_.state.velocity -= step_.remaining() * flight.acceleration;
+        step_.log().note_flight();  // of the integrator's doing, not of the surfaces'
+    }
     flies_anew_ = is_without_kick_ = true;
     return answer(Flight{}, contact);
 }
@@ -154,7 +175,7 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
         const bool is_shared = std::any_of(kept.surfaces.begin(), kept.surfaces.begin() + kept.count,
                                            [&](SurfaceId surface) { return rules_.bodies->body_of(surface) != body; });
         if (is_shared || rules_.bodies->is_deforming(body)) {
-            next = SharedContact(step_).follow();
+            next = follow_shared();
         } else if (body == kAtRest) {
             next = contact_phase_.resume();
         } else {
@@ -164,9 +185,28 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
     return next;
 }
 
+/// What contact in a frame that moves, or with several of them, has recorded is exact to the method's order. Under
+/// forces that are the same everywhere the momentum that surfaces have given is known, and what is missing is entered.
+void ParticleMover::settle(const Account& account, SurfaceId surface) {
+    if (!rules_.forces.is_uniform()) return;
+    const Vec3 by_forces = (account.remaining - step_.remaining()) * rules_.forces.acceleration(particle_.state);
+    const Vec3 given = particle_.state.velocity - account.velocity - by_forces;
+    const Vec3 missing = given - (step_.impact().pushed() - account.pushed);
+    if (missing != Vec3{}) step_.impact().push(surface, missing, false, Vec3{});
+}
+
 /// Contact in the frame of a body, which is left for the world again.
 template <class Go>
 std::optional<Contact> ParticleMover::ride(BodyId body, Contact* contact, const Go& go) {
+    const Account account = open_account();
+    const SurfaceId surface = contact != nullptr ? contact->first().surface : particle_.contact.surfaces[0];
+    std::optional<Contact> next = ride_unsettled(body, contact, go);
+    settle(account, surface);
+    return next;
+}
+
+template <class Go>
+std::optional<Contact> ParticleMover::ride_unsettled(BodyId body, Contact* contact, const Go& go) {
     step_.enter(body, rides_->rules_of(body), contact);
     // What rests there does so to the last bit.
     if (const auto ridden = std::exchange(particle_.ridden, std::nullopt)) {
@@ -226,11 +266,25 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     return std::nullopt;
 }
 
+/// What jams there again and again has no way on: it stays for the rest of the step.
+std::optional<Contact> ParticleMover::follow_shared() {
+    if (++shared_count_ > kMostShared) {
+        particle_.contact = {};
+        step_.stop();
+        return std::nullopt;
+    }
+    const Account account = open_account();
+    const KeptContact kept = particle_.contact;
+    auto next = SharedContact(step_).follow();
+    if (kept.count > 0) settle(account, kept.surfaces[0]);
+    return next;
+}
+
 /// On surfaces of several frames at once.
 std::optional<Contact> ParticleMover::begin_shared() {
     flies_anew_ = true;
     is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
-    const auto next = SharedContact(step_).follow();
+    const auto next = follow_shared();
     return next || particle_.contact.count == 0 || !(step_.remaining() > 0.0) ? next : resume_among_bodies();
 }
 
@@ -291,12 +345,14 @@ std::optional<Contact> ParticleMover::wait_for_body(const Contact& contact) {
         return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));
     });
     const Motion own{particle_.state.velocity, particle_.spin};
+    const Account account = open_account();
     Contact seen = contact;
     step_.log().note_impact();
-    const auto next =
-        ride(rules_.bodies->body_of(yielding->surface), &seen, [&](ContactPhase& phase) { return phase.stay(seen); });
+    const auto next = ride_unsettled(rules_.bodies->body_of(yielding->surface), &seen,
+                                     [&](ContactPhase& phase) { return phase.stay(seen); });
     particle_.state.velocity = own.velocity;
     particle_.spin = own.spin;
+    settle(account, yielding->surface);
     step_.impact().note_driven();
     step_.log().note_impact();
     return next;

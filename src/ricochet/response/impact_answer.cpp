@@ -52,6 +52,7 @@ void ImpactAnswer::shatter_by(const Vec3& velocity_change) {
 void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool impact,
                         const std::optional<Vec3>& spin_change) {
     const Vec3 change = home_.direction_in_world(velocity_change, particle_.state.time);
+    pushed_ += change;
     scratch_.hits.push_back({surface, -particle_.state.mass * change, impact});
     scratch_.driven = scratch_.driven || material_of(surface).drives() || home_.is_moving() || is_carried(surface);
     if (scratch_.record_loads) book_.add(scratch_.hits.back(), spin_change);

@@ -42,6 +42,8 @@ public:
     /// changed since the last one.
     void push(SurfaceId surface, const Vec3& velocity_change, bool impact,
               const std::optional<Vec3>& spin_change = std::nullopt);
+    /// m/s, the sum of all changes of velocity so far that are recorded as impulses, in the world.
+    [[nodiscard]] const Vec3& pushed() const { return pushed_; }
     /// At the end of the move.
     void close_book() { book_.close(); }
     /// What is recorded next has surfaces that move in it.
@@ -123,6 +125,7 @@ private:
     MoveOutcome& outcome_;
     const HomeFrame& home_;
     LoadBook book_;
+    Vec3 pushed_;
     struct Given {
         BodyId body;
         Wrench wrench;  // about the center of its mobility

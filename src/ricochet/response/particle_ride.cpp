@@ -45,13 +45,13 @@ ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query
     const MovingView view = view_of(query.path);
     MovingSweep sweep(view, geometry_, query, here(view), scratch_.contacts);
     Travel travel;
-    for (std::size_t k = 0; k < sweep.pieces() && !travel.contact; ++k) {
-        const WayPoint start{view.stored(stored_.position, sweep.begin_of(k))};
-        ContactQueryResult found = sweep.sweep(k, start);
+    while (!sweep.is_done() && !travel.contact) {
+        const double begin = sweep.begin();
+        ContactQueryResult found = sweep.sweep(view.stored(stored_.position, begin));
         const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
         if (found.contact) travel.contact = found.contact;
         const bool has_gone = elapsed >= sweep.path().duration;
-        travel.elapsed = has_gone ? sweep.begin_of(k + 1) : sweep.begin_of(k) + elapsed;
+        travel.elapsed = has_gone ? sweep.begin() : begin + elapsed;
         if (travel.contact) travel.contact->time = travel.elapsed;
         if (!has_gone) break;
     }

@@ -217,10 +217,9 @@ bool ActiveMover::is_near_yielding(const ForceInput& state, double duration) con
     const double reach = state.radius + 2.0 * duration * speed;
     const Vec3 by{reach, reach, reach};
     const Box3 box{state.position - by, state.position + by};
-    for (BodyId body = 0; body < rules.bodies->size(); ++body) {
-        if (rules.bodies->yields(body) && !rules.bodies->stays_out(body, box)) return true;
-    }
-    return false;
+    std::vector<BodyId> near;
+    rules.bodies->near(box, kAtRest, near);
+    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies->yields(body); });
 }
 
 // The part of the step in which it lives.
@@ -248,7 +247,7 @@ void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const Mo
     const bool was_fast = is_fast();
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
     parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i));
-    if (!was_fast && is_fast()) record.note_runaway(i);
+    if (!was_fast && is_fast()) record.note_runaway(i, outcome.bounces > 0);
     if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
     if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
     schedule_query(i, moved, outcome, until);

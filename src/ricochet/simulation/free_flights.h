@@ -63,6 +63,8 @@ public:
     }
     /// The particle has made all steps so far and the one that is made now.
     void make_next(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size() + 1); }
+    /// The particle has slept through all steps so far, and has nothing to make up for.
+    void skip(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size()); }
     /// Every particle has made all steps.
     void clear() {
         steps_.clear();
@@ -109,6 +111,10 @@ public:
     void begin_deferring();
     /// All particles make the steps that they have deferred.
     void end_deferring();
+    /// A particle that has slept takes part from the next step on.
+    void wake(std::size_t i) {
+        if (deferred_) deferred_->skip(i);
+    }
     /// Forgets deferred steps.
     void drop_deferred() { deferred_.reset(); }
 

@@ -40,6 +40,7 @@ struct Simulation::Impl {
     [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
     void record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks);
     [[nodiscard]] double oldest_position() const;
+    void wake_sleepers(const TimeSpan& part);
     void move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks);
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;

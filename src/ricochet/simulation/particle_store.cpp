@@ -115,7 +115,8 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (particles_.draws[i] != moved.draws) particles_.draws[i] = moved.draws;
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
-    if (in_contact) store_contact(i, moved, outcome, may_be_held);
+    // What rides goes where its body goes.
+    if (in_contact) store_contact(i, moved, outcome, may_be_held && !moved.ridden);
     if (!keeps_rides_) return;
     rides_[i] = {};
     if (moved.stored_time < moved.step_end) rides_[i].stored_time = moved.stored_time;

@@ -135,8 +135,9 @@ void Simulation::Impl::hold_what_touches(std::size_t i) {
     const Vec3& position = particles().position[i];
     if (!is_finite(position) || max_abs(position) > kLargestCoordinate || particles().pinned[i] != 0) return;
     if (hold_in(world, i, position)) return;
+    if (!bodies) return;
     const double time = std::max(0.0, particles().birth_time[i]);
-    for (BodyId body = 0; bodies && body < bodies->size(); ++body) {
+    for (const BodyId body : bodies_near(*bodies, position, particles().radius[i], time)) {
         if (hold_in(bodies->world(body), i, bodies->pose(body, time).image(position))) return;
     }
 }
@@ -242,7 +243,8 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     }
     statistics.asleep = 0;
     impl().forces = std::move(field);
-    impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady() && !impl().bodies);
+    impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady() &&
+                               !(impl().bodies && options().verify));
     impl().forget_queries();
 }
 

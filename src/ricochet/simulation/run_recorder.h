@@ -91,10 +91,15 @@ struct BlockRecord {
     std::vector<ContactRecord> contact_records;
     std::vector<ColliderLoad> loads;
     std::vector<Violation> violations;
-    std::optional<std::size_t> runaway;  ///< the first particle that forces have brought beyond kMaxSpeed
+    std::optional<std::size_t> runaway;  ///< the first particle that has come beyond kMaxSpeed
+    bool runaway_is_thrown = false;      ///< by surfaces, not by forces
 
     void add(const MoveOutcome& outcome);
-    void note_runaway(std::size_t i) { runaway = runaway ? std::min(*runaway, i) : i; }
+    void note_runaway(std::size_t i, bool is_thrown) {
+        if (runaway && *runaway <= i) return;
+        runaway = i;
+        runaway_is_thrown = is_thrown;
+    }
     void add_to(SimulationStatistics& statistics) const;
 };
 
@@ -110,7 +115,7 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
     penetration_deepest = std::max(penetration_deepest, outcome.depth);
 }
 
-/// The first particle of all blocks that forces have brought beyond kMaxSpeed.
+/// The first particle of all blocks that has come beyond kMaxSpeed.
 [[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);
 
 /// What a run leaves behind besides the particles. Blocks are added in their order, sums over particles in the order of

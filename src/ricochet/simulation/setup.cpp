@@ -194,7 +194,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       response(make_response(options.response, {world, forces, materials, options, options.duration,
                                                 acceleration.look_ahead && !bodies, bodies.get()})),
       store(setup.attributes, keeps_origin(emitters, setup.particles_forces),
-            acceleration.sleeping && forces.is_steady() && !bodies,
+            acceleration.sleeping && forces.is_steady() && !(bodies && options.verify),
             response->keeps_sides() ? world.colliders().size() : 0, bodies != nullptr),
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),

@@ -8,6 +8,13 @@
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
+namespace {
+
+/// Parts of the coordinates within which a collider that moves wakes a particle: more than those (kCandidateSlack) in
+/// which the particle would look for it.
+constexpr double kWakingReach = 0x1p-36;
+
+}  // namespace
 
 void Simulation::step() {
     if (!finished()) impl().step();
@@ -74,6 +81,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});
         std::vector<BlockRecord> blocks;
+        wake_sleepers(part);
         move_part(batch, part, blocks);
         stop_runaways(blocks, step.end);
         record_part(batch, blocks);
@@ -140,6 +148,23 @@ TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
 }
 
+/// What sleeps takes part where a collider that moves comes near. What holds it is at rest, and it sleeps on where that
+/// has not changed.
+void Simulation::Impl::wake_sleepers(const TimeSpan& part) {
+    if (!bodies || !store.may_sleep()) return;
+    for (std::size_t i = 0; i < store.size(); ++i) {
+        if (!store.is_asleep(i) || store.is_fixed(i) || !schedule.is_left_alone(i)) continue;
+        const Vec3& position = particles().position[i];
+        const double radius = particles().radius[i];
+        const double reach = radius + kWakingReach * (radius + max_abs(position)) + kSmallestContactOffset;
+        const Vec3 by{reach, reach, reach};
+        if (bodies->all_stay_out({position - by, position + by})) continue;
+        recorder.statistics().lost_impulses += mover.add_weight(i, part.begin, 1.0);
+        schedule.forget(i);
+        free_flights.wake(i);
+    }
+}
+
 void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks) {
     if (options.response == ResponseKind::rollback && options.rollback.global) {
         mover.move_as_system(batch, part, blocks);
@@ -169,6 +194,17 @@ void Simulation::Impl::order_active_set(ActiveSet& active) const {
 void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {
     const std::optional<std::size_t> i = first_runaway(blocks);
     if (!i) return;
+    // Surfaces at rest give no speed.
+    const bool is_thrown =
+        recorder.collects_loads() && std::any_of(blocks.begin(), blocks.end(), [&](const BlockRecord& block) {
+            return block.runaway == i && block.runaway_is_thrown;
+        });
+    if (is_thrown) {
+        throw DivergedError(fmt::format(
+            "by t = {:.6g} s a surface has thrown particle {} at {:.3g} m/s, beyond the speed of light: let "
+            "the colliders, or their materials, move more slowly",
+            time, particles().id[*i], length(particles().velocity[*i])));
+    }
     throw DivergedError(fmt::format(
         "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
         "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",

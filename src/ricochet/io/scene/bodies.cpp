@@ -10,6 +10,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mass_moments.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/io/scene/body_volume.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -147,12 +148,13 @@ void refuse_other_joints_keys(const SceneContext& context, const ObjectView& vie
     }
 }
 
-/// Sets mass, centre and inertia; false after reporting.
-bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& keys) {
+/// Sets mass, centre and inertia; false after reporting. has_volume: set to true where that of the colliders matters.
+bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& keys, bool& has_volume) {
     BodyDescription& body = keys.body;
     const bool is_given = keys.mass && keys.center && keys.inertia;
     const std::optional<MassMoments> shape = is_given ? std::nullopt : moments.of(frame);
     if (!is_given && !shape) return false;
+    has_volume = shape.has_value();
     body.mass = keys.mass ? *keys.mass : *keys.density * shape->volume;
     body.center = keys.center ? *keys.center : shape->center();
     if (keys.inertia) {
@@ -213,7 +215,8 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
                           "bodies that impulses move and springs do not go together yet, expected "
                           "a scene without the one or the other");
         }
-        if (view.has("mass") == view.has("density")) {
+        const bool is_refused = context.failed();  // a value that is refused is not there
+        if (view.has("mass") == view.has("density") && !(is_refused && !view.has("mass"))) {
             context.error(view, view.has("mass") ? "found both \"mass\" and \"density\", expected one of them"
                                                  : "found neither \"mass\" nor \"density\", expected one of them");
         }
@@ -221,7 +224,11 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
         refuse_company(context, setup, view, frames, named.name);
         if (context.failed()) continue;
         keys.body.frame = named.name;
-        if (!set_mass(FrameMoments(context, setup, view), named.name, keys)) continue;
+        bool has_volume = false;
+        if (!set_mass(FrameMoments(context, setup, view), named.name, keys, has_volume)) continue;
+        if (const auto warning = has_volume ? doubly_filled(setup, named.name) : std::nullopt) {
+            context.warn(view, *warning);
+        }
         try {
             static_cast<void>(DrivenBody(keys.body, AffineMap{}));
             setup.bodies.push_back(std::move(keys.body));

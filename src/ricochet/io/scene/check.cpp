@@ -396,7 +396,8 @@ private:
                                    "missing, expected " + expectation(*key));
             }
         }
-        if (variant != nullptr) check_combinations(node, *variant, path, excused);
+        if (variant != nullptr) check_alternatives(node, *variant, path, excused);
+        for (const KeySpec* key : keys_of(spec, variant)) check_company(node, *key, path, excused);
     }
 
     // Reports an unknown key and, where only one name can be meant, gives it that name.
@@ -437,26 +438,26 @@ private:
         return quoted_list(owners);
     }
 
-    void check_combinations(const JsonNode& node, const Variant& variant, const std::string& path,
+    void check_alternatives(const JsonNode& node, const Variant& variant, const std::string& path,
                             const std::set<std::string_view>& excused) {
+        if (variant.exactly_one_of.empty()) return;
         const auto is_there = [&](std::string_view name) {
             return node.find(name) != nullptr || excused.contains(name);
         };
-        if (!variant.exactly_one_of.empty()) {
-            const auto there = std::count_if(variant.exactly_one_of.begin(), variant.exactly_one_of.end(), is_there);
-            if (there != 1) {
-                diagnostics_.error(
-                    node.location, path,
-                    fmt::format("found {} of the keys {}, expected exactly one of them",
-                                there == 0 ? "none" : "more than one", quoted_list(variant.exactly_one_of)));
-            }
-        }
-        for (const KeySpec& key : variant.keys) {
-            const JsonNode* value = node.find(key.name);
-            if (value == nullptr || key.needs.empty() || is_there(key.needs)) continue;
-            diagnostics_.error(value->location, path_of_key(path, key.name),
-                               fmt::format("only goes together with the key \"{}\"", key.needs));
-        }
+        const auto there = std::count_if(variant.exactly_one_of.begin(), variant.exactly_one_of.end(), is_there);
+        if (there == 1) return;
+        diagnostics_.error(node.location, path,
+                           fmt::format("found {} of the keys {}, expected exactly one of them",
+                                       there == 0 ? "none" : "more than one", quoted_list(variant.exactly_one_of)));
+    }
+
+    void check_company(const JsonNode& node, const KeySpec& key, const std::string& path,
+                       const std::set<std::string_view>& excused) {
+        const JsonNode* value = node.find(key.name);
+        if (value == nullptr || key.needs.empty()) return;
+        if (node.find(key.needs) != nullptr || excused.contains(key.needs)) return;
+        diagnostics_.error(value->location, path_of_key(path, key.name),
+                           fmt::format("only goes together with the key \"{}\"", key.needs));
     }
 
     Diagnostics& diagnostics_;

@@ -1,0 +1,90 @@
+// What particles do in contact with surfaces at rest while other colliders move elsewhere: no otherwise than without
+// those, until one comes to them.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "claims/moving_scene.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr Vec3 kGravity{0, 0, -9.81};
+
+/// Grains that settle on a floor, and a blade that goes round above a part of it, now and then.
+SimulationSetup swept_floor(bool sleeping, std::uint64_t seed) {
+    FrameDescription arm;
+    arm.name = "arm";
+    arm.translation = {0, 0, 0.12};
+    arm.motions = {KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {2.0, 0.0}, {4.0, 150.0}, {5.0, 150.0}})}};
+    SimulationSetup setup = setup_of(0.02, 4.8, {"felt", 0.2, 0.6}, kGravity);
+    setup.materials[0].rolling_friction = 0.2;
+    setup.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{arm});
+    setup.colliders = {{"floor", CuboidShape{{6, 6, 0.2}, {{0, 0, -0.1}}}, 0},
+                       {"blade", CuboidShape{{1.6, 0.05, 0.22}, {{0.8, 0, 0}}}, 0, "arm"}};
+    setup.acceleration.sleeping = sleeping;
+    RandomSequence random(seed, 0, 0);
+    for (int k = 0; k < test::scaled(120); ++k) {
+        const double radius = k % 3 == 0 ? 0.0 : 0.03;
+        setup.particles.push_back(
+            particle_of({5.0 * random.uniform() - 2.5, 5.0 * random.uniform() - 2.5, 0.05 + 0.2 * random.uniform()},
+                        {0.2, 0.1, 0}, radius));
+    }
+    return setup;
+}
+
+TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+        SCOPED_TRACE(seed);
+        Simulation asleep(swept_floor(true, seed));
+        Simulation awake(swept_floor(false, seed));
+        std::uint64_t most = 0;
+        while (!asleep.finished()) {
+            asleep.step();
+            awake.step();
+            most = std::max(most, asleep.statistics().asleep);
+            ASSERT_EQ(asleep.state_hash(), awake.state_hash()) << "s: " << asleep.time();
+        }
+        // What wakes between steps that are made together has none to make up for.
+        Simulation together(swept_floor(true, seed));
+        while (!together.finished()) together.advance(50);
+        EXPECT_EQ(together.state_hash(), awake.state_hash());
+        EXPECT_GT(most, asleep.particles().size() / 2);
+        EXPECT_EQ(awake.statistics().asleep, 0U);
+        EXPECT_EQ(asleep.statistics().contacts, awake.statistics().contacts);
+        EXPECT_EQ(asleep.statistics().squeezed, 0U);
+        // Their weight is in the totals all the same.
+        const auto given = [](const Simulation& simulation) {
+            Vec3 sum;
+            for (const Vec3& impulse : simulation.triangle_totals(0).impulse) sum += impulse;
+            return sum;
+        };
+        EXPECT_LT(length(given(asleep) - given(awake)), 1e-11 * length(given(awake)));
+    }
+}
+
+TEST(WhatSlides, BesideCollidersThatMoveGainsNoEnergyByAnyIntegrator) {
+    for (const IntegratorKind integrator :
+         {IntegratorKind::symplectic_euler, IntegratorKind::implicit_euler, IntegratorKind::forward_euler,
+          IntegratorKind::midpoint, IntegratorKind::velocity_verlet}) {
+        SCOPED_TRACE(static_cast<int>(integrator));
+        SimulationSetup setup =
+            setup_of({frame_of("fan", {Spin{{0, 0, 1}, 90.0}}, {5, 0, 0})},
+                     {{"bowl", BallShape{1.0, {}}, 0}, {"fan", CuboidShape{{0.2, 0.2, 0.2}, {}}, 0, "fan"}}, 0.01, 2.0);
+        setup.options.integrator = integrator;
+        setup.materials = {{"smooth", 0.0, 0.0}};
+        setup.forces.push_back(make_gravity(kGravity));
+        setup.particles = {particle_of({0.9, 0, 0}, {}, 0.05)};
+        Simulation simulation(std::move(setup));
+        EXPECT_FALSE(all_contacts(simulation).empty());
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

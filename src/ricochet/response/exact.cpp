@@ -188,7 +188,8 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
 /// What contact in a frame that moves, or with several of them, has recorded is exact to the method's order. Under
 /// forces that are the same everywhere the momentum that surfaces have given is known, and what is missing is entered.
 void ParticleMover::settle(const Account& account, SurfaceId surface) {
-    if (!rules_.forces.is_uniform()) return;
+    const bool is_coupled = particle_.planned != nullptr || particle_.state.coupling != nullptr;
+    if (!rules_.forces.is_uniform() || is_coupled) return;
     const Vec3 by_forces = (account.remaining - step_.remaining()) * rules_.forces.acceleration(particle_.state);
     const Vec3 given = particle_.state.velocity - account.velocity - by_forces;
     const Vec3 missing = given - (step_.impact().pushed() - account.pushed);

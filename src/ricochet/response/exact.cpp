@@ -7,6 +7,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_phase.h"
+#include "ricochet/response/momentum_account.h"
 #include "ricochet/response/riding.h"
 #include "ricochet/response/shared_contact.h"
 
@@ -72,16 +73,6 @@ private:
     template <class Go>
     std::optional<Contact> ride_unsettled(BodyId body, Contact* contact, const Go& go);
     [[nodiscard]] std::optional<Contact> follow_shared();
-    /// What a particle has been given since, with its state then.
-    struct Account {
-        Vec3 velocity;           ///< m/s, in the world
-        Vec3 pushed;             ///< ImpactAnswer::pushed()
-        double remaining = 0.0;  ///< s, of the step
-    };
-    [[nodiscard]] Account open_account() {
-        return {particle_.state.velocity, step_.impact().pushed(), step_.remaining()};
-    }
-    void settle(const Account& account, SurfaceId surface);
     [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
 
     const ResponseRules& rules_;
@@ -185,24 +176,13 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
     return next;
 }
 
-/// What contact in a frame that moves, or with several of them, has recorded is exact to the method's order. Under
-/// forces that are the same everywhere the momentum that surfaces have given is known, and what is missing is entered.
-void ParticleMover::settle(const Account& account, SurfaceId surface) {
-    const bool is_coupled = particle_.planned != nullptr || particle_.state.coupling != nullptr;
-    if (!rules_.forces.is_uniform() || is_coupled) return;
-    const Vec3 by_forces = (account.remaining - step_.remaining()) * rules_.forces.acceleration(particle_.state);
-    const Vec3 given = particle_.state.velocity - account.velocity - by_forces;
-    const Vec3 missing = given - (step_.impact().pushed() - account.pushed);
-    if (missing != Vec3{}) step_.impact().push(surface, missing, false, Vec3{});
-}
-
 /// Contact in the frame of a body, which is left for the world again.
 template <class Go>
 std::optional<Contact> ParticleMover::ride(BodyId body, Contact* contact, const Go& go) {
-    const Account account = open_account();
+    const MomentumAccount account(step_);
     const SurfaceId surface = contact != nullptr ? contact->first().surface : particle_.contact.surfaces[0];
     std::optional<Contact> next = ride_unsettled(body, contact, go);
-    settle(account, surface);
+    account.settle(surface);
     return next;
 }
 
@@ -274,10 +254,10 @@ std::optional<Contact> ParticleMover::follow_shared() {
         step_.stop();
         return std::nullopt;
     }
-    const Account account = open_account();
+    const MomentumAccount account(step_);
     const KeptContact kept = particle_.contact;
     auto next = SharedContact(step_).follow();
-    if (kept.count > 0) settle(account, kept.surfaces[0]);
+    if (kept.count > 0) account.settle(kept.surfaces[0]);
     return next;
 }
 
@@ -346,14 +326,14 @@ std::optional<Contact> ParticleMover::wait_for_body(const Contact& contact) {
         return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));
     });
     const Motion own{particle_.state.velocity, particle_.spin};
-    const Account account = open_account();
+    const MomentumAccount account(step_);
     Contact seen = contact;
     step_.log().note_impact();
     const auto next = ride_unsettled(rules_.bodies->body_of(yielding->surface), &seen,
                                      [&](ContactPhase& phase) { return phase.stay(seen); });
     particle_.state.velocity = own.velocity;
     particle_.spin = own.spin;
-    settle(account, yielding->surface);
+    account.settle(yielding->surface);
     step_.impact().note_driven();
     step_.log().note_impact();
     return next;

@@ -1,0 +1,179 @@
+// How the path of a MovingSweep is cut into pieces.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/collision/broad_phase.h"
+#include "ricochet/collision/moving_sweep.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Of a path's duration: as near to its ends as a key of a mesh that deforms may cut it.
+constexpr double kLeastPart = 0x1p-45;
+
+/// A cubic that has the values and velocities of a function at both ends of a time h is within h^4 / kHermiteError
+/// times the fourth derivative of it.
+constexpr double kHermiteError = 384.0;
+
+/// What is left of a path may be so much longer than a fine piece, by rounding, and still be one.
+constexpr double kAlmostOne = 1.0 + 1e-9;
+
+/// Most fine pieces that a piece which meets nothing is as long as: its cubic may err by the fourth power of that more.
+constexpr double kLongestPiece = 16.0;
+
+/// Most fine pieces in a row before a longer one is tried again.
+constexpr int kMostFinePieces = 64;
+
+}  // namespace
+
+/// At the keys of all bodies that are near, and evenly between them.
+void MovingSweep::cut() {
+    const double duration = query_.path.duration;
+    const PathClock& clock = view_.clock();
+    if (view_.home() == kAtRest && lists_.near.empty() && deforming_.empty()) {
+        lists_.cuts.assign({0.0, duration});
+        return;
+    }
+    std::vector<double>& keys = lists_.keys;
+    keys.assign(1, 0.0);
+    const auto add_keys = [&](BodyId body) {
+        double key = view_.bodies().next_key(body, clock.begin);
+        for (int count = 0; count < kMostKeysInStep && key < clock.end;
+             ++count, key = view_.bodies().next_key(body, key)) {
+            const double at = key - clock.base - clock.offset;
+            if (at > 0.0 && at < duration) keys.push_back(at);
+        }
+    };
+    add_keys(view_.home());
+    for (const BodyId body : lists_.near) add_keys(body);
+    for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
+    keys.push_back(duration);
+    std::sort(keys.begin(), keys.end());
+    find_rates();
+    lists_.cuts.assign(1, 0.0);
+    for (const double key : keys) {
+        if (key > lists_.cuts.back()) lists_.cuts.push_back(key);
+    }
+    if (lists_.cuts.size() == 1) lists_.cuts.push_back(duration);
+    if (deforming_.empty()) return;
+    cut_finely();
+    set_times();
+}
+
+void MovingSweep::find_rates() {
+    lists_.fourth.clear();
+    rate_ = 0.0;
+    if (lists_.near.empty() && deforming_.empty()) return;
+    const DerivativeBounds world = world_bounds();
+    const auto rate_of = [](double fourth, double tolerance) {
+        return std::sqrt(std::sqrt(fourth / (kHermiteError * tolerance)));
+    };
+    for (const BodyId body : lists_.near) {
+        lists_.fourth.push_back(fourth_derivative(body, world));
+        rate_ = std::max(rate_, rate_of(lists_.fourth.back(), tolerance_of(body)));
+    }
+    if (view_.home() != kAtRest && !deforming_.empty()) {
+        rate_ = std::max(rate_, rate_of(fourth_derivative(kAtRest, world), tolerance_of(kAtRest)));
+    }
+}
+
+double MovingSweep::pieces_within(double span) const {
+    return std::clamp(std::ceil(span * rate_), 1.0, kMostMovingPieces);
+}
+
+void MovingSweep::cut_finely() {
+    const std::vector<double> keys = std::exchange(lists_.cuts, {0.0});
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+        const double span = keys[k] - keys[k - 1];
+        const double count = pieces_within(span);
+        for (double i = 1.0; i < count; ++i) lists_.cuts.push_back(keys[k - 1] + span * (i / count));
+        lists_.cuts.push_back(keys[k]);
+    }
+}
+
+/// s along the path: the next cut, or before that as far as a fine piece goes, or one that meets nothing.
+double MovingSweep::end_of_piece(const WayPoint& start) {
+    is_clear_ = false;
+    const double cut = lists_.cuts[next_];
+    if (!deforming_.empty()) return cut;
+    const double whole = cut - lists_.cuts[next_ - 1];
+    const double fine = whole / pieces_within(whole);
+    if (!(cut - begin_ > kAlmostOne * fine)) return cut;
+    if (fine_left_ == 0) {
+        const double clear = clear_until(start, fine);
+        is_clear_ = clear > begin_;
+        if (is_clear_) return clear;
+        fine_left_ = fine_after_next_;
+        fine_after_next_ = std::min(2 * fine_after_next_, kMostFinePieces);
+    }
+    --fine_left_;
+    return begin_ + fine;
+}
+
+/// s along the path until which nothing of other frames comes near it; where it begins when that is less than a fine
+/// piece. Looks as far as cubics are within what the boxes of all bodies leave for that.
+double MovingSweep::clear_until(const WayPoint& start, double fine) {
+    double longest = kLongestPiece * fine;
+    std::vector<double>& besides = lists_.besides;
+    besides.clear();
+    for (std::size_t k = 0; k < lists_.near.size(); ++k) {
+        const CollisionWorld& world = view_.bodies().world(lists_.near[k]);
+        double error = kLongestPiece * kLongestPiece * kLongestPiece * kLongestPiece * lists_.tolerances[k];
+        if (!world.triangles().empty()) {
+            error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
+        }
+        longest = std::min(longest, std::sqrt(std::sqrt(kHermiteError * error / lists_.fourth[k])));
+        // The pieces that are made of it lie as far beside the true way on its other side.
+        besides.push_back(beside_in_bodies() + 2.0 * error);
+    }
+    if (!(longest >= 2.0 * fine)) return begin_;
+    set_piece(std::min(lists_.cuts[next_], begin_ + longest), start);
+    const MovingView view(view_.bodies(), view_.home(), clock_);
+    double clear = piece_.duration;
+    for (std::size_t k = 0; k < lists_.near.size() && clear > 0.0; ++k) {
+        const CollisionWorld& world = view.bodies().world(lists_.near[k]);
+        const Path path = path_in(lists_.near[k], view, {start.position, 0.0, start.world});
+        const QueryMargins margins(world, path, query_.radius, besides[k]);
+        clear = std::min(clear, time_clear_of(world, margins, path, fine));
+    }
+    return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
+}
+
+/// s, all keys of meshes that deform within the path's time, where some are near.
+std::vector<double> MovingSweep::deforming_keys() const {
+    std::vector<double> keys;
+    if (deforming_.empty()) return keys;
+    const DeformingColliders& deforming = view_.bodies().deforming();
+    const PathClock& clock = view_.clock();
+    for (double key = deforming.next_key(clock.begin); key < clock.end; key = deforming.next_key(key)) {
+        keys.push_back(key);
+    }
+    return keys;
+}
+
+/// Of a key within the path's time: inside the path, also where rounding has it at its ends.
+double MovingSweep::path_time_of(double key) const {
+    const PathClock& clock = view_.clock();
+    const double least = kLeastPart * query_.path.duration;
+    return std::clamp(key - clock.base - clock.offset, least, query_.path.duration - least);
+}
+
+/// Pieces that end at a key end at its very time.
+void MovingSweep::set_times() {
+    const PathClock& clock = view_.clock();
+    const std::vector<double> keys = deforming_keys();
+    times_.clear();
+    for (const double cut : lists_.cuts) times_.push_back(clock.at(cut));
+    times_.back() = clock.end;
+    for (const double key : keys) {
+        const auto at = std::find(lists_.cuts.begin(), lists_.cuts.end(), path_time_of(key)) - lists_.cuts.begin();
+        for (std::ptrdiff_t k = 0; k < std::ssize(times_); ++k) {
+            double& time = times_[static_cast<std::size_t>(k)];
+            time = k < at ? std::min(time, key) : (k > at ? std::max(time, key) : key);
+        }
+    }
+}
+
+}  // namespace ricochet

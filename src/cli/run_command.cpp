@@ -5,13 +5,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/interrupts.h"
@@ -125,22 +129,62 @@ struct RunPlan {
     [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
-// Steps to the end, to the end of the step in which a signal came, or to the one that diverges: then it says why. Only
-// when a step has been made there is something that a signal must not take away: the guard lives from then on.
+// The state after the last step, where a step may take longer than a signal waits: of implicit_euler on springs, which
+// asks between its iterations. What a verified run has found is in no state: its steps are waited for.
+class LastState {
+public:
+    // make: the same simulation from its beginning.
+    LastState(const SceneDescription& scene, std::function<Simulation()> make)
+        : make_(std::move(make)),
+          is_kept_(!scene.setup.springs.empty() && !scene.setup.options.verify &&
+                   scene.setup.options.integrator.kind == IntegratorKind::implicit_euler) {}
+
+    void keep(const Simulation& simulation) {
+        if (!is_kept_) return;
+        bytes_.clear();
+        simulation.save(
+            [this](std::span<const std::byte> part) { bytes_.insert(bytes_.end(), part.begin(), part.end()); });
+    }
+    [[nodiscard]] bool has_any() const { return !bytes_.empty(); }
+
+    [[nodiscard]] Simulation restored() const {
+        Simulation simulation = make_();
+        std::size_t at = 0;
+        simulation.restore([&](std::span<std::byte> part) {
+            std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at), part.size(), part.begin());
+            at += part.size();
+        });
+        return simulation;
+    }
+
+private:
+    std::function<Simulation()> make_;
+    std::vector<std::byte> bytes_;
+    bool is_kept_;
+};
+
+// Steps to the end, to the end of the step in which a signal came (to its begin where it can be stopped), or to the one
+// that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
+// the guard lives from then on.
 std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan,
-                                          std::optional<InterruptGuard>& guard) {
+                                          std::optional<InterruptGuard>& guard, LastState& last) {
     RunProgress progress(plan.quiet);
     writer.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
         if (!guard) guard.emplace();
         writer.add_step(simulation);
+        last.keep(simulation);
         progress.show(simulation, plan.share(writer.output_seconds()));
         return InterruptGuard::signal() == 0;
     };
     while (!simulation.finished() && InterruptGuard::signal() == 0) {
         try {
-            simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step);
+            simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step,
+                               [&] { return InterruptGuard::signal() == 0 || !last.has_any(); });
+        } catch (const StoppedError&) {
+            simulation = last.restored();
+            return std::nullopt;
         } catch (const DivergedError& error) {
             return error.what();
         }
@@ -282,6 +326,7 @@ int cli::run_scene(const RunArguments& arguments) {
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);
+    LastState last(scene, [&arguments] { return Simulation(load_scene(arguments).setup); });
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
     for (const std::string& warning : simulation.warnings()) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
@@ -293,7 +338,7 @@ int cli::run_scene(const RunArguments& arguments) {
     const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
     RunWriter writer(folder.path(), info, simulation, region, resumed);
     std::optional<InterruptGuard> guard;
-    const auto diverged = step_and_write(simulation, writer, plan, guard);
+    const auto diverged = step_and_write(simulation, writer, plan, guard, last);
     const bool is_interrupted = !simulation.finished() && !diverged;
     if (is_interrupted) leave_checkpoint(simulation, writer, plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);

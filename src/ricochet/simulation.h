@@ -15,6 +15,7 @@
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/byte_stream.h"
+#include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/dynamics/emitter.h"
@@ -93,8 +94,9 @@ struct SimulationStatistics {
     double penetration_deepest = 0.0;     ///< m
     std::uint64_t springs_broken = 0;     ///< stretched beyond their limit
     std::uint64_t springs_lost = 0;       ///< removed because a particle at an end was gone
-    std::uint64_t unsolved_steps = 0;     ///< steps whose implicit equations were not solved to the tolerance
-    std::uint64_t frozen = 0;             ///< particles stopped because their state was not finite or beyond 1e75
+    /// Steps whose implicit equations were not solved to the tolerance, or the contacts in which did not settle.
+    std::uint64_t unsolved_steps = 0;
+    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond 1e75
 };
 
 /// Per-triangle totals of one mesh collider, since the start.
@@ -136,6 +138,12 @@ struct BirthRecord {
 /// Is given the contact records of a step.
 using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
+/// A step was stopped by who has asked for it, see Simulation::advance().
+class StoppedError : public RunError {
+public:
+    using RunError::RunError;
+};
+
 /// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count. One that has
 /// been moved from can be assigned to and destroyed; everything else throws RunError.
 class Simulation {
@@ -155,7 +163,11 @@ public:
     /// after each step, says no; faster, because free flights are integrated at once. While go_on is asked, places
     /// and velocities of particles may still be those of an earlier step, and what is made of them (energies, hash,
     /// frames, save()); everything else is up to date. Throws like step() and what go_on throws.
-    void advance(std::uint64_t count, const std::function<bool()>& go_on = {});
+    /// goes_on_within: asked within steps too, between the iterations of implicit_euler on springs, which alone can
+    /// take long; where it says no, StoppedError is thrown, with the particles inside the step: a simulation made anew
+    /// can go on from what save() has left.
+    void advance(std::uint64_t count, const std::function<bool()>& go_on = {},
+                 const std::function<bool()>& goes_on_within = {});
     [[nodiscard]] bool finished() const;
     [[nodiscard]] double time() const;               ///< s
     [[nodiscard]] std::uint64_t step_index() const;  ///< steps done

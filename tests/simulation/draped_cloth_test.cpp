@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ricochet/simulation.h"
 
@@ -74,6 +77,32 @@ TEST(DrapedCloth, OfPointsThatFrictionHoldsLosesEnergyWhateverTheStep) {
             EXPECT_LT(rise, 1e-3) << time_step;
         }
     }
+}
+
+// A long step can be stopped between its iterations, and a run goes on from the state before it to the same bits.
+TEST(DrapedCloth, CanBeStoppedWithinAStep) {
+    const auto setup = [] { return sheet_over_a_ball(0.01, 0.4, 0.005, 6); };
+    Simulation whole(setup());
+    whole.advance(40);
+    Simulation stopped(setup());
+    std::vector<std::byte> bytes;
+    const auto keep = [&] {
+        bytes.clear();
+        stopped.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+        return true;
+    };
+    const auto goes_on = [&] { return stopped.step_index() < 30; };
+    EXPECT_THROW(stopped.advance(40, keep, goes_on), StoppedError);
+    EXPECT_THROW(stopped.step(), RunError);
+    Simulation resumed(setup());
+    std::size_t at = 0;
+    resumed.restore([&](std::span<std::byte> part) {
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), part.size(), part.begin());
+        at += part.size();
+    });
+    EXPECT_EQ(resumed.step_index(), 30U);
+    resumed.advance(10);
+    EXPECT_EQ(resumed.state_hash(), whole.state_hash());
 }
 
 }  // namespace

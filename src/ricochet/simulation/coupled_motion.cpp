@@ -145,8 +145,8 @@ SystemStep CoupledMotion::among_surfaces(double duration, const Particles& parti
         const Foreseen foreseen = foresee(h, spins, contacts);
         if (!foreseen.has_settled && halvings < kMostHalvings) continue;
         if (halvings > 0 || is_part) first_try_ = halvings > 0 ? h : 2.0 * h;
-        SystemStep step =
-            implicit_system_step(system_, foreseen.step.duration, foreseen.held, foreseen.step.velocities);
+        SystemStep step = implicit_system_step(system_, foreseen.step.duration, foreseen.held, foreseen.step.velocities,
+                                               {kNewtonTolerance, between_});
         step.solved = step.solved && foreseen.has_settled;
         return step;
     }
@@ -167,7 +167,8 @@ CoupledMotion::Foreseen CoupledMotion::foresee(double duration, std::span<const 
     }
     foreseen.held = contacts.find(system_, step.velocities, spins, duration);
     for (int pass = 0; pass < kMostForesights; ++pass) {
-        step = implicit_system_step(system_, step.duration, foreseen.held, step.velocities, {kForesightTolerance});
+        step = implicit_system_step(system_, step.duration, foreseen.held, step.velocities,
+                                    {kForesightTolerance, between_});
         std::vector<HeldMotion> found = contacts.find(system_, step.free_velocities, spins, step.duration);
         foreseen.has_settled = agree(found, foreseen.held, step.free_velocities);
         if (foreseen.has_settled) break;

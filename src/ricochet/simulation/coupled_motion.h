@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/dynamics/coupled_member.h"
@@ -32,6 +34,10 @@ public:
     /// foresees what surfaces do to them, for the implicit method. Throws DivergedError when what comes out is
     /// nonsense.
     double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts);
+
+    /// between: called between the iterations of plan() with the implicit method; what it throws comes out of it.
+    /// Empty: nothing is.
+    void call_between(std::function<void()> between) { between_ = std::move(between); }
 
     /// True when particle i is a member.
     [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
@@ -103,6 +109,7 @@ private:
     Departures departures_;               // of the members, from the flights
     double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
+    std::function<void()> between_;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.
     double given_ = 0.0;

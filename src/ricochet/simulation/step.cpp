@@ -20,8 +20,17 @@ void Simulation::step() {
     if (!finished()) impl().step();
 }
 
-void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on) {
+void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on,
+                         const std::function<bool()>& goes_on_within) {
     if (count > 1 && impl().may_defer()) impl().free_flights.begin_deferring();
+    const auto ask = [&] {
+        if (!goes_on_within()) throw StoppedError("the step was stopped before its end");
+    };
+    impl().coupled.call_between(goes_on_within ? std::function<void()>(ask) : std::function<void()>());
+    const auto end = [&] {
+        impl().coupled.call_between({});
+        impl().free_flights.end_deferring();
+    };
     try {
         bool goes_on = true;
         for (std::uint64_t k = 0; k < count && goes_on && !finished(); ++k) {
@@ -29,10 +38,10 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
             goes_on = !go_on || go_on();
         }
     } catch (...) {
-        impl().free_flights.end_deferring();
+        end();
         throw;
     }
-    impl().free_flights.end_deferring();
+    end();
 }
 
 bool Simulation::Impl::may_defer() const {

@@ -326,7 +326,7 @@ int cli::run_scene(const RunArguments& arguments) {
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);
-    LastState last(scene, [&arguments] { return Simulation(load_scene(arguments).setup); });
+    LastState last(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
     for (const std::string& warning : simulation.warnings()) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);

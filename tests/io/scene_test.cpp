@@ -324,9 +324,10 @@ const std::vector<Spoiled> kSpoiled = {
     // keys
     {R"("simulation": {"timestep": 1})", "s.json:1:32: simulation.timestep: unknown key; did you mean \"time_step\"?"},
     {R"("gravity": [0, 0, -9.81])",
-     "s.json:1:17: gravity: unknown key; known keys: \"ricochet\", \"$schema\", \"simulation\", \"forces\", \"flows\", "
-     "\"materials\", \"colliders\", \"frames\", \"emitters\", \"particles\", \"springs\", \"attributes\", "
-     "\"reference_camera\", \"bounds\", \"output\", \"camera\""},
+     "s.json:1:17: gravity: unknown key; known keys: \"ricochet\", \"$schema\", \"simulation\", \"forces\", "
+     "\"particle_forces\", \"flows\", \"materials\", \"colliders\", \"frames\", \"emitters\", \"particles\", "
+     "\"springs\", "
+     "\"particle_contacts\", \"attributes\", \"reference_camera\", \"bounds\", \"output\", \"camera\""},
     {R"("emitters": [{"type": "box", "size": [1, 1, 1], "radius": 2, "burst": 1}])",
      "s.json:1:65: emitters[0].radius: not a key of type \"box\", it belongs to \"disk\", \"sphere\"; did you mean "
      "\"particle_radius\"?"},

@@ -244,6 +244,8 @@ TEST(PairContacts, AnElasticGasKeepsItsEnergyAndNobodyLeavesTheBox) {
 TEST(PairContacts, ARoughGasKeepsMomentumAndAngularMomentumAndLosesEnergy) {
     SimulationSetup setup = gas({.restitution = 0.8, .friction = 0.4, .rolling_friction = 0.1}, 400, 0.02, 0.02, 1.0);
     setup.colliders.clear();
+    // Contacts that are planned before they close turn with arms that are too short by part of the gap.
+    setup.options.particle_contacts->method = PairMethod::events;
     for (Particle& particle : setup.particles) particle.velocity = -3.0 * particle.position + 0.2 * particle.velocity;
     Simulation simulation(std::move(setup));
     const Sums first = sums_of(simulation.particles());
@@ -422,7 +424,15 @@ TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
     EXPECT_TRUE(has(complaint([](auto& s) { s.options.response = ResponseKind::penalty; }), "response"));
     EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->restitution = 1.5; }), "restitution"));
     EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->impact_budget = 0; }), "impact_budget"));
-    EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->method = PairMethod::contacts; }), "method"));
+    EXPECT_TRUE(has(complaint([](auto& s) {
+                        s.options.particle_contacts->method = PairMethod::contacts;
+                        FrameDescription frame;
+                        frame.name = "hoist";
+                        s.frames = std::make_shared<const FrameTree>(FrameTree({frame}));
+                        s.colliders.push_back({"plate", PlaneShape{{0, 0, -1}, {0, 0, 1}}});
+                        s.colliders.back().frame = "hoist";
+                    }),
+                    "method"));
     EXPECT_TRUE(has(complaint([](auto& s) { s.springs.push_back({0, 1, 1.0}); }), "springs"));
 }
 

@@ -49,6 +49,26 @@ void advance(Simulation& simulation, int steps) {
     for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
 }
 
+// A burst that fits, and one that does not.
+TEST(DenseContacts, EmittersGiveBirthOnlyWhereThereIsRoom) {
+    for (const std::uint64_t burst : {60U, 4000U}) {
+        SimulationSetup setup = box_setup(0.02, PairMethod::automatic);
+        EmitterDescription emitter;
+        emitter.shape = BoxShape{{6.0 * kRadius, 6.0 * kRadius, 0.2}, {10.0 * kRadius, 10.0 * kRadius, 0.1}};
+        emitter.radius = {kRadius, 0.2 * kRadius};
+        emitter.burst = burst;
+        emitter.rate = {2000.0, 0.0};
+        setup.emitters.push_back(emitter);
+        Simulation simulation(std::move(setup));
+        advance(simulation, 1000);
+        EXPECT_GT(simulation.particles().size(), 60U);
+        EXPECT_LT(simulation.statistics().overlap_largest, 5e-3) << burst;
+        const std::uint64_t refused = simulation.statistics().births_refused_by_overlap;
+        EXPECT_TRUE(burst < 1000U || refused > 1000U) << refused;
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+    }
+}
+
 TEST(DenseContacts, WhatIsPouredIntoABoxSettlesThereWithHardlyAnyOverlap) {
     SimulationSetup setup = box_setup(0.5, PairMethod::automatic);
     fill_loosely(setup, 96);

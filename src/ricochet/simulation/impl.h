@@ -14,6 +14,7 @@
 #include "ricochet/collision/overlap.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/birth_room.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
@@ -58,7 +59,9 @@ struct Simulation::Impl {
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
     void add(Particle&& particle);
-    [[nodiscard]] BirthTest birth_test() const;
+    /// room: filled with the spheres that are there by the first birth.
+    [[nodiscard]] BirthTest birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const;
+    [[nodiscard]] BirthRoom room_among_spheres(const TimeSpan& step) const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
     /// Of its frame; of a mesh that deforms, which is in none, that of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;

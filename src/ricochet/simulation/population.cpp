@@ -26,7 +26,8 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     std::vector<Particle> born;
     std::uint64_t count = 0;
     std::uint64_t refused = 0;
-    const BirthTest test = birth_test();
+    std::optional<BirthRoom> among;
+    const BirthTest test = birth_test(among, step);
     for (Emitter& emitter : emitters) {
         const std::uint64_t before = emitter.born();
         const std::uint64_t refused_before = emitter.refused();
@@ -82,10 +83,36 @@ void Simulation::Impl::reserve(std::size_t more) {
     free_flights.reserve(more);
 }
 
-/// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface. Empty without surfaces.
-BirthTest Simulation::Impl::birth_test() const {
-    if (world.surface_count() == 0) return {};
-    return [this](const Particle& particle) { return !overlap_of(particle); };
+/// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface, and no other sphere
+/// that it can meet. Empty where there is nothing to overlap.
+BirthTest Simulation::Impl::birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const {
+    if (!pairs && world.surface_count() == 0) return {};
+    if (!pairs) return [this](const Particle& particle) { return !overlap_of(particle); };
+    return [this, &room, step](const Particle& particle) {
+        if (overlap_of(particle)) return false;
+        if (!(particle.radius > 0.0) || !is_finite(particle.position)) return true;
+        if (!room) room = room_among_spheres(step);
+        const ForceInput input{particle.position, particle.velocity, particle.mass, particle.radius,
+                               particle.birth_time};
+        const FlyingBall ball{particle.birth_time, particle.radius, particle.position, particle.velocity,
+                              response->rules().forces.acceleration(input)};
+        if (!room->has_room(ball)) return false;
+        room->add(ball);
+        return true;
+    };
+}
+
+/// As the spheres that are there go on from the step's begin.
+BirthRoom Simulation::Impl::room_among_spheres(const TimeSpan& step) const {
+    BirthRoom room(step.end);
+    for (std::size_t i = 0; i < store.size(); ++i) {
+        const double radius = particles().radius[i];
+        if (!(radius > 0.0) || particles().frozen[i] != 0) continue;
+        const bool stays = particles().pinned[i] != 0 || particles().resting[i] != 0;
+        const Vec3 pull = stays ? Vec3{} : response->rules().forces.acceleration(store.force_input(i, step.begin));
+        room.add({step.begin, radius, particles().position[i], stays ? Vec3{} : particles().velocity[i], pull});
+    }
+    return room;
 }
 
 /// Of a sphere at the position at which it would be taken in.

@@ -12,6 +12,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/memory_estimate.h"
+#include "ricochet/simulation/subject.h"
 
 namespace ricochet {
 namespace {
@@ -19,58 +20,6 @@ namespace {
 constexpr double kMostSteps = 1e15;
 /// Particles are numbered by 32 bits; what is born is retired again, so more may be born than live at a time.
 constexpr double kMostBirths = 1e12;
-
-/// The object whose values are checked.
-class Subject {
-public:
-    Subject(std::string_view kind, std::size_t number, std::string_view name = {})
-        : name_(name.empty() ? fmt::format("{} {}", kind, number) : fmt::format("{} \"{}\"", kind, name)) {}
-    explicit Subject(std::string_view name) : name_(name) {}
-
-    template <class Found>
-    [[noreturn]] void refuse(std::string_view what, const Found& found, std::string_view expected) const {
-        throw InputError(fmt::format("{}: {}: found {}, expected {}", name_, what, found, expected));
-    }
-    void require_in(double value, double least, double most, std::string_view what, std::string_view expected) const {
-        if (!(value >= least && value <= most)) refuse(what, value, expected);
-    }
-    void require_positive(double value, std::string_view what, std::string_view unit) const {
-        if (!(value > 0.0) || !std::isfinite(value)) {
-            refuse(what, value, fmt::format("a finite number above 0 ({})", unit));
-        }
-    }
-    /// Lengths that positions are made of.
-    void require_length(double value, std::string_view what) const {
-        require_positive(value, what, "m");
-        if (value > kLargestCoordinate) refuse(what, value, fmt::format("at most {:g} m", kLargestCoordinate));
-    }
-    void require_not_negative(double value, std::string_view what, std::string_view unit) const {
-        if (!(value >= 0.0) || !std::isfinite(value)) {
-            refuse(what, value,
-                   fmt::format("a finite number of at least 0{}", unit.empty() ? "" : fmt::format(" ({})", unit)));
-        }
-    }
-    /// Every component finite and at most `most`.
-    void require_size(const Vec3& value, double most, std::string_view what, std::string_view unit) const {
-        if (is_finite(value) && max_abs(value) <= most) return;
-        refuse(what, fmt::format("[{}, {}, {}]", value.x, value.y, value.z),
-               fmt::format("finite numbers of at most {:g} {}", most, unit));
-    }
-    /// The same with kLargestCoordinate.
-    void require_coordinates(const Vec3& value, std::string_view what, std::string_view unit) const {
-        require_size(value, kLargestCoordinate, what, unit);
-    }
-    void require_direction(const Vec3& value, std::string_view what) const {
-        if (is_finite(value) && length(value) > 0.0 && std::isfinite(length(value))) return;
-        refuse(what, fmt::format("[{}, {}, {}]", value.x, value.y, value.z), "a direction of finite length above 0");
-    }
-    void require_index(std::size_t index, std::size_t count, std::string_view what, std::string_view of) const {
-        if (index >= count) refuse(what, index, fmt::format("a number below {}, the number of {}", count, of));
-    }
-
-private:
-    std::string name_;
-};
 
 void validate_steps(const SimulationOptions& options) {
     const Subject subject("options");
@@ -212,16 +161,6 @@ void validate_emitters(const SimulationSetup& setup) {
     }
 }
 
-/// What flows carry has the flow's velocity and no friction.
-void validate_flow_walls(const SimulationSetup& setup) {
-    if (setup.options.flow == nullptr) return;
-    for (std::size_t k = 0; k < setup.materials.size(); ++k) {
-        if (!setup.materials[k].drives()) continue;
-        Subject("material", k, setup.materials[k].name)
-            .refuse("surface_motion", "a velocity", "none: walls do not carry what a flow carries");
-    }
-}
-
 void validate_springs(const SimulationSetup& setup) {
     if (setup.options.flow != nullptr && !setup.springs.empty()) {
         Subject("springs").refuse("number", setup.springs.size(), "none: a flow carries the particles");
@@ -238,31 +177,6 @@ void validate_springs(const SimulationSetup& setup) {
         }
         for (const std::uint32_t spring : setup.spring_faces[k].springs) {
             subject.require_index(spring, setup.springs.size(), "edge", "springs");
-        }
-    }
-}
-
-/// Forces between particles, and what cannot be together with them.
-void validate_particles_forces(const SimulationSetup& setup) {
-    for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
-        const ParticlesForceEntry& entry = setup.particles_forces[k];
-        const Subject subject("force between particles", k);
-        if (!entry.force) subject.refuse("force", "a null pointer", "a force");
-        for (const std::uint32_t emitter : entry.emitters) {
-            subject.require_index(emitter, setup.emitters.size(), "emitter", "emitters");
-        }
-        for (const std::string& name : entry.force->attributes()) {
-            const auto has_name = [&](const AttributeDescription& column) { return column.name == name; };
-            if (std::any_of(setup.attributes.begin(), setup.attributes.end(), has_name)) continue;
-            subject.refuse("attribute", name, "the name of one of the setup's attributes");
-        }
-        if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
-        if (setup.options.particle_contacts) {
-            subject.refuse("particle_contacts", "spheres that meet", "none beside forces between particles");
-        }
-        if (setup.options.integrator.kind == IntegratorKind::implicit_euler && !setup.solver) {
-            subject.refuse("integrator", name_of(setup.options.integrator.kind),
-                           "an explicit one: the equations of implicit_euler do not hold forces between particles");
         }
     }
 }
@@ -321,112 +235,6 @@ void validate_names(const std::vector<Named>& all, std::string_view kind) {
     }
 }
 
-void validate_deforming(const ColliderDescription& collider, const SimulationOptions& options, const Subject& subject) {
-    if (!collider.frame.empty()) {
-        subject.refuse("frame", collider.frame, "none: a mesh that deforms stands in the world");
-    }
-    if (options.response != ResponseKind::exact) {
-        subject.refuse("motion", "positions in time",
-                       fmt::format("none: the {} response knows no meshes that deform, only exact does",
-                                   name_of(options.response)));
-    }
-    if (options.flow) {
-        subject.refuse("motion", "positions in time", "none: particles that a flow carries know no meshes that deform");
-    }
-}
-
-/// Only the exact response knows where a collider is within a step.
-void validate_moving_colliders(const SimulationSetup& setup) {
-    for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
-        const ColliderDescription& collider = setup.colliders[k];
-        const Subject subject("collider", k, collider.name);
-        if (is_deforming(collider)) validate_deforming(collider, setup.options, subject);
-        if (collider.frame.empty()) continue;
-        if (!setup.frames || !setup.frames->find(collider.frame)) {
-            subject.refuse("frame", collider.frame, "the name of a frame of the setup");
-        }
-        if (setup.options.response != ResponseKind::exact) {
-            subject.refuse("frame", collider.frame,
-                           fmt::format("none: the {} response knows no colliders that move, only exact does",
-                                       name_of(setup.options.response)));
-        }
-        if (setup.options.flow) {
-            subject.refuse("frame", collider.frame, "none: particles that a flow carries know no colliders that move");
-        }
-    }
-}
-
-/// Spheres that meet each other, and what does not know them.
-void validate_particle_contacts(const SimulationSetup& setup) {
-    if (!setup.options.particle_contacts) return;
-    const PairContactSettings& contacts = *setup.options.particle_contacts;
-    const Subject subject("particle_contacts");
-    subject.require_in(contacts.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
-    subject.require_not_negative(contacts.friction, "friction", "");
-    subject.require_not_negative(contacts.rolling_friction, "rolling_friction", "");
-    if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
-    if (setup.options.response != ResponseKind::exact) {
-        subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
-    }
-    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
-    if (!setup.springs.empty() || setup.solver) {
-        subject.refuse("springs", "particles that act on each other", "none beside spheres that meet");
-    }
-    if (!setup.bodies.empty()) {
-        subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
-    }
-    const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
-                                   [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
-    if (moves && contacts.method == PairMethod::contacts) {
-        subject.refuse("method", "contacts", "auto or events where colliders move");
-    }
-    if (moves && kicks_first(setup.options.integrator.kind)) {
-        subject.refuse("integrator", name_of(setup.options.integrator.kind),
-                       "another one where colliders move: its kick would be given twice");
-    }
-}
-
-/// Bodies that impulses move, and what cannot be together with them.
-void validate_bodies(const SimulationSetup& setup) {
-    for (std::size_t k = 0; k < setup.bodies.size(); ++k) {
-        const std::string& name = setup.bodies[k].frame;
-        const Subject subject("body", k, name);
-        const auto frame = setup.frames ? setup.frames->find(name) : std::nullopt;
-        if (!frame || !setup.frames->description(*frame).is_driven) {
-            subject.refuse("frame", name, "the name of a driven frame of the setup");
-        }
-        for (const ColliderDescription& collider : setup.colliders) {
-            if (collider.frame != name) continue;
-            visit_materials(collider, [&](std::uint32_t number) {
-                const Material& material = setup.materials[number];
-                if (!material.is_random()) return;
-                subject.refuse("material", material.name, "one that neither absorbs nor reflects diffusely");
-            });
-        }
-        const auto is_on_it = [&](const EmitterDescription& emitter) {
-            return emitter.frames &&
-                   setup.frames->description(*frame).name == emitter.frames->description(emitter.frame).name;
-        };
-        if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_on_it)) {
-            subject.refuse("emitter", "one in its frame", "none: where it will be within a step is not known");
-        }
-        if (!setup.springs.empty() || !setup.particles_forces.empty() || setup.solver) {
-            subject.refuse("springs", "particles that act on each other", "none beside bodies that impulses move");
-        }
-    }
-    for (std::size_t k = 0; setup.frames && k < setup.frames->size(); ++k) {
-        const FrameDescription& frame = setup.frames->description(k);
-        const auto count = std::count_if(setup.bodies.begin(), setup.bodies.end(),
-                                         [&](const BodyDescription& body) { return body.frame == frame.name; });
-        const Subject subject("frame", k, frame.name);
-        if (count != (frame.is_driven ? 1 : 0)) subject.refuse("bodies", count, frame.is_driven ? "one" : "none");
-        const auto parent = setup.frames->find(frame.parent);
-        if (parent && setup.frames->description(*parent).is_driven) {
-            subject.refuse("parent", frame.parent, "a frame that is not driven");
-        }
-    }
-}
-
 }  // namespace
 
 const SimulationSetup& validated(const SimulationSetup& setup) {
@@ -438,15 +246,11 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
         Subject("options").refuse("most_particles", setup.options.most_particles,
                                   fmt::format("at least the {} particles that are there", setup.particles.size()));
     }
-    validate_moving_colliders(setup);
-    validate_bodies(setup);
-    validate_particle_contacts(setup);
+    validate_together(setup);
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
     validate_emitters(setup);
-    validate_flow_walls(setup);
     validate_springs(setup);
-    validate_particles_forces(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
     require_memory(setup);

@@ -14,6 +14,9 @@ namespace ricochet {
 /// Returns it.
 const SimulationSetup& validated(const SimulationSetup& setup);
 
+/// What its parts cannot do together: colliders that move, bodies, spheres that meet, flows, forces between particles.
+void validate_together(const SimulationSetup& setup);
+
 /// A particle, by its number among those that are given; columns: how many attributes particles have.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);
 /// materials: how many there are.

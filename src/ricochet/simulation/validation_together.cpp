@@ -1,0 +1,163 @@
+// What the parts of a setup, each of which may be right, cannot do together.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/simulation/subject.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet {
+namespace {
+
+/// What flows carry has the flow's velocity and no friction.
+void validate_flow_walls(const SimulationSetup& setup) {
+    if (setup.options.flow == nullptr) return;
+    for (std::size_t k = 0; k < setup.materials.size(); ++k) {
+        if (!setup.materials[k].drives()) continue;
+        Subject("material", k, setup.materials[k].name)
+            .refuse("surface_motion", "a velocity", "none: walls do not carry what a flow carries");
+    }
+}
+
+/// Forces between particles, and what cannot be together with them.
+void validate_particles_forces(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
+        const ParticlesForceEntry& entry = setup.particles_forces[k];
+        const Subject subject("force between particles", k);
+        if (!entry.force) subject.refuse("force", "a null pointer", "a force");
+        for (const std::uint32_t emitter : entry.emitters) {
+            subject.require_index(emitter, setup.emitters.size(), "emitter", "emitters");
+        }
+        for (const std::string& name : entry.force->attributes()) {
+            const auto has_name = [&](const AttributeDescription& column) { return column.name == name; };
+            if (std::any_of(setup.attributes.begin(), setup.attributes.end(), has_name)) continue;
+            subject.refuse("attribute", name, "the name of one of the setup's attributes");
+        }
+        if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
+        if (setup.options.particle_contacts) {
+            subject.refuse("particle_contacts", "spheres that meet", "none beside forces between particles");
+        }
+        if (setup.options.integrator.kind == IntegratorKind::implicit_euler && !setup.solver) {
+            subject.refuse("integrator", name_of(setup.options.integrator.kind),
+                           "an explicit one: the equations of implicit_euler do not hold forces between particles");
+        }
+    }
+}
+
+void validate_deforming(const ColliderDescription& collider, const SimulationOptions& options, const Subject& subject) {
+    if (!collider.frame.empty()) {
+        subject.refuse("frame", collider.frame, "none: a mesh that deforms stands in the world");
+    }
+    if (options.response != ResponseKind::exact) {
+        subject.refuse("motion", "positions in time",
+                       fmt::format("none: the {} response knows no meshes that deform, only exact does",
+                                   name_of(options.response)));
+    }
+    if (options.flow) {
+        subject.refuse("motion", "positions in time", "none: particles that a flow carries know no meshes that deform");
+    }
+}
+
+/// Only the exact response knows where a collider is within a step.
+void validate_moving_colliders(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
+        const ColliderDescription& collider = setup.colliders[k];
+        const Subject subject("collider", k, collider.name);
+        if (is_deforming(collider)) validate_deforming(collider, setup.options, subject);
+        if (collider.frame.empty()) continue;
+        if (!setup.frames || !setup.frames->find(collider.frame)) {
+            subject.refuse("frame", collider.frame, "the name of a frame of the setup");
+        }
+        if (setup.options.response != ResponseKind::exact) {
+            subject.refuse("frame", collider.frame,
+                           fmt::format("none: the {} response knows no colliders that move, only exact does",
+                                       name_of(setup.options.response)));
+        }
+        if (setup.options.flow) {
+            subject.refuse("frame", collider.frame, "none: particles that a flow carries know no colliders that move");
+        }
+    }
+}
+
+/// Spheres that meet each other, and what does not know them.
+void validate_particle_contacts(const SimulationSetup& setup) {
+    if (!setup.options.particle_contacts) return;
+    const PairContactSettings& contacts = *setup.options.particle_contacts;
+    const Subject subject("particle_contacts");
+    subject.require_in(contacts.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
+    subject.require_not_negative(contacts.friction, "friction", "");
+    subject.require_not_negative(contacts.rolling_friction, "rolling_friction", "");
+    if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
+    if (setup.options.response != ResponseKind::exact) {
+        subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
+    }
+    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
+    if (!setup.springs.empty() || setup.solver) {
+        subject.refuse("springs", "particles that act on each other", "none beside spheres that meet");
+    }
+    if (!setup.bodies.empty()) {
+        subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
+    }
+    const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
+                                   [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+    if (moves && contacts.method == PairMethod::contacts) {
+        subject.refuse("method", "contacts", "auto or events where colliders move");
+    }
+    if (moves && kicks_first(setup.options.integrator.kind)) {
+        subject.refuse("integrator", name_of(setup.options.integrator.kind),
+                       "another one where colliders move: its kick would be given twice");
+    }
+}
+
+/// Bodies that impulses move, and what cannot be together with them.
+void validate_bodies(const SimulationSetup& setup) {
+    for (std::size_t k = 0; k < setup.bodies.size(); ++k) {
+        const std::string& name = setup.bodies[k].frame;
+        const Subject subject("body", k, name);
+        const auto frame = setup.frames ? setup.frames->find(name) : std::nullopt;
+        if (!frame || !setup.frames->description(*frame).is_driven) {
+            subject.refuse("frame", name, "the name of a driven frame of the setup");
+        }
+        for (const ColliderDescription& collider : setup.colliders) {
+            if (collider.frame != name) continue;
+            visit_materials(collider, [&](std::uint32_t number) {
+                const Material& material = setup.materials[number];
+                if (!material.is_random()) return;
+                subject.refuse("material", material.name, "one that neither absorbs nor reflects diffusely");
+            });
+        }
+        const auto is_on_it = [&](const EmitterDescription& emitter) {
+            return emitter.frames &&
+                   setup.frames->description(*frame).name == emitter.frames->description(emitter.frame).name;
+        };
+        if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_on_it)) {
+            subject.refuse("emitter", "one in its frame", "none: where it will be within a step is not known");
+        }
+        if (!setup.springs.empty() || !setup.particles_forces.empty() || setup.solver) {
+            subject.refuse("springs", "particles that act on each other", "none beside bodies that impulses move");
+        }
+    }
+    for (std::size_t k = 0; setup.frames && k < setup.frames->size(); ++k) {
+        const FrameDescription& frame = setup.frames->description(k);
+        const auto count = std::count_if(setup.bodies.begin(), setup.bodies.end(),
+                                         [&](const BodyDescription& body) { return body.frame == frame.name; });
+        const Subject subject("frame", k, frame.name);
+        if (count != (frame.is_driven ? 1 : 0)) subject.refuse("bodies", count, frame.is_driven ? "one" : "none");
+        const auto parent = setup.frames->find(frame.parent);
+        if (parent && setup.frames->description(*parent).is_driven) {
+            subject.refuse("parent", frame.parent, "a frame that is not driven");
+        }
+    }
+}
+
+}  // namespace
+
+void validate_together(const SimulationSetup& setup) {
+    validate_moving_colliders(setup);
+    validate_bodies(setup);
+    validate_particle_contacts(setup);
+    validate_flow_walls(setup);
+    validate_particles_forces(setup);
+}
+
+}  // namespace ricochet

@@ -119,8 +119,8 @@ class PlaneCollider(Thing):
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
-        "rotation": ...}`, within `frame` where that is given too. The collider's own position and rotation are
-        within that.
+        "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
+        rotation are within that.
     point: A point of the plane. Unit: m. Default: [0, 0, 0].
     normal: Its normal, of any length. Required.
     """
@@ -136,8 +136,8 @@ class MeshCollider(Thing):
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
-        "rotation": ...}`, within `frame` where that is given too. The collider's own position and rotation are
-        within that.
+        "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
+        rotation are within that.
     file: The mesh: OBJ, PLY, STL or OFF. Required.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
@@ -160,8 +160,8 @@ class SphereCollider(Thing):
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
-        "rotation": ...}`, within `frame` where that is given too. The collider's own position and rotation are
-        within that.
+        "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
+        rotation are within that.
     radius: Its radius. Unit: m. Required.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
@@ -179,8 +179,8 @@ class CylinderCollider(Thing):
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
-        "rotation": ...}`, within `frame` where that is given too. The collider's own position and rotation are
-        within that.
+        "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
+        rotation are within that.
     radius: Its radius. Unit: m. Required.
     height: Its height. Unit: m. Required.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
@@ -199,8 +199,8 @@ class BoxCollider(Thing):
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
-        "rotation": ...}`, within `frame` where that is given too. The collider's own position and rotation are
-        within that.
+        "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
+        rotation are within that.
     size: Full edge lengths. Unit: m. Required.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
@@ -927,11 +927,12 @@ class Gust(Thing):
 
 
 class KeyPose(Thing):
-    """Where a collider's frame is at a time; between two keys it moves steadily and turns steadily.
+    """Where a collider's frame is at a time; between two keys it moves, turns and is scaled steadily.
 
     time: When; later than the key before. Unit: s. Required.
     position: Of the frame's origin. Unit: m. Default: [0, 0, 0].
     rotation: How it is turned then.
+    scale: Factor, or one for each of the frame's axes: of meshes and boxes, whose vertices it moves. Default: 1.
     """
 
 

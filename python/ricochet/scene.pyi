@@ -774,6 +774,7 @@ class KeyPose(Thing):
         time: float,
         position: Optional[Vector] = ...,
         rotation: Any = ...,
+        scale: Any = ...,
     ) -> None: ...
 
 class Material(Thing):

@@ -20,6 +20,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
@@ -302,25 +303,7 @@ void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
 // One mesh a collider, with the vertices of all of them.
 void RunPictures::add_moving(const FrameFile& file, PreviewMoving& moving) const {
     if (file.moving.empty()) return;
-    const VtkPolyData data = read_vtp(file.moving);
-    const VtkArray* const numbers = find_array(data.cell_arrays, "collider");
-    const auto* const of = numbers == nullptr ? nullptr : std::get_if<std::vector<std::uint32_t>>(&numbers->values);
-    if (of == nullptr) throw InputError(fmt::format("{}: has no array collider", file.moving.string()));
-    std::map<std::uint32_t, TriangleMesh> meshes;
-    std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> renamed;
-    for (std::size_t t = 0; t < data.triangles.size(); ++t) {
-        TriangleMesh& mesh = meshes[(*of)[t]];
-        auto& names = renamed[(*of)[t]];
-        Triangle triangle{};
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            const std::uint32_t v = data.triangles[t][corner];
-            const auto [name, is_new] = names.emplace(v, static_cast<std::uint32_t>(mesh.vertices.size()));
-            if (is_new) mesh.vertices.push_back(data.points[v]);
-            triangle[corner] = name->second;
-        }
-        mesh.triangles.push_back(triangle);
-    }
-    for (auto& [collider, mesh] : meshes) {
+    for (auto& [collider, mesh] : read_moving_meshes(file)) {
         const auto looks = moving_looks_.find(collider);
         if (looks == moving_looks_.end() || looks->second.hidden) continue;
         moving.meshes.push_back({std::move(mesh), looks->second.color, {}, looks->second.glass});

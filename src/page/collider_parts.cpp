@@ -11,6 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
@@ -48,28 +49,6 @@ PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
                                      : std::uint16_t{0});
     }
     return map;
-}
-
-// The meshes of a file of colliders that move, by their number.
-std::map<std::uint32_t, TriangleMesh> moving_meshes(const VtkPolyData& data, const FrameFile& file) {
-    const VtkArray* const numbers = find_array(data.cell_arrays, "collider");
-    const auto* const of = numbers == nullptr ? nullptr : std::get_if<std::vector<std::uint32_t>>(&numbers->values);
-    if (of == nullptr) throw InputError(fmt::format("{}: has no array collider", file.moving.string()));
-    std::map<std::uint32_t, TriangleMesh> meshes;
-    std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> renamed;
-    for (std::size_t t = 0; t < data.triangles.size(); ++t) {
-        TriangleMesh& mesh = meshes[(*of)[t]];
-        auto& names = renamed[(*of)[t]];
-        Triangle triangle{};
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            const std::uint32_t v = data.triangles[t][corner];
-            const auto [name, is_new] = names.emplace(v, static_cast<std::uint32_t>(mesh.vertices.size()));
-            if (is_new) mesh.vertices.push_back(data.points[v]);
-            triangle[corner] = name->second;
-        }
-        mesh.triangles.push_back(triangle);
-    }
-    return meshes;
 }
 
 // Right-handed unit vectors that three of a mesh's vertices span, and the first of them.
@@ -176,7 +155,7 @@ Box3 ColliderParts::box() const {
 
 // Colliders that move stand in their files as in their own frames: where they are, the frames of the run say.
 void ColliderParts::add_moving(const FrameFile& first) {
-    std::map<std::uint32_t, TriangleMesh> meshes = moving_meshes(read_vtp(first.moving), first);
+    std::map<std::uint32_t, TriangleMesh> meshes = read_moving_meshes(first);
     for (const std::size_t index : moving_) {
         ColliderPart& part = parts_[index];
         const auto found = meshes.find(part.number);
@@ -199,7 +178,7 @@ void ColliderParts::survey_motion(const std::vector<FrameFile>& frames) {
     };
     std::vector<std::vector<Fact>> facts(frames.size(), std::vector<Fact>(moving_.size()));
     parallel_for_blocks(frames.size(), 1, [&](std::size_t f, std::size_t, std::size_t) {
-        const auto meshes = moving_meshes(read_vtp(frames[f].moving), frames[f]);
+        const auto meshes = read_moving_meshes(frames[f]);
         for (std::size_t m = 0; m < moving_.size(); ++m) {
             const ColliderPart& part = parts_[moving_[m]];
             const std::vector<Vec3>& from = part.mesh.vertices;
@@ -225,7 +204,7 @@ void ColliderParts::find_glass(const FrameFile& probe) {
     for (std::size_t i = 0; i < frame.points.size(); i += stride) points.push_back(frame.points[i]);
     if (points.empty()) return;
     std::map<std::uint32_t, TriangleMesh> meshes;
-    if (!moving_.empty()) meshes = moving_meshes(read_vtp(probe.moving), probe);
+    if (!moving_.empty()) meshes = read_moving_meshes(probe);
     for (ColliderPart& part : parts_) {
         if (part.plane_normal) continue;
         const TriangleMesh& mesh = part.motion == PartMotion::still ? part.mesh : mesh_of(meshes, part, probe);
@@ -241,7 +220,7 @@ void ColliderParts::find_glass(const FrameFile& probe) {
 MovingFrame ColliderParts::moving_frame(const FrameFile& file) const {
     MovingFrame frame;
     if (moving_.empty()) return frame;
-    const auto meshes = moving_meshes(read_vtp(file.moving), file);
+    const auto meshes = read_moving_meshes(file);
     for (const std::size_t index : moving_) {
         const ColliderPart& part = parts_[index];
         const TriangleMesh& mesh = mesh_of(meshes, part, file);

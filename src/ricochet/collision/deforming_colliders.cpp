@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
@@ -21,12 +22,6 @@ constexpr double kBoxRounding = 0x1p-48;
 
 /// A key that is as near as this, in units in the last place of the time, has come.
 constexpr double kKeyUlps = 16.0;
-
-Box3 grown(Box3 box, double by) {
-    box.lower -= Vec3{by, by, by};
-    box.upper += Vec3{by, by, by};
-    return box;
-}
 
 Box3 box_of(const MovingTriangle& triangle) {
     Box3 box;

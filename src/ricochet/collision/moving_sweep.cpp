@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "ricochet/collision/deforming_sweep.h"
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -23,11 +24,6 @@ Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     piece.duration = to - from;
     piece.end = path.position(to);
     return piece;
-}
-
-Box3 grown(const Box3& box, double margin) {
-    const Vec3 by{margin, margin, margin};
-    return {box.lower - by, box.upper + by};
 }
 
 Box3 box_of(const Path& path, double margin) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -21,14 +22,6 @@ constexpr std::size_t kSample = 1024;
 double extent_of(const Box3& box) {
     const Vec3 size = box.size();
     return std::max({size.x, size.y, size.z});
-}
-
-bool overlap(const Box3& a, const Box3& b) {
-    // Without branches: which of them fails first is chance.
-    return static_cast<bool>(
-        static_cast<unsigned>(a.lower.x <= b.upper.x) & static_cast<unsigned>(b.lower.x <= a.upper.x) &
-        static_cast<unsigned>(a.lower.y <= b.upper.y) & static_cast<unsigned>(b.lower.y <= a.upper.y) &
-        static_cast<unsigned>(a.lower.z <= b.upper.z) & static_cast<unsigned>(b.lower.z <= a.upper.z));
 }
 
 }  // namespace

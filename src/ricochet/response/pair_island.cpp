@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/geometry/sweep/pair_sweep.h"
@@ -23,16 +24,6 @@ void add(MoveOutcome& sum, const MoveOutcome& next) {
     outcome.squeezed = std::max(outcome.squeezed, sum.squeezed);
     outcome.trials += sum.trials;
     sum = outcome;
-}
-
-Box3 grown(const Box3& box, double by) {
-    const Vec3 all{by, by, by};
-    return {box.lower - all, box.upper + all};
-}
-
-bool overlap(const Box3& a, const Box3& b) {
-    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
-           a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Islands of spheres in which contacts last: planned together, moved each for itself.
 #include <algorithm>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/simulation/pair_motion.h"
 
@@ -9,11 +10,6 @@ namespace {
 
 /// Spheres of an island that are looked at impact by impact, where impacts lose energy.
 constexpr std::size_t kMostInFreeIsland = 300;
-
-Box3 ball_box(const Vec3& center, double radius) {
-    const Vec3 r{radius, radius, radius};
-    return {center - r, center + r};
-}
 
 }  // namespace
 

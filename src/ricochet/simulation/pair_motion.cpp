@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 
@@ -16,11 +17,6 @@ constexpr std::size_t kBlock = 16;
 
 /// Impacts per sphere and step beyond which an island is dense.
 constexpr std::size_t kMostImpacts = 4;
-
-Box3 ball_box(const Vec3& center, double radius) {
-    const Vec3 r{radius, radius, radius};
-    return {center - r, center + r};
-}
 
 bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/thread_sanitizer.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/embree.h"
@@ -50,11 +51,6 @@ FloatFrame frame_of(const Box3& box) {
     const double half_extent = 0.5 * max_abs(box.size());
     if (half_extent > 0.0) frame.scale = std::ldexp(1.0, -std::ilogb(half_extent));
     return frame;
-}
-
-Box3 grown(const Box3& box, double margin) {
-    const Vec3 by{margin, margin, margin};
-    return {box.lower - by, box.upper + by};
 }
 
 /// The part of a segment inside a box, as fractions; nothing when it misses the box.

@@ -1,0 +1,26 @@
+/// \file
+/// Private to the library: what is done with boxes in many places.
+#pragma once
+
+#include "ricochet/core/box3.h"
+
+namespace ricochet {
+
+/// The box, larger by a margin (m) on every side.
+[[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
+    const Vec3 by{margin, margin, margin};
+    return {box.lower - by, box.upper + by};
+}
+
+/// Around a ball.
+[[nodiscard]] inline Box3 ball_box(const Vec3& center, double radius) { return grown({center, center}, radius); }
+
+/// True when they have a point in common. Without branches: which comparison fails first is chance.
+[[nodiscard]] inline bool overlap(const Box3& a, const Box3& b) {
+    return static_cast<bool>(
+        static_cast<unsigned>(a.lower.x <= b.upper.x) & static_cast<unsigned>(b.lower.x <= a.upper.x) &
+        static_cast<unsigned>(a.lower.y <= b.upper.y) & static_cast<unsigned>(b.lower.y <= a.upper.y) &
+        static_cast<unsigned>(a.lower.z <= b.upper.z) & static_cast<unsigned>(b.lower.z <= a.upper.z));
+}
+
+}  // namespace ricochet

@@ -247,7 +247,6 @@ private:
     /// To rounding: the sphere overlaps the triangle at an end or in the middle; the point is over its face at both
     /// ends, on different sides. Searching on would not help.
     [[nodiscard]] bool meet_in(double s, double t) const {
-        const auto& [a, b, c] = triangle_.corners;
         if (radius_ > 0.0) {
             const auto overlaps = [&](double at) {
                 const double squared = nearest_at(point_.at(at), triangle_, at).distance_squared;
@@ -258,7 +257,10 @@ private:
         const auto is_over_face = [&](double at) {
             return nearest_at(point_.at(at), triangle_, at).feature == TriangleFeature::kFace;
         };
-        const auto side = [&](double at) { return orient3d(a.at(at), b.at(at), c.at(at), point_.at(at)); };
+        const auto side = [&](double at) {
+            const auto& [a, b, c] = triangle_.corners;
+            return orient3d(a.at(at), b.at(at), c.at(at), point_.at(at));
+        };
         return is_over_face(s) && is_over_face(t) && side(s) * side(t) <= 0;
     }
     [[nodiscard]] bool is_free(double s, double t) const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "fuzz/tiny_movers.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
 #include "support/simple_meshes.h"
@@ -275,6 +276,7 @@ SimulationSetup tiny_scene(ByteChoices choices) {
     }
     if (choices.yes()) add_emitters(choices, setup);
     if (choices.index(4) == 1) add_springs(choices, setup);
+    add_movers(choices, setup);
     return setup;
 }
 

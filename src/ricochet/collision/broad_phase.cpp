@@ -111,7 +111,7 @@ struct ClearQuery {
 double time_clear_of_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                double until) {
     if (world.triangles().empty() || !may_reach_triangles(world, margins, path, 0.0, until)) return until;
-    if (!world.culls() || kPathRounding * margins.largest > margins.bvh->slack()) return 0.0;
+    if (kPathRounding * margins.largest > margins.bvh->slack()) return 0.0;
     ClearQuery query{world, margins, path, until};
     query.test_piece(0.0, until, kPieceDepth);
     return query.until;

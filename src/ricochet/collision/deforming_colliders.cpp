@@ -68,6 +68,10 @@ void DeformingColliders::add(std::size_t number) {
     if (map.determinant() < 0.0) {
         for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     }
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        if (a != b && b != c && c != a) mesh.solid.push_back(t);
+    }
     try {
         mesh.motion = std::make_shared<const MeshMotion>(shape.motion->mapped(map));
     } catch (const InputError& problem) {
@@ -123,8 +127,8 @@ void DeformingColliders::sweep(Mesh& mesh) {
     });
     const double most = largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
     mesh.offset = contact_offset({most, 0.0, 0.0});
-    mesh.tree.fit(mesh.triangles.size(), [&](std::uint32_t t) {
-        const auto [a, b, c] = mesh.triangles[t];
+    mesh.tree.fit(mesh.solid.size(), [&](std::uint32_t k) {
+        const auto [a, b, c] = mesh.triangles[mesh.solid[k]];
         const Box3& at_a = swept_[a];
         const Box3& at_b = swept_[b];
         const Box3& at_c = swept_[c];
@@ -136,7 +140,7 @@ void DeformingColliders::sweep(Mesh& mesh) {
 void DeformingColliders::near(const Box3& box, std::vector<SurfaceId>& out) const {
     const auto first = static_cast<std::ptrdiff_t>(out.size());
     for (const Mesh& mesh : meshes_) {
-        mesh.tree.near(box, [&](std::uint32_t triangle) { out.push_back(mesh.first_surface + triangle); });
+        mesh.tree.near(box, [&](std::uint32_t k) { out.push_back(mesh.first_surface + mesh.solid[k]); });
     }
     std::sort(out.begin() + first, out.end());
 }
@@ -239,7 +243,7 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
         near(box, all);
     } else {  // it goes on from where its clock has stood still
         for (const Mesh& mesh : meshes_) {
-            for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all.push_back(mesh.first_surface + t);
+            for (const std::uint32_t t : mesh.solid) all.push_back(mesh.first_surface + t);
         }
     }
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));

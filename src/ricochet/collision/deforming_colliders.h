@@ -93,8 +93,10 @@ private:
         std::size_t collider = 0;
         SurfaceId first_surface = 0;
         std::vector<Triangle> triangles;
+        /// Those with three corners. What names a vertex twice never has an area, and takes no part in collisions.
+        std::vector<std::uint32_t> solid;
         std::shared_ptr<const MeshMotion> motion;
-        BoxTree tree;         ///< of where each triangle comes in the step
+        BoxTree tree;         ///< of where each solid triangle comes in the step
         double offset = 0.0;  ///< m, see offset_of()
         /// The positions at which it stands in the step that `tree` is of: before its first key or after its last one.
         const Vec3* stands_at = nullptr;

@@ -274,7 +274,7 @@ void MovingSweep::meet_bodies(const MovingView& view, const WayPoint& start, std
         ContactScratch& scratch = *scratch_.foreign[k];
         const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
         const Path path = path_in(lists_.near[k], view, start);
-        if (is_clear_) {
+        if (is_clear_ && geometry.world().culls()) {
             scratch.clear();
             const QueryMargins margins(geometry.world(), path, query_.radius, beside);
             foreign_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});

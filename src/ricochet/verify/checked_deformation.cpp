@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <set>
 
 #include "ricochet/core/error.h"
 #include "ricochet/verify/space_time.h"
@@ -52,9 +52,11 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
                 "verified mesh that deforms: found a corner that is not there");
     }
     require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
-    order_.resize(surface_.triangles.size());
-    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    build(0, static_cast<std::uint32_t>(order_.size()));
+    // What names a vertex twice never has an area.
+    for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
+        if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) order_.push_back(t);
+    }
+    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
     boxes_.resize(nodes_.size() * surface_.times.size());
     for (std::size_t key = 0; key < surface_.times.size(); ++key) fit(key);
 }

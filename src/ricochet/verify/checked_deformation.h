@@ -84,6 +84,7 @@ private:
     template <class Visit>
     void visit_near(const Box3& box, const Span& span, const Visit& visit) const {
         const std::vector<Moment> moments = moments_of(span);
+        if (nodes_.empty()) return;
         std::vector<std::uint32_t> open{0};
         while (!open.empty()) {
             const std::uint32_t index = open.back();

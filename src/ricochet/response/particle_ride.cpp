@@ -149,7 +149,8 @@ bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition
     return is_free_in(kAtRest) && bodies.deforming().is_link_free(from, to, radius);
 }
 
-/// What is next to a mesh that deforms goes with the point of it that is nearest, at the same distance.
+/// What is next to a mesh that deforms goes with the point of it that is nearest, at the same distance; what overlaps
+/// it by rounding comes off it.
 Vec3 ParticleStep::carried_by_mesh(SurfaceId surface, double until) const {
     const DeformingColliders& deforming = rules_->bodies->deforming();
     const auto [a, b, c] = deforming.corners_at(surface, stored_.time);
@@ -158,7 +159,9 @@ Vec3 ParticleStep::carried_by_mesh(SurfaceId surface, double until) const {
     const std::array<Vec3, 3> later = deforming.corners_at(surface, until);
     const Vec3 way = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
     const Vec3 moved = stored_.position + way;
-    const double distance = std::sqrt(closest.distance_squared);
+    double distance = std::sqrt(closest.distance_squared);
+    const double radius = particle_.state.radius;
+    if (distance >= radius - sphere_tolerance(radius, max_abs(moved))) distance = std::max(distance, radius);
     const CollisionWorld::Nearest nearest = deforming.nearest(surface, moved, until);
     const Vec3 normal = dot(nearest.normal, closest.offset) < 0.0 ? -nearest.normal : nearest.normal;
     return flush_tiny(moved + (distance - nearest.distance) * normal);

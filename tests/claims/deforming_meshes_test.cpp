@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "claims/deforming_scene.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/parallel.h"
@@ -29,45 +30,6 @@ namespace {
 
 constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
-
-std::vector<double> evenly(double begin, double end, int parts) {
-    std::vector<double> times;
-    for (int k = 0; k <= parts; ++k) times.push_back(begin + (end - begin) * k / parts);
-    return times;
-}
-
-using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
-
-/// A mesh each of whose vertices goes where a function says.
-MeshShape deforming(const TriangleMesh& mesh, const Deform& deform, std::vector<double> times,
-                    MeshEnds ends = MeshEnds::hold) {
-    const auto positions_at = [&](double time) {
-        std::vector<Vec3> positions;
-        for (const Vec3& vertex : mesh.vertices) positions.push_back(deform(vertex, time));
-        return positions;
-    };
-    MeshShape shape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}};
-    shape.motion = std::make_shared<const MeshMotion>(sampled_motion(positions_at, std::move(times), ends));
-    return shape;
-}
-
-/// A sheet z = 0 over the square |x|, |y| <= half.
-TriangleMesh sheet(double half, int parts) {
-    TriangleMesh mesh;
-    for (int j = 0; j <= parts; ++j) {
-        for (int i = 0; i <= parts; ++i) {
-            mesh.vertices.push_back({half * (2.0 * i / parts - 1.0), half * (2.0 * j / parts - 1.0), 0.0});
-        }
-    }
-    const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (parts + 1) + i); };
-    for (int j = 0; j < parts; ++j) {
-        for (int i = 0; i < parts; ++i) {
-            mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-            mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-        }
-    }
-    return mesh;
-}
 
 SimulationSetup setup_of(double time_step, double duration, const Material& material) {
     SimulationSetup setup;
@@ -94,11 +56,6 @@ void expect_sound(const Simulation& simulation) {
     EXPECT_EQ(statistics.frozen, 0U);
 }
 
-Vec3 breathing(const Vec3& vertex, double time) {
-    const double size = 1.0 + 0.25 * std::sin(7.0 * time);
-    return size * vertex + 0.05 * std::sin(11.0 * time) * Vec3{vertex.y, vertex.z, vertex.x};
-}
-
 int count_outside(const Simulation& simulation) {
     const ParityOracle oracle(*simulation.collider_mesh(0));
     int outside = 0;
@@ -114,7 +71,8 @@ TEST(ABreathingSphere, KeepsWhatBeginsInside) {
             SimulationSetup setup = setup_of(0.01, is_long ? 4.0 : 0.6, {"", restitution, 0.3});
             setup.forces.push_back(make_gravity({0, 0, -kG}));
             setup.colliders = {
-                {"lung", deforming(sphere_mesh({}, 1.0, 2), breathing, evenly(0.0, 2.0 * kPi / 7.0, 23)), 0}};
+                {"lung", deforming(sphere_mesh({}, 1.0, 2), breathing, evenly(0.0, 2.0 * kPi, 161), MeshEnds::repeat),
+                 0}};
             EmitterDescription emitter;
             emitter.shape = SphereShape{{}, 0.6, false};
             emitter.burst = static_cast<std::uint64_t>(std::max(20, test::scaled(is_long ? 2000 : 60)));
@@ -134,20 +92,6 @@ TEST(ABreathingSphere, KeepsWhatBeginsInside) {
     }
 }
 
-/// z of a sheet's triangles above a point, where they are a graph.
-double height_of(const TriangleMesh& mesh, double x, double y) {
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[t[0]];
-        const Vec3 u = mesh.vertices[t[1]] - a;
-        const Vec3 v = mesh.vertices[t[2]] - a;
-        const double area = u.x * v.y - u.y * v.x;
-        const double s = ((x - a.x) * v.y - (y - a.y) * v.x) / area;
-        const double r = (u.x * (y - a.y) - u.y * (x - a.x)) / area;
-        if (s >= -1e-12 && r >= -1e-12 && s + r <= 1.0 + 1e-12) return a.z + s * u.z + r * v.z;
-    }
-    return std::nan("");
-}
-
 /// By the height of the first collider, a sheet, above or below each particle after each step.
 void expect_held_above(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
@@ -163,16 +107,12 @@ void expect_held_above(SimulationSetup setup) {
 }
 
 TEST(AWavingSheet, HoldsTheRainAboveIt) {
-    const auto wave = [](const Vec3& v, double time) {
-        return Vec3{v.x + 0.05 * std::sin(5.0 * v.y + 4.0 * time), v.y,
-                    0.2 * std::sin(4.0 * v.x - 9.0 * time) + 0.1 * std::cos(3.0 * v.y + 5.0 * time)};
-    };
     for (const double radius : {0.0, 0.02}) {
         SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
         SimulationSetup setup = setup_of(0.01, is_long ? 4.0 : 0.5, {"", 0.4, 0.2});
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.colliders = {{"sheet", deforming(sheet(1.5, 12), wave, evenly(0.0, 5.0, 120)), 0},
+        setup.colliders = {{"sheet", deforming(sheet(1.5, 12), waving, evenly(0.0, 5.0, 120)), 0},
                            {"left", PlaneShape{{-1, 0, 0}, {1, 0, 0}}, 0},
                            {"right", PlaneShape{{1, 0, 0}, {-1, 0, 0}}, 0},
                            {"front", PlaneShape{{0, -1, 0}, {0, 1, 0}}, 0},
@@ -189,16 +129,12 @@ TEST(AWavingSheet, HoldsTheRainAboveIt) {
 
 // Two halves that fold about the y axis from flat to a narrow valley and open again, between walls.
 TEST(AFoldingStrip, LetsNothingThrough) {
-    const auto fold = [](const Vec3& v, double time) {
-        const double angle = 1.3 * std::pow(std::sin(2.0 * time), 2);
-        return Vec3{v.x * std::cos(angle), v.y, std::fabs(v.x) * std::sin(angle)};
-    };
     for (const double radius : {0.0, 0.02}) {
         SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
         SimulationSetup setup = setup_of(0.01, is_long ? 2.0 : 1.0, {"", 0.7, 0.1});
         setup.forces.push_back(make_gravity({0, 0, -kG}));
-        setup.colliders = {{"strip", deforming(sheet(6.0, 4), fold, evenly(0.0, 5.0, 90)), 0},
+        setup.colliders = {{"strip", deforming(sheet(6.0, 4), folding, evenly(0.0, 5.0, 90)), 0},
                            {"front", PlaneShape{{0, -1, 0}, {0, 1, 0}}, 0},
                            {"back", PlaneShape{{0, 1, 0}, {0, -1, 0}}, 0}};
         EmitterDescription emitter;

@@ -28,6 +28,18 @@ namespace ricochet::testing {
     return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
 }
 
+/// A frame that spins about a skew axis, swings, and is shaken, by a mesh's size, m.
+[[nodiscard]] inline FrameDescription tumbling(double size, double spin) {
+    FrameDescription frame;
+    frame.name = "tumbling";
+    frame.translation = {0.3 * size, -0.2 * size, 0.1 * size};
+    frame.motions = {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.4, {size, 0, 0}}, {1.0, {0, size, -size}}},
+                                                       Interpolation::cubic_spline, CurveEnds::repeat)},
+                     Spin{{1, 2, 3}, spin}, Swing{{0, 1, 0}, 40.0, 1.3, 20.0},
+                     Oscillation{{0, 0.02 * size, 0.05 * size}, 7.0, 0.0}};
+    return frame;
+}
+
 /// A verified run that records its contacts.
 [[nodiscard]] inline SimulationSetup setup_of(std::vector<FrameDescription> frames,
                                               std::vector<ColliderDescription> colliders, double time_step,

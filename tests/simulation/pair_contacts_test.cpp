@@ -425,14 +425,14 @@ TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
     EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->restitution = 1.5; }), "restitution"));
     EXPECT_TRUE(has(complaint([](auto& s) { s.options.particle_contacts->impact_budget = 0; }), "impact_budget"));
     EXPECT_TRUE(has(complaint([](auto& s) {
-                        s.options.particle_contacts->method = PairMethod::contacts;
+                        s.options.integrator = IntegratorKind::symplectic_euler;
                         FrameDescription frame;
                         frame.name = "hoist";
                         s.frames = std::make_shared<const FrameTree>(FrameTree({frame}));
                         s.colliders.push_back({"plate", PlaneShape{{0, 0, -1}, {0, 0, 1}}});
                         s.colliders.back().frame = "hoist";
                     }),
-                    "method"));
+                    "integrator"));
     EXPECT_TRUE(has(complaint([](auto& s) { s.springs.push_back({0, 1, 1.0}); }), "springs"));
 }
 

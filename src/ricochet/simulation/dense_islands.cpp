@@ -13,9 +13,7 @@ constexpr std::size_t kMostInFreeIsland = 300;
 
 }  // namespace
 
-bool PairMotion::may_be_dense() const {
-    return settings_.method != PairMethod::events && response_.rules().bodies == nullptr;
-}
+bool PairMotion::may_be_dense() const { return settings_.method != PairMethod::events; }
 
 /// Where spheres pressed on each other in the last step they still do; many that lose energy soon will.
 bool PairMotion::begins_dense(const Island& island) const {
@@ -46,7 +44,10 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
     std::vector<NetworkMember> members;
     for (IslandMember& member : island.members) {
         const double duration = std::max(0.0, member.end - member.moving.state.time);
-        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, {}});
+        member.moving.step_end = member.end;
+        const bool is_squeezed = response_.rules().bodies != nullptr && !member.is_fixed &&
+                                 member.moving.stored_time < member.moving.state.time;
+        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, {}});
     }
     MoveScratch scratch;
     const NetworkReport report = network.plan(members, near_pairs(island), step.end - step.begin, memory_, scratch);

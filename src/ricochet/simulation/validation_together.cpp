@@ -100,9 +100,6 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     }
     const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
                                    [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
-    if (moves && contacts.method == PairMethod::contacts) {
-        subject.refuse("method", "contacts", "auto or events where colliders move");
-    }
     if (moves && kicks_first(setup.options.integrator.kind)) {
         subject.refuse("integrator", name_of(setup.options.integrator.kind),
                        "another one where colliders move: its kick would be given twice");

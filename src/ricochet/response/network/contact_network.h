@@ -62,6 +62,7 @@ struct NetworkContact {
     Vec3 normal;                    ///< unit, towards a
     double gap = 0.0;               ///< m, at the begin of the step; < 0: they overlap
     Vec3 wall_velocity;             ///< m/s, of the wall's material at the contact
+    Vec3 wall_turning;              ///< rad/s, of the wall's material
     double friction = 0.0;          ///< Coulomb's coefficient
     double rolling_friction = 0.0;  ///< m, moment over normal force
     double restitution = 0.0;       ///< 0..1

@@ -23,7 +23,9 @@ constexpr double kRounding = 1e-12;
 /// Part of a radius beside it in which contacts are looked for even where nothing moves.
 constexpr double kReach = 0.05;
 
-Vec3 velocity_of(const NetworkMember& member) { return member.is_fixed ? Vec3{} : member.moving->state.velocity; }
+bool stays(const NetworkMember& member) { return member.is_fixed || member.is_squeezed; }
+
+Vec3 velocity_of(const NetworkMember& member) { return stays(member) ? Vec3{} : member.moving->state.velocity; }
 
 }  // namespace
 
@@ -47,7 +49,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
         const ForceInput& state = member.moving->state;
         NetworkBody body;
         body.radius = member.radius;
-        if (member.is_fixed) {
+        if (stays(member)) {
             body.inverse_mass = 0.0;
         } else {
             body.velocity = state.velocity + member.duration * rules_.forces.acceleration(state);
@@ -62,7 +64,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
 void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
                               std::span<const std::array<std::uint32_t, 2>> pairs, const NetworkMemory& memory) {
     for (const auto& [first, second] : pairs) {
-        if (members[first].is_fixed && members[second].is_fixed) continue;
+        if (stays(members[first]) && stays(members[second])) continue;
         const bool in_order = members[first].moving->id < members[second].moving->id;
         NetworkContact contact;
         contact.a = in_order ? first : second;
@@ -92,11 +94,16 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, const Netw
     surfaces_.resize(contacts_.size());
     for (std::uint32_t i = 0; i < members.size(); ++i) {
         first_wall_.push_back(contacts_.size());
-        if (members[i].is_fixed) continue;
+        if (stays(members[i])) continue;
         const ForceInput& state = members[i].moving->state;
         walls_.clear();
-        find_wall_contacts(geometry, state.position, state.radius, reach(bodies_[i].velocity, state.radius, duration_),
-                           walls_);
+        const double near = reach(bodies_[i].velocity, state.radius, duration_);
+        if (rules_.bodies == nullptr) {
+            find_wall_contacts(geometry, state.position, state.radius, near, walls_);
+        } else {
+            const TimeOfStep step{state.time, state.time + members[i].duration};
+            find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
+        }
         for (const WallContact& wall : walls_) add_wall(i, members[i], wall, memory);
     }
     first_wall_.push_back(contacts_.size());
@@ -112,14 +119,28 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     contact.gap = wall.gap;
     contact.friction = material.friction;
     contact.rolling_friction = material.rolling_friction * state.radius;
-    if (material.drives()) {
-        const Vec3 foot = state.position - (state.radius + wall.gap) * wall.normal;
-        contact.wall_velocity = material.motion.at(foot, wall.normal);
-    }
-    const double approach = -dot(state.velocity, wall.normal);
+    contact.wall_velocity = wall.carried;
+    carry(contact, wall, material, state);
+    const double approach = -dot(state.velocity - wall.carried, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
     warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface), memory);
     surfaces_.push_back(wall.surface);
+}
+
+/// Adds what the wall's material does, and how it turns.
+void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, const Material& material,
+                          const ForceInput& state) const {
+    const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(wall.surface);
+    if (!material.drives() && body == kAtRest) return;
+    const Vec3 foot = state.position - (state.radius + wall.gap) * wall.normal;
+    const MovingPose pose = body == kAtRest ? MovingPose{} : rules_.bodies->pose(body, state.time);
+    contact.wall_turning = pose.angular_velocity;
+    if (!material.drives()) return;
+    const bool is_seen_from_frame = body != kAtRest && !rules_.bodies->is_deforming(body);
+    const Vec3 seen = is_seen_from_frame ? pose.image(foot) : foot;
+    const Vec3 normal = is_seen_from_frame ? pose.direction_image(wall.normal) : wall.normal;
+    contact.wall_velocity += pose.world_from_frame.direction(material.motion.at(seen, normal));
+    contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
 void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory) {
@@ -160,18 +181,24 @@ NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) 
 void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const {
     if (member.is_fixed) return;
     const double core = member.moving->state.radius;  // which turns faster than the whole sphere
-    const Vec3 spin = core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{};
-    member.outcome = move_as_planned(rules_, *member.moving, bodies_[index].velocity, spin, member.duration, scratch);
-    record_hits(index, scratch);
+    PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
+                       member.duration, pushes_of(index)};
+    member.outcome = move_as_planned(rules_, *member.moving, plan, scratch);
 }
 
-/// What it gives to the walls in the step.
-void NetworkIsland::record_hits(std::size_t index, MoveScratch& scratch) const {
+/// What walls do to a sphere in the step.
+std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
+    std::vector<WallPush> pushes;
+    const NetworkBody& body = bodies_[index];
     for (std::size_t i = first_wall_[index]; i < first_wall_[index + 1]; ++i) {
         const NetworkImpulse& impulse = solver_.impulses()[i];
         if (impulse.normal == 0.0) continue;
-        scratch.hits.push_back({surfaces_[i], -(impulse.normal * contacts_[i].normal + impulse.tangential), false});
+        const Vec3& normal = contacts_[i].normal;
+        const Vec3 turn = impulse.moment - cross(body.radius * normal, impulse.tangential);
+        pushes.push_back({surfaces_[i], body.inverse_mass * (impulse.normal * normal + impulse.tangential),
+                          body.inverse_inertia * turn});
     }
+    return pushes;
 }
 
 std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {

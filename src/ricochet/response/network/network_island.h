@@ -10,6 +10,7 @@
 
 #include "ricochet/response/network/network_memory.h"
 #include "ricochet/response/network/network_solver.h"
+#include "ricochet/response/network/planned_move.h"
 #include "ricochet/response/network/wall_contacts.h"
 #include "ricochet/response/response.h"
 
@@ -25,16 +26,17 @@ struct PairLaw {
 /// One of the spheres.
 struct NetworkMember {
     MovingParticle* moving = nullptr;
-    double radius = 0.0;    ///< m, as others meet it
-    bool is_fixed = false;  ///< nothing moves it
-    double duration = 0.0;  ///< s, of its part of the step
+    double radius = 0.0;       ///< m, as others meet it
+    bool is_fixed = false;     ///< nothing moves it
+    double duration = 0.0;     ///< s, of its part of the step
+    bool is_squeezed = false;  ///< surfaces that close on it have stopped its clock: others find it where it is
     // Out:
     MoveOutcome outcome{};
 };
 
 /// Plans with the velocities that forces give the spheres within the step (symplectic Euler's), finds their contacts
 /// with each other and with walls, solves them, and moves each sphere along its plan. Keeps its memory from one island
-/// to the next. Among colliders at rest.
+/// to the next.
 class NetworkIsland {
 public:
     /// rules must outlive it.
@@ -59,7 +61,9 @@ private:
     void add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory, MoveScratch& scratch);
     void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
                   const NetworkMemory& memory);
-    void record_hits(std::size_t index, MoveScratch& scratch) const;
+    void carry(NetworkContact& contact, const WallContact& wall, const Material& material,
+               const ForceInput& state) const;
+    [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;

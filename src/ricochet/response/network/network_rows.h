@@ -50,6 +50,7 @@ struct RollingRow {
     double friction = 0.0;      ///< m
     double per_radius_a = 0.0;  ///< 1 / radius, 1/m
     double per_radius_b = 0.0;
+    Vec3 wall_turning;     ///< rad/s, of the wall
     double inertia = 0.0;  ///< kg m^2, moment that changes the rolling by 1 rad/s
     Vec3 moment;           ///< N m s
     Vec3 change;           ///< by the last sweep
@@ -80,7 +81,7 @@ struct SweepChange {
 /// Spin of a relative to b, across the normal.
 [[nodiscard]] inline Vec3 rolling_of(const NetworkRow& row, const RollingRow& rolling, const NetworkState& a,
                                      const NetworkState& b) {
-    const Vec3 between = rolling.per_radius_a * a.turning - rolling.per_radius_b * b.turning;
+    const Vec3 between = rolling.per_radius_a * a.turning - rolling.per_radius_b * b.turning - rolling.wall_turning;
     return between - dot(row.normal, between) * row.normal;
 }
 

@@ -80,6 +80,7 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
     RollingRow rolling;
     rolling.row = static_cast<std::uint32_t>(rows_.size() - 1);
     rolling.friction = contact.rolling_friction;
+    rolling.wall_turning = contact.wall_turning;
     const auto per_radius = [&](std::uint32_t body) {
         return body < bodies.size() && bodies[body].radius > 0.0 ? 1.0 / bodies[body].radius : 0.0;
     };

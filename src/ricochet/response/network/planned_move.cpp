@@ -1,5 +1,8 @@
 #include "ricochet/response/network/planned_move.h"
 
+#include <algorithm>
+
+#include "ricochet/response/network/wall_contacts.h"
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
@@ -8,42 +11,157 @@ namespace {
 /// Surfaces that a plan may run into in one step; then the particle stays where it has come to.
 constexpr int kMostDiversions = 8;
 
-/// What is left of a velocity that must not lead into the surfaces of a contact: each is looked at twice, so that a
-/// corner leaves the line along it, or nothing.
-Vec3 along(const Contact& contact, Vec3 velocity) {
+/// Corrections of where a line ends.
+constexpr int kCorrections = 3;
+
+/// Parts of a radius by which a line may come nearer to a surface that it goes along than at its ends.
+constexpr double kSagitta = 1e-4;
+
+/// One particle on its way.
+class PlannedMove {
+public:
+    PlannedMove(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan, MoveScratch& scratch)
+        : rules_(rules),
+          particle_(particle),
+          plan_(plan),
+          scratch_(scratch),
+          step_(rules, particle, plan.duration, scratch) {}
+
+    MoveOutcome run();
+
+private:
+    void take_pushes();
+    void follow_among_bodies();
+    void divert(const Contact& contact);
+    [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
+        return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
+    }
+    [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
+    [[nodiscard]] std::vector<SurfaceId> passed_by(const Path& line) const;
+    void hold(SurfaceId surface);
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    const PlannedMotion& plan_;
+    MoveScratch& scratch_;
+    mutable ParticleStep step_;
+    std::vector<SurfaceId> held_;  // ascending: surfaces that move and push, or are in its way
+};
+
+MoveOutcome PlannedMove::run() {
+    particle_.contact = {};
+    particle_.candidates = {};
+    particle_.ridden.reset();
+    take_pushes();
+    particle_.spin = plan_.spin;
+    particle_.state.velocity = plan_.velocity;
+    if (rules_.bodies != nullptr) {
+        follow_among_bodies();
+    } else {
+        for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
+            const Path path = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
+            const std::optional<Contact> contact = step_.follow(path);
+            if (!contact) break;
+            divert(*contact);
+        }
+        if (step_.remaining() > 0.0) static_cast<void>(step_.wait(step_.remaining()));
+    }
+    scratch_.driven = true;
+    step_.log().note_impact();
+    scratch_.driven = false;
+    return step_.outcome();
+}
+
+/// At the begin of the step, as the plan has it.
+void PlannedMove::take_pushes() {
+    for (const WallPush& push : plan_.pushes) {
+        step_.impact().push(push.surface, push.velocity_change, false, push.spin_change);
+        if (rules_.bodies != nullptr) hold(push.surface);
+    }
+}
+
+/// What is at rest needs no more than the line along it.
+void PlannedMove::hold(SurfaceId surface) {
+    if (rules_.bodies->body_of(surface) == kAtRest) return;
+    const auto at = std::lower_bound(held_.begin(), held_.end(), surface);
+    if (at == held_.end() || *at != surface) held_.insert(at, surface);
+}
+
+/// In straight lines, each to a place that surfaces which push leave free at the step's end.
+void PlannedMove::follow_among_bodies() {
+    if (step_.catch_up()) {
+        for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
+            const Vec3 velocity = particle_.state.velocity;
+            const double duration = step_.remaining();
+            const Vec3 end = kept_off(particle_.state.position + duration * velocity, particle_.step_end);
+            Path path = line_path(particle_.state.position, (end - particle_.state.position) / duration, duration);
+            path.end = end;
+            const std::vector<SurfaceId> along = passed_by(path);
+            const std::optional<Contact> contact = step_.follow(path, along);
+            particle_.state.velocity = velocity;
+            if (!contact) break;
+            divert(*contact);
+            for (const ContactSurface& surface : contact->all()) hold(surface.surface);
+        }
+        if (step_.remaining() > 0.0) step_.stop();
+    }
+    step_.store_position();
+}
+
+/// A position at a time put off the surfaces that it would be too near.
+Vec3 PlannedMove::kept_off(Vec3 end, double time) const {
+    const double radius = particle_.state.radius;
+    for (int pass = 0; pass < kCorrections; ++pass) {
+        bool is_off = true;
+        for (const SurfaceId surface : held_) {
+            const CollisionWorld::Nearest nearest = nearest_at(*rules_.bodies, surface, end, time);
+            const double missing = radius + 2.0 * contact_offset(end) - nearest.distance;
+            if (missing <= 0.0) continue;
+            end += missing * nearest.normal;
+            is_off = false;
+        }
+        if (is_off) break;
+    }
+    return flush_tiny(end);
+}
+
+/// Those held surfaces that a line goes along: it ends off them, and hardly comes nearer in between.
+std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) const {
+    const double radius = particle_.state.radius;
+    const double middle = 0.5 * line.duration;
+    std::vector<SurfaceId> passed;
+    for (const SurfaceId surface : held_) {
+        const double at_end = nearest_at(*rules_.bodies, surface, line.end, particle_.step_end).distance;
+        const double between =
+            nearest_at(*rules_.bodies, surface, line.position(middle), particle_.state.time + middle).distance;
+        if (at_end >= radius && between >= (1.0 - kSagitta) * radius) passed.push_back(surface);
+    }
+    return passed;
+}
+
+/// Takes away what leads into the surfaces of a contact: each is looked at twice, so that a corner leaves the line
+/// along it, or nothing.
+void PlannedMove::divert(const Contact& contact) {
+    const Vec3 before = particle_.state.velocity;
+    Vec3& velocity = particle_.state.velocity;
     for (int pass = 0; pass < 2; ++pass) {
         for (const ContactSurface& surface : contact.all()) {
-            const double into = dot(velocity, surface.normal);
+            const double into = dot(velocity - velocity_of(surface), surface.normal);
             if (into < 0.0) velocity -= into * surface.normal;
         }
     }
     for (const ContactSurface& surface : contact.all()) {
-        if (dot(velocity, surface.normal) < -kMinApproach * length(velocity)) return {};
+        const Vec3 relative = velocity - velocity_of(surface);
+        if (dot(relative, surface.normal) < -kMinApproach * length(relative)) velocity = velocity_of(surface);
     }
-    return velocity;
+    step_.impact().push(contact.first().surface, velocity - before, false, Vec3{});
 }
 
 }  // namespace
 
-MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle, const Vec3& velocity,
-                            const Vec3& spin, double duration, MoveScratch& scratch) {
-    ParticleStep step(rules, particle, duration, scratch);
-    particle.contact = {};
-    particle.candidates = {};
-    particle.ridden.reset();
-    particle.spin = spin;
-    particle.state.velocity = velocity;
-    for (int k = 0; k < kMostDiversions && step.remaining() > 0.0; ++k) {
-        const Path path = line_path(particle.state.position, particle.state.velocity, step.remaining());
-        const std::optional<Contact> contact = step.follow(path);
-        if (!contact) break;
-        particle.state.velocity = along(*contact, particle.state.velocity);
-    }
-    if (step.remaining() > 0.0) static_cast<void>(step.wait(step.remaining()));
-    scratch.driven = true;
-    step.log().note_impact();
-    scratch.driven = false;
-    return step.outcome();
+MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan,
+                            MoveScratch& scratch) {
+    return PlannedMove(rules, particle, plan, scratch).run();
 }
 
 }  // namespace ricochet

@@ -120,6 +120,9 @@ std::vector<std::string_view> nearest_names(std::string_view word, const std::ve
     std::size_t best = std::numeric_limits<std::size_t>::max();
     for (const std::string_view candidate : candidates) {
         const std::string plain_candidate = without_style(candidate);
+        // What differs more in length is as many edits away at least.
+        const auto [shorter, longer] = std::minmax({plain.size(), plain_candidate.size()});
+        if (longer - shorter > tolerated_edits(plain_candidate.size())) continue;
         const std::size_t distance = edit_distance(plain, plain_candidate);
         if (distance > tolerated_edits(plain_candidate.size()) || distance > best) continue;
         if (distance < best) nearest.clear();

@@ -80,7 +80,7 @@ MotionPart slide() {
             0.0,
             motion({1, 2, 3}, 2.0 * down),
             motion(Vec3{1, 2, 3} + (2.0 + 0.5 * a) * down, (2.0 + a) * down),
-            {Vec3{0, 0, -kG}, Vec3{0, 0, -kG}},
+            {Vec3{0, 0, -kG}, Vec3{0, 0, -kG}, Vec3{0, 0, -kG}},
             true};
 }
 
@@ -100,10 +100,23 @@ TEST(EnergyOfContact, GrowsByTheWorkOfTheForcesAndNoMore) {
 TEST(EnergyOfContact, MayGrowWithForcesThatGrow) {
     MotionPart part = slide();
     part.forces_are_steady = false;
-    part.forces[1] *= 1.01;
+    part.forces[1] *= 1.005;
+    part.forces[2] *= 1.01;
     part.end.velocity *= 1.0 + 1e-4;
     EXPECT_FALSE(gains(part));
     part.end.velocity *= 1.2;
+    EXPECT_TRUE(gains(part));
+}
+
+// A spring that swings within the part: what it does half way lies beyond what it does at both ends.
+TEST(EnergyOfContact, MayGrowWithForcesThatAreLargerHalfWay) {
+    MotionPart part = slide();
+    part.forces_are_steady = false;
+    part.end.velocity *= 1.2;
+    EXPECT_TRUE(gains(part));
+    part.forces[1] *= 1.5;
+    EXPECT_FALSE(gains(part));
+    part.end.velocity *= 10.0;
     EXPECT_TRUE(gains(part));
 }
 

@@ -34,7 +34,9 @@ struct MotionPart {
     double radius = 0.0;    ///< m, of the solid sphere that touches surfaces; 0 for points
     RecordedMotion begin;
     RecordedMotion end;
-    std::array<Vec3, 2> forces{};   ///< over the mass, m/s^2, at the begin and the end of contact
+    /// Over the mass, m/s^2, at the begin, in the middle and at the end of contact: springs swing within a step, and
+    /// what they do in between may lie beyond what they do at both ends.
+    std::array<Vec3, 3> forces{};
     bool forces_are_steady = true;  ///< they are the same all the time, wherever it is and however it moves
 };
 

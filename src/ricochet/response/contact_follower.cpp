@@ -19,6 +19,13 @@ constexpr int kMostCloserLooks = 12;
 /// little: three left 1e-11 of the radius where a sphere had gathered speed on a long arc.
 constexpr int kMostTurningPoints = 8;
 
+/// By which an interval may last longer or shorter than the one whose middle it was planned with: forces there differ
+/// by what is of second order in its duration, as the midpoint rule's own error.
+constexpr double kSameMiddle = 1.25;
+
+/// Times that an interval is shortened until it has the middle that it was planned with; each by a fifth at least.
+constexpr int kMostCuts = 16;
+
 /// Methods of second order and more; the others hold forces over a step.
 bool follows_varying_forces(IntegratorKind kind) {
     return kind == IntegratorKind::midpoint || kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::rk4 ||
@@ -84,12 +91,22 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         const PlannedInterval begin{interval, pull.forces};
         const bool varies = pull.acts && forces_vary();
         if (!turns && !varies) return follow_flat(FlatInterval(begin), pull);
-        if (!turns && !needs_arc()) {
-            const Vec3 forces = forces_in_middle(interval);
-            return follow_flat(FlatInterval(begin, {plan({forces, true, pull.pressure}, duration), forces}), pull);
-        }
+        if (!turns && !needs_arc()) return follow_flat(plan_by_middle(begin, pull.pressure, duration), pull);
     }
     return follow_arc(pull, duration);
+}
+
+/// An interval of forces that vary, by those in its middle. Where these end it long before those of its start would,
+/// the middle lies elsewhere: between springs that swing within the step the forces there may have the other sign.
+FlatInterval ContactFollower::plan_by_middle(PlannedInterval begin, double pressure, double duration) {
+    for (int cut = 0;; ++cut) {
+        const Vec3 forces = forces_in_middle(begin.interval);
+        const double most = std::min(duration, kSameMiddle * begin.interval.duration);
+        const PlannedInterval middle{plan({forces, true, pressure}, most), forces};
+        const bool is_middle = middle.interval.duration * kSameMiddle >= begin.interval.duration;
+        if (is_middle || cut == kMostCuts || middle.interval.at_rest) return {begin, middle};
+        begin.interval.duration = middle.interval.duration;
+    }
 }
 
 /// The forces, over the mass, in the middle of an interval that was planned with those at its start.
@@ -133,7 +150,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     }
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    step_.log().note_contact(pull.forces, pull.acts);
+    step_.log().note_contact(pull.forces, way.path, pull.acts);
     held_.meet(stop.contact);
     return stop;
 }
@@ -207,7 +224,7 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
     manifold_.load(arc.plan());
     manifold_.record_push(state_.velocity - velocity_before - by_forces, elapsed, impact_);
-    step_.log().note_contact(pull.forces, pull.acts);
+    step_.log().note_contact(pull.forces, way->path, pull.acts);
     held_.meet(contact);
     Stop stop{contact, way->leaves_surface, false};
     if (!stop.is_early()) held_.touch_again(way->turning_point);

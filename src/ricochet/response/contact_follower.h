@@ -59,6 +59,7 @@ private:
     [[nodiscard]] bool forces_vary() const;
     [[nodiscard]] bool needs_arc() const;
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
+    [[nodiscard]] FlatInterval plan_by_middle(PlannedInterval begin, double pressure, double duration);
     [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
     [[nodiscard]] FlatWay way_along(const FlatInterval& interval) const;
     void keep_offset(Path& path, const FlatInterval& interval) const;

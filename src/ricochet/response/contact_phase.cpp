@@ -95,7 +95,7 @@ std::optional<Contact> ContactPhase::stay(const Contact& contact) {
     const KeptContact kept = manifold_.kept();
     lift();
     auto met = step_.wait(step_.remaining(), std::span(kept.surfaces).first(kept.count));
-    step_.log().note_contact({}, false);
+    step_.log().note_stay();
     return met;
 }
 
@@ -286,7 +286,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         manifold_.record_push(-before - duration * forces, duration, impact_);
         step_.log().note_impact();
         static_cast<void>(step_.wait(duration));
-        step_.log().note_contact({}, false);  // what stays where it is gains nothing by forces
+        step_.log().note_stay();  // what stays where it is gains nothing by forces
         return std::nullopt;
     }
     step_.log().note_impact();
@@ -301,7 +301,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         mean = rules_.forces.acceleration(middle);
     }
     manifold_.record_push(-before - elapsed * mean, elapsed, impact_);
-    step_.log().note_contact({}, false);
+    step_.log().note_stay();
     return contact;
 }
 

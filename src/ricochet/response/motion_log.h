@@ -2,9 +2,12 @@
 /// Private to the exact response: the parts of a step, recorded one after the other.
 #pragma once
 
+#include <array>
 #include <utility>
 
 #include "ricochet/core/motion_part.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/geometry/sweep/path.h"
 #include "ricochet/response/response.h"
 #include "ricochet/response/riding.h"
 
@@ -30,14 +33,23 @@ public:
         if (motion() == last_) return;
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
-    /// Surfaces have held it. force: over the mass at the begin, m/s^2; acts: false where forces have been in the
-    /// velocity from the step's start on.
-    void note_contact(const Vec3& force, bool acts) {
+    /// Surfaces have held it while it has followed the beginning of a path. force: over the mass at the begin, m/s^2;
+    /// acts: false where forces have been in the velocity from the step's start on.
+    void note_contact(const Vec3& force, const Path& path, bool acts) {
+        if (!acts) return note_stay();
         if (!scratch_.record_motions) return;
-        const Vec3 now = acts ? rules_.forces.acceleration(particle_.state) : Vec3{};
-        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
-        add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, {acts ? force : Vec3{}, now},
-            !acts || rules_.forces.is_uniform_for(particle_.state));
+        const bool is_steady = rules_.forces.is_uniform_for(particle_.state);
+        ForceInput middle = particle_.state;
+        const double elapsed = middle.time - time_;
+        middle.time -= 0.5 * elapsed;
+        middle.position = path.position(0.5 * elapsed);
+        middle.velocity = path.velocity(0.5 * elapsed);
+        const Vec3 half_way = is_steady ? force : rules_.forces.acceleration(middle);
+        add_contact({force, half_way, rules_.forces.acceleration(particle_.state)}, is_steady);
+    }
+    /// Surfaces have held it, and no force has done work.
+    void note_stay() {
+        if (scratch_.record_motions) add_contact({}, true);
     }
 
 private:
@@ -45,7 +57,11 @@ private:
         return home_.in_world({particle_.state.position, particle_.state.velocity, particle_.spin},
                               particle_.state.time);
     }
-    void add(MotionPart::Kind kind, const std::array<Vec3, 2>& forces, bool steady) {
+    void add_contact(const std::array<Vec3, 3>& forces, bool steady) {
+        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
+        add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, forces, steady);
+    }
+    void add(MotionPart::Kind kind, const std::array<Vec3, 3>& forces, bool steady) {
         const RecordedMotion begin = std::exchange(last_, motion());
         const double time = std::exchange(time_, particle_.state.time);
         scratch_.motions.push_back({kind, time, time_ - time, particle_.state.radius, begin, last_, forces, steady});

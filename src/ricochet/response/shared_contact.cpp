@@ -419,7 +419,7 @@ std::optional<Contact> SharedContact::follow() {
         }
         particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
         step_.impact().note_driven();
-        step_.log().note_contact(forces, true);
+        step_.log().note_contact(forces, path, true);
         if (contact) {
             take_part_in(*contact);
             return contact;

@@ -38,12 +38,13 @@ bool gains_energy(const MotionPart& part) {
     if (part.kind == MotionPart::Kind::flight || part.kind == MotionPart::Kind::driven) return false;
     const Long before = kinetic(part.begin, part.radius);
     const Long after = kinetic(part.end, part.radius);
-    const auto& [first, last] = part.forces;
-    const double largest_force = std::max(length(first), length(last));
+    const auto& [first, middle, last] = part.forces;
+    const double largest_force = std::max({length(first), length(middle), length(last)});
     Long most = work(first, part);
     if (!part.forces_are_steady) {
-        most =
-            (most + work(last, part)) / 2 + static_cast<Long>(length(last - first)) * longest_way(part, largest_force);
+        const double change = length(middle - first) + length(last - middle);
+        most = (most + 4 * work(middle, part) + work(last, part)) / 6 +
+               static_cast<Long>(change) * longest_way(part, largest_force);
     }
     const double offset = std::max(contact_offset(part.begin.position), contact_offset(part.end.position));
     const double rounding =

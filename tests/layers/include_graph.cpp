@@ -73,7 +73,7 @@ constexpr std::array kDoors = {
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"(pybind11/|Python\\.h)", "src/python/.*"},
-    Door{"Eigen/", "src/ricochet/dynamics/implicit_(matrix|system)\\.(cpp|h)"},
+    Door{"Eigen/", "src/ricochet/dynamics/(block_cholesky|implicit_(matrix|system))\\.(cpp|h)"},
     Door{"boost/", "src/ricochet/verify/[^/]*\\.cpp|src/ricochet/geometry/predicates/exact_ratio\\.cpp|tests/.*"},
     Door{"(unistd|fcntl|signal|spawn|malloc)\\.h|sys/", ".*\\.cpp|tests/.*"},
     Door{"(poll|time|dlfcn|ucontext)\\.h|linux/", "tests/.*"},

@@ -4,87 +4,111 @@
 #include <array>
 #include <cstdint>
 
+#include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/implicit_euler.h"
 
 namespace ricochet {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
-using Triplets = std::vector<Eigen::Triplet<double>>;
+/// Bonds or members per unit of parallel work.
+constexpr std::size_t kBlock = 256;
 
-/// A 3 x 3 matrix by rows.
-using Block = std::array<std::array<double, 3>, 3>;
+void add(Block3& sum, const Block3& block) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) sum[i][j] += block[i][j];
+    }
+}
+
+Vec3 times(const Block3& block, const Vec3& v) {
+    const auto row = [&](std::size_t i) { return block[i][0] * v.x + block[i][1] * v.y + block[i][2] * v.z; };
+    return {row(0), row(1), row(2)};
+}
+
+Vec3 times_transposed(const Block3& block, const Vec3& v) {
+    const auto column = [&](std::size_t j) { return block[0][j] * v.x + block[1][j] * v.y + block[2][j] * v.z; };
+    return {column(0), column(1), column(2)};
+}
+
+Vec3 part_of(const Eigen::VectorXd& vector, std::size_t i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    return {vector[at], vector[at + 1], vector[at + 2]};
+}
 
 class MatrixOfAStep {
 public:
-    explicit MatrixOfAStep(const ImplicitState& state) : state_(state) {}
+    MatrixOfAStep(const ImplicitState& state, const MatrixKind& kind) : state_(state), kind_(kind) {}
 
-    [[nodiscard]] Matrix of(const MatrixKind& kind) const {
-        Triplets entries;
-        for (std::size_t i = 0; i < state_.system.size(); ++i) add_own(entries, i, kind);
-        for (const ParticleSystem::Bond& bond : state_.system.bonds()) add_bond(entries, bond, kind);
-        const auto size = static_cast<Eigen::Index>(3 * state_.system.size());
-        Matrix matrix(size, size);
-        matrix.setFromTriplets(entries.begin(), entries.end());
+    [[nodiscard]] BlockMatrix blocks() const {
+        const std::vector<ParticleSystem::Bond>& bonds = state_.system.bonds();
+        BlockMatrix matrix;
+        matrix.own.resize(state_.system.size());
+        matrix.between.resize(bonds.size());
+        parallel_for_blocks(matrix.own.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) matrix.own[i] = own_block(i);
+        });
+        parallel_for_blocks(bonds.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) matrix.between[k] = spring_block(bonds[k]);
+        });
+        for (std::size_t k = 0; k < bonds.size(); ++k) add_bond(matrix, k);
         return matrix;
     }
 
 private:
+    [[nodiscard]] bool is_held(std::size_t i) const { return !state_.held.empty() && state_.held[i].count > 0; }
+
     /// Mass, and what the forces on one particle add: its symmetric part where the matrix has to be symmetric. A pinned
-    /// member's rows are those of the unit matrix.
-    void add_own(Triplets& entries, std::size_t i, const MatrixKind& kind) const {
-        Block block{};
-        for (std::size_t k = 0; k < 3; ++k) block[k][k] = state_.system.is_pinned(i) ? 1.0 : state_.system.mass(i);
-        if (!state_.system.is_pinned(i) && !state_.system.has_uniform_forces()) {
+    /// member's rows are those of the unit matrix. In the directions in which the velocity is given the matrix is the
+    /// mass: the residual is zero there.
+    [[nodiscard]] Block3 own_block(std::size_t i) const {
+        Block3 block{};
+        const bool is_pinned = state_.system.is_pinned(i);
+        const double mass = state_.system.mass(i);
+        for (std::size_t k = 0; k < 3; ++k) block[k][k] = is_pinned ? 1.0 : mass;
+        if (is_pinned) return block;
+        if (!state_.system.has_uniform_forces()) {
             const Columns3 slope = state_.system.own_slope(i, state_.v1[i], state_.duration);
             for (std::size_t row = 0; row < 3; ++row) {
                 for (std::size_t column = 0; column < 3; ++column) {
                     const double here = slope[column][static_cast<int>(row)];
                     const double mirrored = slope[row][static_cast<int>(column)];
                     block[row][column] -=
-                        state_.duration * state_.system.mass(i) * (kind.is_symmetric ? 0.5 * (here + mirrored) : here);
+                        state_.duration * mass * (kind_.is_symmetric ? 0.5 * (here + mirrored) : here);
                 }
             }
         }
-        add_block(entries, i, i, block, 1.0);
-        add_held(entries, i);
-    }
-
-    /// In the directions in which the velocity is given the matrix is the mass: the residual is zero there.
-    void add_held(Triplets& entries, std::size_t i) const {
-        if (state_.held.empty() || state_.system.is_pinned(i)) return;
-        Block block{};
+        if (!is_held(i)) return block;
+        block = across(block, i, i);
         for (std::uint8_t k = 0; k < state_.held[i].count; ++k) {
             const Vec3& n = state_.held[i].directions[k];
             for (std::size_t row = 0; row < 3; ++row) {
                 for (std::size_t column = 0; column < 3; ++column) {
-                    block[row][column] +=
-                        state_.system.mass(i) * n[static_cast<int>(row)] * n[static_cast<int>(column)];
+                    block[row][column] += mass * n[static_cast<int>(row)] * n[static_cast<int>(column)];
                 }
             }
         }
-        add_entries(entries, i, i, block, 1.0);
+        return block;
     }
 
-    /// What a spring adds, also where that is zero: the matrix has the same places in every iteration, for which it was
-    /// analysed once.
-    void add_bond(Triplets& entries, const ParticleSystem::Bond& bond, const MatrixKind& kind) const {
-        const Block block = spring_block(bond, kind);
+    /// What a spring adds to its ends and between them; so far the matrix holds the spring's block there.
+    void add_bond(BlockMatrix& matrix, std::size_t k) const {
+        const ParticleSystem::Bond& bond = state_.system.bonds()[k];
+        Block3& between = matrix.between[k];
         const bool first_moves = !state_.system.is_pinned(bond.first);
         const bool second_moves = !state_.system.is_pinned(bond.second);
-        if (first_moves) add_block(entries, bond.first, bond.first, block, 1.0);
-        if (second_moves) add_block(entries, bond.second, bond.second, block, 1.0);
-        if (!first_moves || !second_moves) return;
-        add_block(entries, bond.first, bond.second, block, -1.0);
-        add_block(entries, bond.second, bond.first, block, -1.0);
+        if (first_moves) add(matrix.own[bond.first], across(between, bond.first, bond.first));
+        if (second_moves) add(matrix.own[bond.second], across(between, bond.second, bond.second));
+        const Block3 block = first_moves && second_moves ? across(between, bond.first, bond.second) : Block3{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) between[i][j] = -block[i][j];
+        }
     }
 
     /// h^2 times a spring's stiffness along and across, and h times its damper's; zero where its ends coincide.
-    [[nodiscard]] Block spring_block(const ParticleSystem::Bond& bond, const MatrixKind& kind) const {
+    [[nodiscard]] Block3 spring_block(const ParticleSystem::Bond& bond) const {
         const Spring& spring = state_.system.spring_of(bond);
         const Vec3 apart = state_.x1[bond.first] - state_.x1[bond.second];
         const double now = length(apart);
-        Block block{};
+        Block3 block{};
         if (!(now > 0.0)) return block;
         const Vec3 u = apart / now;
         const std::vector<Vec3>& x0 = state_.system.positions();
@@ -93,7 +117,7 @@ private:
         double across = h2 * spring.stiffness * (1.0 - spring.rest_length / now);
         const double then = length(x0[bond.first] - x0[bond.second]);
         across += state_.duration * spring.damping * (1.0 - then / now);
-        if (across < 0.0) across *= kind.pressure;
+        if (across < 0.0) across *= kind_.pressure;
         for (std::size_t row = 0; row < 3; ++row) {
             for (std::size_t column = 0; column < 3; ++column) {
                 const double outer = u[static_cast<int>(row)] * u[static_cast<int>(column)];
@@ -103,22 +127,17 @@ private:
         return block;
     }
 
-    void add_block(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) const {
-        if (state_.held.empty() || (state_.held[row].count == 0 && state_.held[column].count == 0)) {
-            add_entries(entries, row, column, block, sign);
-        } else {
-            add_entries(entries, row, column, across(block, state_.held[row], state_.held[column]), sign);
-        }
-    }
-
-    /// What is left of a block between what holds its row's member and what holds its column's.
-    static Block across(const Block& block, const HeldMotion& row, const HeldMotion& column) {
-        Block half{};
+    /// What is left of a block between what holds its rows' member and what holds its columns'.
+    [[nodiscard]] Block3 across(const Block3& block, std::size_t of_rows, std::size_t of_columns) const {
+        if (!is_held(of_rows) && !is_held(of_columns)) return block;
+        const HeldMotion& row = state_.held[of_rows];
+        const HeldMotion& column = state_.held[of_columns];
+        Block3 half{};
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 kept = column.across({block[i][0], block[i][1], block[i][2]});
             for (std::size_t j = 0; j < 3; ++j) half[i][j] = kept[static_cast<int>(j)];
         }
-        Block result{};
+        Block3 result{};
         for (std::size_t j = 0; j < 3; ++j) {
             const Vec3 kept = row.across({half[0][j], half[1][j], half[2][j]});
             for (std::size_t i = 0; i < 3; ++i) result[i][j] = kept[static_cast<int>(i)];
@@ -126,22 +145,50 @@ private:
         return result;
     }
 
-    static void add_entries(Triplets& entries, std::size_t row, std::size_t column, const Block& block, double sign) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                entries.emplace_back(static_cast<int>(3 * row + i), static_cast<int>(3 * column + j),
-                                     sign * block[i][j]);
-            }
-        }
-    }
-
     const ImplicitState& state_;
+    const MatrixKind& kind_;
 };
 
 }  // namespace
 
-Eigen::SparseMatrix<double> implicit_matrix(const ImplicitState& state, const MatrixKind& kind) {
-    return MatrixOfAStep(state).of(kind);
+BlockMatrix implicit_matrix(const ImplicitState& state, const MatrixKind& kind) {
+    return MatrixOfAStep(state, kind).blocks();
+}
+
+Eigen::VectorXd product(const BlockMatrix& matrix, const ParticleSystem& system, const Eigen::VectorXd& vector) {
+    Eigen::VectorXd result(vector.size());
+    const auto add_to = [&](std::size_t i, const Vec3& sum) {
+        for (int axis = 0; axis < 3; ++axis) result[static_cast<Eigen::Index>(3 * i) + axis] += sum[axis];
+    };
+    result.setZero();
+    for (std::size_t i = 0; i < matrix.own.size(); ++i) add_to(i, times(matrix.own[i], part_of(vector, i)));
+    for (std::size_t k = 0; k < matrix.between.size(); ++k) {
+        const ParticleSystem::Bond& bond = system.bonds()[k];
+        add_to(bond.first, times(matrix.between[k], part_of(vector, bond.second)));
+        add_to(bond.second, times_transposed(matrix.between[k], part_of(vector, bond.first)));
+    }
+    return result;
+}
+
+Eigen::SparseMatrix<double> sparse(const BlockMatrix& matrix, const ParticleSystem& system) {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add_entry = [&](std::size_t row, std::size_t i, std::size_t column, std::size_t j, double value) {
+        entries.emplace_back(static_cast<int>(3 * row + i), static_cast<int>(3 * column + j), value);
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            for (std::size_t k = 0; k < matrix.own.size(); ++k) add_entry(k, i, k, j, matrix.own[k][i][j]);
+            for (std::size_t k = 0; k < matrix.between.size(); ++k) {
+                const ParticleSystem::Bond& bond = system.bonds()[k];
+                add_entry(bond.first, i, bond.second, j, matrix.between[k][i][j]);
+                add_entry(bond.second, j, bond.first, i, matrix.between[k][i][j]);
+            }
+        }
+    }
+    const auto size = static_cast<Eigen::Index>(3 * matrix.own.size());
+    Eigen::SparseMatrix<double> result(size, size);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
 }
 
 }  // namespace ricochet

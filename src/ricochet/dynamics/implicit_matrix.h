@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/dynamics/block_cholesky.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/system_integrator.h"
 
@@ -26,8 +27,16 @@ struct ImplicitState {
     const std::vector<Vec3>& v1;       ///< m/s
 };
 
-/// The negative derivative of the equations' residuals by the velocities at the end, three rows and columns a member,
-/// kg. It has entries at the same places in every state and of every kind.
-[[nodiscard]] Eigen::SparseMatrix<double> implicit_matrix(const ImplicitState& state, const MatrixKind& kind);
+/// The negative derivative of the equations' residuals by the velocities at the end, a row of blocks for every member
+/// and a pair for every bond, kg. Where forces on single members have no symmetric derivative and it shall be exact,
+/// its blocks on the diagonal are not symmetric, and all of them counts.
+[[nodiscard]] BlockMatrix implicit_matrix(const ImplicitState& state, const MatrixKind& kind);
+
+/// The product of such a matrix with a vector of three numbers a member.
+[[nodiscard]] Eigen::VectorXd product(const BlockMatrix& matrix, const ParticleSystem& system,
+                                      const Eigen::VectorXd& vector);
+
+/// The same matrix by its numbers.
+[[nodiscard]] Eigen::SparseMatrix<double> sparse(const BlockMatrix& matrix, const ParticleSystem& system);
 
 }  // namespace ricochet

@@ -1,5 +1,4 @@
 // The backward Euler step of a whole system: Newton's method, downhill in energy.
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -7,15 +6,14 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/block_cholesky.h"
 #include "ricochet/dynamics/implicit_euler.h"
 #include "ricochet/dynamics/implicit_matrix.h"
 
 namespace ricochet {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
-using Cholesky = Eigen::SimplicialLLT<Matrix>;
 
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
@@ -68,9 +66,12 @@ public:
         for (std::size_t i = 0; i < held_.size(); ++i) {
             if (held_[i].count > 0) v1_[i] = held_[i].across(v1_[i]) + held_[i].velocity;
         }
+        std::vector<BlockCholesky::Pair> pairs;
         for (const ParticleSystem::Bond& bond : system_.bonds()) {
             lengths_.push_back(length(system_.positions()[bond.second] - system_.positions()[bond.first]));
+            pairs.push_back({bond.first, bond.second});
         }
+        solver_ = BlockCholesky(system_.size(), pairs);
     }
 
     SystemStep run() {
@@ -78,7 +79,6 @@ public:
         step.duration = step.next_duration = h_;
         step.start_accelerations.resize(system_.size());
         system_.accelerations(system_.time(), system_.positions(), system_.velocities(), step.start_accelerations);
-        solver_.analyzePattern(matrix({0.0, true}));
         evaluate();
         step.solved = solve();
         step.positions = x1_;
@@ -108,7 +108,7 @@ private:
             if (is_solved()) return true;
             if (options_.between) options_.between();
             if (!factorize_definite()) return false;
-            const Vector correction = is_symmetric_ ? Vector(solver_.solve(right_)) : exact_correction();
+            const Vector correction = is_symmetric_ ? solved(right_) : exact_correction();
             const bool is_near = !is_symmetric_ || largest(correction) <= kNear * largest_speed();
             if (!correction.allFinite() || !follow(correction, is_near)) return false;
             if (largest(correction) <= options_.tolerance * largest_speed()) return true;
@@ -119,8 +119,7 @@ private:
     /// With as much of the pressure in springs as leaves the matrix definite: more next time where it was.
     bool factorize_definite() {
         for (;;) {
-            solver_.factorize(matrix({pressure_, true}));
-            if (solver_.info() == Eigen::Success) break;
+            if (solver_.factorize(matrix({pressure_, true}))) break;
             if (pressure_ == 0.0) return false;
             pressure_ = pressure_ > kLeastPressure ? 0.5 * pressure_ : 0.0;
         }
@@ -130,24 +129,30 @@ private:
 
     /// Solves with the matrix itself, by the symmetric one that was factorized where that is near enough.
     Vector exact_correction() const {
-        const Matrix exact = matrix({1.0, false});
-        Vector correction = solver_.solve(right_);
-        Vector left = right_ - exact * correction;
+        const BlockMatrix exact = matrix({1.0, false});
+        Vector correction = solved(right_);
+        Vector left = right_ - product(exact, system_, correction);
         double before = INFINITY;
         for (int k = 0; k < kMostRefinements && left.norm() < kRefinesBy * before; ++k) {
             if (left.norm() <= kRefined * right_.norm()) return correction;
             before = left.norm();
-            correction += solver_.solve(left);
-            left = right_ - exact * correction;
+            correction += solved(left);
+            left = right_ - product(exact, system_, correction);
         }
         return solved_without_symmetry(exact);
     }
 
-    Vector solved_without_symmetry(const Matrix& exact) const {
-        Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> solver;
-        solver.compute(exact);
-        if (solver.info() != Eigen::Success) return solver_.solve(right_);
+    Vector solved_without_symmetry(const BlockMatrix& exact) const {
+        Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> solver;
+        solver.compute(sparse(exact, system_));
+        if (solver.info() != Eigen::Success) return solved(right_);
         return solver.solve(right_);
+    }
+
+    /// By the matrix that was factorized.
+    [[nodiscard]] Vector solved(Vector right) const {
+        solver_.solve({right.data(), static_cast<std::size_t>(right.size())});
+        return right;
     }
 
     void move(const std::vector<Vec3>& from, double part, const Vector& correction) {
@@ -245,7 +250,7 @@ private:
         return largest(right_) <= kPositionRounding * h_ * stiffest;
     }
 
-    [[nodiscard]] Matrix matrix(const MatrixKind& kind) const {
+    [[nodiscard]] BlockMatrix matrix(const MatrixKind& kind) const {
         return implicit_matrix({system_, h_, held_, x1_, v1_}, kind);
     }
 
@@ -268,7 +273,7 @@ private:
     std::vector<Vec3> x1_;
     std::vector<Vec3> own_;     // N, of forces on single members
     std::vector<Vec3> forces_;  // N, all
-    Cholesky solver_;
+    BlockCholesky solver_;
     Vector right_;
     double energy_ = 0.0;    // J
     double pressure_ = 1.0;  // the part of it that the next matrix is to hold

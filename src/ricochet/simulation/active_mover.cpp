@@ -10,6 +10,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
+#include "ricochet/simulation/sleeping_piles.h"
 
 namespace ricochet {
 
@@ -276,11 +277,31 @@ void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, con
 std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) {
     SurfaceTotals& totals = parts_.recorder.totals();
     const double elapsed = until - parts_.store.particles().accounted_until[i];
-    if (totals.empty() || !parts_.store.is_asleep(i) || !(elapsed > 0.0)) return 0;
+    if (totals.empty() || !(elapsed > 0.0)) return 0;
     std::vector<SurfaceHit> hits;
-    parts_.response.add_weight(load(i, until), elapsed, hits);
+    const std::uint64_t id = parts_.store.particles().id[i];
+    if (piles_ != nullptr && piles_->has(id)) {
+        piles_->add_weight(id, elapsed, hits);
+    } else if (parts_.store.is_asleep(i)) {
+        parts_.response.add_weight(load(i, until), elapsed, hits);
+    }
     for (SurfaceHit& hit : hits) hit.impulse *= sign;
     return totals.add(hits);
+}
+
+void ActiveMover::wake(std::size_t i, double time) {
+    parts_.recorder.statistics().lost_impulses += add_weight(i, time, 1.0);
+    parts_.store.wake(i);
+    parts_.schedule.forget(i);
+}
+
+void ActiveMover::check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const {
+    if (parts_.check == nullptr) return;
+    const Particles& particles = parts_.store.particles();
+    const Vec3& position = particles.position[i];
+    const Segment staying{position, position, step.end, step.begin, step.end};
+    parts_.check->check(i, particles, parts_.store.force_input(i, step.end), {step.end, step.end}, {&staying, 1},
+                        record.violations);
 }
 
 void ActiveMover::prepare(MoveScratch& scratch) const {

@@ -20,6 +20,8 @@
 
 namespace ricochet {
 
+class SleepingPiles;
+
 // The particles that need a query in a step, and the blocks in which threads move them.
 
 /// Particles per unit of parallel work.
@@ -111,6 +113,12 @@ public:
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight since it was last moved, until a
     /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
+    /// Whose sleepers' weights are theirs; it must outlive the mover.
+    void set_piles(const SleepingPiles* piles) { piles_ = piles; }
+    /// A sphere that has slept on others takes part from a time on, s. Before the pile has forgotten it.
+    void wake(std::size_t i, double time);
+    /// Shows the verifier, where there is one, that it has stayed where it is in a step.
+    void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
 
 private:
     void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
@@ -128,6 +136,7 @@ private:
     void prefetch_vertices(std::size_t i) const;
 
     MoverParts parts_;
+    const SleepingPiles* piles_ = nullptr;
 };
 
 }  // namespace ricochet

@@ -47,12 +47,17 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
         member.moving.step_end = member.end;
         const bool is_squeezed = response_.rules().bodies != nullptr && !member.is_fixed &&
                                  member.moving.stored_time < member.moving.state.time;
-        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, {}});
+        const bool sleeps = asleep_[member.particle - first_] != 0;
+        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps, {}});
     }
     MoveScratch scratch;
     const NetworkReport report = network.plan(members, near_pairs(island), step.end - step.begin, memory_, scratch);
     island.is_unsolved = !report.is_converged;
     island.pressed = network.entries();
+    island.still.clear();
+    island.falling_asleep.clear();
+    island.weights.clear();
+    if (report.is_converged) let_lie(island, members, network, step);
     parallel_for_blocks(members.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch own;
         mover_.prepare(own);
@@ -63,6 +68,9 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
             const Vec3 from = member.moving.state.position;
             network.move(i, members[i], own);
             member.outcome = members[i].outcome;
+            const bool falls_asleep =
+                std::binary_search(island.falling_asleep.begin(), island.falling_asleep.end(), member.moving.id);
+            if (falls_asleep) member.outcome.end = MoveEnd::held;
             member.is_free = false;
             member.lists.take(own);
             member.swept = ball_box(from, member.radius());

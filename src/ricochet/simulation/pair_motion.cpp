@@ -30,10 +30,14 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     impacts_.clear();
     islands_.clear();
     boxes_.resize(range.size());
-    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) boxes_[k] = declared_box(first_ + k, step);
-    });
-    find_islands(range, step);
+    find_sleepers(range, step);
+    do {
+        parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) boxes_[k] = declared_box(first_ + k, step);
+        });
+        find_pairs(step);
+    } while (wake_those_hit(step));
+    find_islands(range);
     run(islands_, step);
     while (join_those_met(step)) rebuild(step);
     for (Island& island : islands_) {
@@ -48,7 +52,7 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
 Box3 PairMotion::declared_box(std::size_t i, const TimeSpan& step) const {
     const Particles& particles = store_.particles();
     const double radius = particles.radius[i];
-    if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0) return {};
+    if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0 || asleep_[i - first_] != 0) return {};
     const Vec3& x = particles.position[i];
     if (particles.pinned[i] != 0 || store_.is_asleep(i)) return ball_box(x, radius);
     const double begin = std::max(step.begin, particles.birth_time[i]);
@@ -83,7 +87,7 @@ bool PairMotion::is_bounded() const {
 }
 
 bool PairMotion::moves(std::uint32_t k) const {
-    return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k);
+    return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k) && !is_asleep(k);
 }
 
 FlownPiece PairMotion::way_of_free(std::uint32_t k, const TimeSpan& step) const {
@@ -101,17 +105,21 @@ bool PairMotion::may_meet(const NeighbourPair& pair, const TimeSpan& step) const
     return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
 }
 
-void PairMotion::find_islands(const ParticleRange& range, const TimeSpan& step) {
+void PairMotion::find_pairs(const TimeSpan& step) {
+    pairs_ = grid_.find_pairs(boxes_);
+    add_pairs_with_sleepers();
+    met_.assign(pairs_.size(), 0);
+    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) met_[n] = may_meet(pairs_[n], step) ? 1 : 0;
+    });
+}
+
+void PairMotion::find_islands(const ParticleRange& range) {
     parents_.resize(range.size());
     std::iota(parents_.begin(), parents_.end(), 0U);
-    pairs_ = grid_.find_pairs(boxes_);
-    std::vector<std::uint8_t> may(pairs_.size());
-    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) may[n] = may_meet(pairs_[n], step) ? 1 : 0;
-    });
     std::vector<std::uint32_t> involved;
     for (std::size_t n = 0; n < pairs_.size(); ++n) {
-        if (may[n] == 0) continue;
+        if (met_[n] == 0) continue;
         static_cast<void>(join(pairs_[n].first, pairs_[n].second));
         involved.push_back(pairs_[n].first);
         involved.push_back(pairs_[n].second);
@@ -183,7 +191,11 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
 void PairMotion::take_members(Island& island, const TimeSpan& step) {
     island.members.clear();
     for (const std::uint32_t k : island.particles) {
-        if (auto member = mover_.member_of(first_ + k, step)) island.members.push_back(std::move(*member));
+        if (auto member = mover_.member_of(first_ + k, step))
+            island.members.push_back(std::move(*member));
+        else
+            continue;
+        if (is_asleep(k)) island.members.back().is_fixed = true;
     }
     // By place, not by id, so that ids do not decide.
     std::sort(island.members.begin(), island.members.end(), [](const IslandMember& a, const IslandMember& b) {
@@ -198,6 +210,7 @@ std::vector<const IslandMember*> PairMotion::members_off_plan() const {
     std::vector<const IslandMember*> members;
     for (const Island& island : islands_) {
         for (const IslandMember& member : island.members) {
+            if (member.is_fixed) continue;
             const bool is_inside = contains(boxes_[member.particle - first_], member.swept);
             if (member.impacts > 0 || !is_inside) members.push_back(&member);
         }
@@ -222,7 +235,7 @@ bool PairMotion::join_those_met(const TimeSpan& step) {
     std::vector<std::vector<std::uint32_t>> met(off_plan.size());
     parallel_for_blocks(off_plan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
-            grid_.find_near(swept[n], met[n]);
+            find_all_near(swept[n], met[n]);
             std::erase_if(met[n], [&](std::uint32_t k) { return !comes_to(*off_plan[n], k, step); });
         }
     });
@@ -278,6 +291,8 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     }
     if (first_ == 0) memory_.replace({});
     memory_.add(pressed);
+    check_sleepers(step, blocks);
+    put_to_sleep(step);
     counts_.impacts = impacts_.size();
     measure_overlaps();
     islands_.clear();

@@ -7,17 +7,20 @@
 /// would have met are joined and worked off again from the step's begin, until there are none.
 ///
 /// Islands in which spheres press on each other, or in which impact would follow impact, are dense: their members are
-/// planned together, by the problem of all their contacts (NetworkIsland).
+/// planned together, by the problem of all their contacts (NetworkIsland). What has lain still there for a while sleeps
+/// (SleepingPiles): nothing moves it, until it is hit, or pressed otherwise than when it fell asleep.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/response/network/network_island.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/sleeping_piles.h"
 
 namespace ricochet {
 
@@ -32,7 +35,9 @@ public:
     /// All must outlive it.
     PairMotion(ParticleStore& store, QuerySchedule& schedule, ActiveMover& mover, const Response& response,
                const PairContactSettings& settings)
-        : store_(store), schedule_(schedule), mover_(mover), response_(response), settings_(settings) {}
+        : store_(store), schedule_(schedule), mover_(mover), response_(response), settings_(settings) {
+        mover_.set_piles(&piles_);
+    }
 
     /// Works off the islands among the particles of the range; none of their members is moved by the ordinary way any
     /// more in this step.
@@ -48,10 +53,14 @@ public:
     /// Islands that were dense and not solved to the tolerance, in all steps.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
 
+    /// Wakes all spheres that sleep on others, at a time, s: what holds them may change.
+    void wake_all(double time);
+
     /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         memory_.archive(a);
+        piles_.archive(a);
         a(unsolved_);
     }
 
@@ -62,12 +71,16 @@ private:
         std::vector<PairImpactRecord> impacts;
         std::vector<NetworkMemory::Entry> pressed;  ///< where it is dense: what its contacts do
         bool is_unsolved = false;
+        std::vector<SleepingPiles::Still> still;  ///< where it is dense: those that have not moved
+        std::vector<std::uint64_t> falling_asleep;
+        std::vector<SleepingPiles::Weight> weights;  ///< of those
     };
 
     [[nodiscard]] Box3 declared_box(std::size_t i, const TimeSpan& step) const;
     [[nodiscard]] double reach(std::size_t i, double duration) const;
     [[nodiscard]] bool is_bounded() const;
-    void find_islands(const ParticleRange& range, const TimeSpan& step);
+    void find_pairs(const TimeSpan& step);
+    void find_islands(const ParticleRange& range);
     [[nodiscard]] bool moves(std::uint32_t k) const;
     [[nodiscard]] bool is_free(std::uint32_t k) const { return schedule_.is_in_free_flight(first_ + k); }
     [[nodiscard]] FlownPiece way_of_free(std::uint32_t k, const TimeSpan& step) const;
@@ -85,6 +98,27 @@ private:
     void run_dense(Island& island, const TimeSpan& step);
     [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> near_pairs(const Island& island) const;
     void rebuild(const TimeSpan& step);
+
+    // Sleep, see pile_sleep.cpp.
+    [[nodiscard]] bool is_asleep(std::uint32_t k) const { return asleep_[k] != 0; }
+    void find_sleepers(const ParticleRange& range, const TimeSpan& step);
+    void wake_pile(std::uint64_t particle, double time);
+    [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t particle) const;
+    void add_pairs_with_sleepers();
+    void find_all_near(const Box3& box, std::vector<std::uint32_t>& found) const;
+    [[nodiscard]] bool hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const;
+    [[nodiscard]] bool wake_those_hit(const TimeSpan& step);
+    void let_lie(Island& island, std::vector<NetworkMember>& members, NetworkIsland& network, const TimeSpan& step);
+    [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
+    [[nodiscard]] bool is_at_rest(const NetworkMember& member, const NetworkBody& planned) const;
+    [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;
+    void put_to_sleep(const TimeSpan& step);
+    void check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const;
+    void wake_those_loaded(const TimeSpan& step);
+    [[nodiscard]] std::uint64_t sleeper_of(const NetworkKey& key) const;
+    [[nodiscard]] bool is_at_edge_of_sleep(const NetworkKey& key) const;
+    [[nodiscard]] bool is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const;
+    [[nodiscard]] bool has_parted(const NetworkKey& key) const;
     void measure_overlaps();
 
     ParticleStore& store_;
@@ -97,12 +131,19 @@ private:
     NeighbourGrid off_plan_grid_;
     std::vector<Box3> boxes_;             // declared
     std::vector<NeighbourPair> pairs_;    // whose declared boxes overlap
+    std::vector<std::uint8_t> met_;       // of the pairs: they may meet
     std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
     std::vector<Island> islands_;
     std::vector<PairImpactRecord> impacts_;
     PairCounts counts_;
     NetworkMemory memory_;  // of the contacts of dense islands
     std::uint64_t unsolved_ = 0;
+    SleepingPiles piles_;
+    std::vector<std::uint8_t> asleep_;  // of each particle of the range: it sleeps in a pile
+    NeighbourGrid sleeper_grid_;
+    std::vector<Box3> sleeper_boxes_;
+    std::vector<std::uint8_t> in_grid_;  // asleep_ as the grid has it
+    std::uint64_t grid_version_ = 0;     // SleepingPiles::version() that it has
 };
 
 }  // namespace ricochet

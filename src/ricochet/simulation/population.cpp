@@ -269,6 +269,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
         impl().store.wake(i);
     }
     statistics.asleep = 0;
+    if (impl().pairs) impl().pairs->wake_all(time());
     impl().forces = std::move(field);
     impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady() &&
                                !(impl().bodies && options().verify));

@@ -75,6 +75,8 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         const double distance = length(apart);
         if (!(distance > 0.0)) continue;  // no direction parts them
         contact.gap = distance - a.radius - b.radius;
+        // Between two sleepers there may be no room to part from both.
+        if (a.is_asleep || b.is_asleep) contact.gap = std::max(0.0, contact.gap);
         const double near = reach(bodies_[contact.a].velocity, a.radius, duration_) +
                             reach(bodies_[contact.b].velocity, b.radius, duration_);
         if (contact.gap > near) continue;
@@ -186,7 +188,6 @@ void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& 
     member.outcome = move_as_planned(rules_, *member.moving, plan, scratch);
 }
 
-/// What walls do to a sphere in the step.
 std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
     std::vector<WallPush> pushes;
     const NetworkBody& body = bodies_[index];

@@ -30,6 +30,7 @@ struct NetworkMember {
     bool is_fixed = false;     ///< nothing moves it
     double duration = 0.0;     ///< s, of its part of the step
     bool is_squeezed = false;  ///< surfaces that close on it have stopped its clock: others find it where it is
+    bool is_asleep = false;    ///< fixed as long as it sleeps: what overlaps it is not parted from it
     // Out:
     MoveOutcome outcome{};
 };
@@ -49,6 +50,12 @@ public:
     /// Moves one of the members, by its number, as it has been planned. Several threads may move different ones.
     void move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const;
 
+    /// What is planned for a member, by its number.
+    [[nodiscard]] const NetworkBody& planned(std::size_t index) const { return bodies_[index]; }
+    /// Plans instead that it stays where it is, without spin.
+    void let_rest(std::size_t index) { bodies_[index].velocity = bodies_[index].spin = Vec3{}; }
+    /// What walls do to it in the step.
+    [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
     [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
     /// m, how far beside its surface a sphere's contacts are looked for: whatever pushes it, it hardly comes farther.
@@ -63,7 +70,6 @@ private:
                   const NetworkMemory& memory);
     void carry(NetworkContact& contact, const WallContact& wall, const Material& material,
                const ForceInput& state) const;
-    [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;

@@ -42,6 +42,7 @@ public:
     }
     /// Adds more of the same step.
     void add(const std::vector<Entry>& more) {
+        if (more.empty()) return;
         std::vector<Entry> all = std::move(entries_);
         all.insert(all.end(), more.begin(), more.end());
         replace(std::move(all));
@@ -64,6 +65,8 @@ public:
         });
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
+    /// Ascending.
+    [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
     /// Saves or restores it; a: an archive of core/binary_archive.h.
     template <class Archive>

@@ -1,0 +1,256 @@
+// Spheres that lie still on each other fall asleep; what wakes them.
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/box_tools.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/pair_motion.h"
+
+namespace ricochet {
+namespace {
+
+/// Steps that a sphere, and all that press on it, lie still before it sleeps: what begins to move on a slope has gone
+/// farther by then.
+constexpr std::uint32_t kStepsToSleep = 50;
+
+/// Parts of the radius that what lies still may move in a step.
+constexpr double kStillWay = 1e-5;
+
+/// What falls from so many parts of a radius, or is faster, wakes those that it hits.
+constexpr double kWakingFall = 0.01;
+
+/// A contact of a sleeper wakes it where it presses by so much more than when the pile fell asleep, and than so many of
+/// the sphere's weights. Where it does not press any more it may only have changed which of several contacts carries
+/// what: then it wakes the sleeper once the other sphere has gone.
+constexpr double kMorePressed = 4.0;
+constexpr double kWeights = 2.0;
+
+}  // namespace
+
+std::optional<std::size_t> PairMotion::index_of(std::uint64_t particle) const {
+    const std::vector<std::uint64_t>& ids = store_.particles().id;
+    const auto at = std::lower_bound(ids.begin(), ids.end(), particle);
+    if (at == ids.end() || *at != particle) return std::nullopt;
+    return static_cast<std::size_t>(at - ids.begin());
+}
+
+/// Marks who sleeps; wakes piles that have lost a sphere, and those that colliders come near.
+void PairMotion::find_sleepers(const ParticleRange& range, const TimeSpan& step) {
+    asleep_.assign(range.size(), 0);
+    if (range.begin != 0 || piles_.empty()) return;
+    std::vector<std::uint64_t> disturbed;
+    const MovingColliders* const bodies = response_.rules().bodies;
+    for (const std::uint64_t particle : piles_.particles()) {
+        const std::optional<std::size_t> i = index_of(particle);
+        if (!i || store_.is_fixed(*i)) {
+            disturbed.push_back(particle);
+            continue;
+        }
+        asleep_[*i] = 1;
+        schedule_.leave_alone(*i);
+        const Particles& particles = store_.particles();
+        const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
+        if (bodies != nullptr && !bodies->all_stay_out(near)) disturbed.push_back(particle);
+    }
+    for (const std::uint64_t particle : disturbed) wake_pile(particle, step.begin);
+}
+
+void PairMotion::wake_pile(std::uint64_t particle, double time) {
+    const std::vector<std::uint64_t> pile = piles_.pile_of(particle);
+    if (pile.empty()) return;
+    for (const std::uint64_t member : pile) {
+        const std::optional<std::size_t> i = index_of(member);
+        if (!i) continue;
+        mover_.wake(*i, time);
+        if (*i >= first_ && *i - first_ < asleep_.size()) asleep_[*i - first_] = 0;
+    }
+    piles_.wake(pile, memory_);
+}
+
+void PairMotion::wake_all(double time) {
+    while (!piles_.empty()) wake_pile(piles_.particles().front(), time);
+}
+
+/// They are in a grid of their own, which stays as long as they do.
+void PairMotion::add_pairs_with_sleepers() {
+    if (piles_.empty() || first_ != 0) return;
+    if (grid_version_ != piles_.version() || in_grid_ != asleep_) {
+        sleeper_boxes_.assign(asleep_.size(), {});
+        for (std::size_t k = 0; k < asleep_.size(); ++k) {
+            if (asleep_[k] != 0)
+                sleeper_boxes_[k] = ball_box(store_.particles().position[k], store_.particles().radius[k]);
+        }
+        static_cast<void>(sleeper_grid_.find_pairs(sleeper_boxes_));
+        in_grid_ = asleep_;
+        grid_version_ = piles_.version();
+    }
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
+        if (boxes_[k].empty() || !moves(k)) continue;
+        near.clear();
+        sleeper_grid_.find_near(boxes_[k], near);
+        for (const std::uint32_t other : near) pairs_.push_back({std::min(k, other), std::max(k, other)});
+    }
+}
+
+void PairMotion::find_all_near(const Box3& box, std::vector<std::uint32_t>& found) const {
+    grid_.find_near(box, found);
+    if (!piles_.empty() && first_ == 0) sleeper_grid_.find_near(box, found);
+}
+
+/// Slow ones do not: their contacts say whether they press.
+bool PairMotion::hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const {
+    if (is_asleep(pair.first) == is_asleep(pair.second)) return false;
+    const std::size_t i = first_ + (is_asleep(pair.first) ? pair.second : pair.first);
+    const Particles& particles = store_.particles();
+    const double pull = length(response_.rules().forces.acceleration(store_.force_input(i, step.begin)));
+    const double slow =
+        std::max(response_.rules().settings.resting_speed, std::sqrt(2.0 * pull * kWakingFall * particles.radius[i]));
+    return length(particles.velocity[i]) > slow;
+}
+
+bool PairMotion::wake_those_hit(const TimeSpan& step) {
+    if (piles_.empty() || first_ != 0) return false;
+    std::vector<std::uint64_t> hit;
+    for (std::size_t n = 0; n < pairs_.size(); ++n) {
+        if (met_[n] == 0 || !hits_sleeper(pairs_[n], step)) continue;
+        const std::uint32_t k = is_asleep(pairs_[n].first) ? pairs_[n].first : pairs_[n].second;
+        hit.push_back(store_.particles().id[first_ + k]);
+    }
+    for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);
+    return !hit.empty();
+}
+
+/// What belts and the like drive is pushed by them for good.
+bool PairMotion::is_carried_by_material(const NetworkIsland& network, std::size_t index) const {
+    const ResponseRules& rules = response_.rules();
+    const std::vector<WallPush> pushes = network.pushes_of(index);
+    return std::any_of(pushes.begin(), pushes.end(), [&](const WallPush& push) {
+        return rules.materials[rules.world.material_of(push.surface)].drives();
+    });
+}
+
+/// It lives through the whole step, and nothing that moves is near.
+bool PairMotion::may_lie(const NetworkMember& member, const TimeSpan& step) const {
+    if (member.is_fixed || member.is_squeezed || member.duration != step.end - step.begin) return false;
+    const MovingColliders* const bodies = response_.rules().bodies;
+    const Box3 near = ball_box(member.moving->state.position, (1.0 + kWakingFall) * member.radius);
+    return bodies == nullptr || bodies->all_stay_out(near);
+}
+
+bool PairMotion::is_at_rest(const NetworkMember& member, const NetworkBody& planned) const {
+    const double way = member.duration * (length(planned.velocity) + member.radius * length(planned.spin));
+    return way < kStillWay * member.radius;
+}
+
+/// Those that have lain still for long, and that nobody else pushes or rests on, lie from now on.
+void PairMotion::let_lie(Island& island, std::vector<NetworkMember>& members, NetworkIsland& network,
+                         const TimeSpan& step) {
+    if (first_ != 0 || !response_.rules().forces.is_steady()) return;
+    std::vector<std::pair<std::uint64_t, std::size_t>> by_id;
+    std::vector<std::uint8_t> sleepy(members.size(), 0);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const std::uint64_t id = members[i].moving->id;
+        by_id.emplace_back(id, i);
+        sleepy[i] = members[i].is_fixed ? 1 : 0;
+        if (!may_lie(members[i], step) || !is_at_rest(members[i], network.planned(i))) continue;
+        const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, kStepsToSleep);
+        island.still.push_back({id, steps});
+        sleepy[i] = steps == kStepsToSleep && !is_carried_by_material(network, i) ? 1 : 0;
+    }
+    std::sort(by_id.begin(), by_id.end());
+    const auto number_of = [&](std::uint64_t id) {
+        return std::lower_bound(by_id.begin(), by_id.end(), std::pair<std::uint64_t, std::size_t>(id, 0))->second;
+    };
+    std::vector<std::uint8_t> falls = sleepy;
+    for (const NetworkMemory::Entry& entry : island.pressed) {
+        if (entry.key.is_wall()) continue;
+        const std::size_t a = number_of(entry.key.particle);
+        const std::size_t b = number_of(entry.key.other);
+        if (sleepy[a] == 0) falls[b] = 0;
+        if (sleepy[b] == 0) falls[a] = 0;
+    }
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (falls[i] == 0 || members[i].is_fixed) continue;
+        network.let_rest(i);
+        const std::uint64_t id = members[i].moving->id;
+        island.falling_asleep.push_back(id);
+        for (const WallPush& push : network.pushes_of(i)) {
+            const double mass = members[i].moving->state.mass;
+            island.weights.push_back({id, push.surface, -(mass / members[i].duration) * push.velocity_change});
+        }
+    }
+    std::sort(island.falling_asleep.begin(), island.falling_asleep.end());
+}
+
+void PairMotion::put_to_sleep(const TimeSpan& step) {
+    if (first_ != 0) return;
+    std::vector<SleepingPiles::Still> still;
+    for (const Island& island : islands_) still.insert(still.end(), island.still.begin(), island.still.end());
+    piles_.set_still(std::move(still));
+    wake_those_loaded(step);
+    for (const Island& island : islands_) {
+        const std::vector<std::uint64_t>& falling = island.falling_asleep;
+        if (falling.empty()) continue;
+        std::vector<NetworkMemory::Entry> contacts;
+        const auto falls = [&](std::uint64_t id) { return std::binary_search(falling.begin(), falling.end(), id); };
+        for (const NetworkMemory::Entry& entry : island.pressed) {
+            if (falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other)))
+                contacts.push_back(entry);
+        }
+        piles_.add(falling, contacts, island.weights);
+    }
+}
+
+/// Among colliders that move the verifier follows everybody's time.
+void PairMotion::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
+    if (piles_.empty() || first_ != 0 || response_.rules().bodies == nullptr) return;
+    BlockRecord& record = blocks.emplace_back();
+    for (std::size_t k = 0; k < asleep_.size(); ++k) {
+        if (asleep_[k] != 0) mover_.check_sleeper(k, step, record);
+    }
+}
+
+std::uint64_t PairMotion::sleeper_of(const NetworkKey& key) const {
+    return piles_.has(key.particle) ? key.particle : key.other;
+}
+
+bool PairMotion::is_at_edge_of_sleep(const NetworkKey& key) const {
+    return !key.is_wall() && piles_.has(key.particle) != piles_.has(key.other);
+}
+
+bool PairMotion::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
+    if (!is_at_edge_of_sleep(entry.key)) return false;
+    const std::optional<std::size_t> i = index_of(sleeper_of(entry.key));
+    if (!i) return false;
+    const NetworkImpulse* const before = piles_.contacts().find(entry.key);
+    const ForceInput state = store_.force_input(*i, step.begin);
+    const double weight = state.mass * length(response_.rules().forces.acceleration(state)) * (step.end - step.begin);
+    return entry.impulse.normal > kMorePressed * ((before != nullptr ? before->normal : 0.0) + kWeights * weight);
+}
+
+/// The one of two that does not sleep has gone, or there is a gap between them.
+bool PairMotion::has_parted(const NetworkKey& key) const {
+    if (!is_at_edge_of_sleep(key)) return false;
+    const std::optional<std::size_t> i = index_of(key.particle);
+    const std::optional<std::size_t> k = index_of(key.other);
+    if (!i || !k) return true;
+    const Particles& p = store_.particles();
+    const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];
+    return gap > kWakingFall * std::min(p.radius[*i], p.radius[*k]);
+}
+
+/// By contacts between those that sleep and those that do not.
+void PairMotion::wake_those_loaded(const TimeSpan& step) {
+    if (piles_.empty()) return;
+    std::vector<std::uint64_t> loaded;
+    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+        if (is_pressed_more(entry, step)) loaded.push_back(sleeper_of(entry.key));
+    }
+    for (const NetworkMemory::Entry& entry : piles_.contacts().entries()) {
+        if (has_parted(entry.key)) loaded.push_back(sleeper_of(entry.key));
+    }
+    for (const std::uint64_t particle : loaded) wake_pile(particle, step.end);
+}
+
+}  // namespace ricochet

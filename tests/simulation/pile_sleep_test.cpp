@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::setup_of;
+
+constexpr double kRadius = 0.005;
+
+/// Three spheres in a row on a floor and two on top of them, which lean on nothing: a wall on each side holds them.
+SimulationSetup pile_setup(double duration) {
+    SimulationSetup setup = setup_of(1e-3, duration, {"", 0.3, 0.5}, {0, 0, -9.81});
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
+                       {"left", PlaneShape{{-3 * kRadius, 0, 0}, {1, 0, 0}}},
+                       {"right", PlaneShape{{3 * kRadius, 0, 0}, {-1, 0, 0}}},
+                       {"front", PlaneShape{{0, -kRadius, 0}, {0, 1, 0}}},
+                       {"back", PlaneShape{{0, kRadius, 0}, {0, -1, 0}}}};
+    setup.options.particle_contacts =
+        PairContactSettings{.restitution = 0.3, .friction = 0.5, .method = PairMethod::contacts};
+    setup.options.verify = true;
+    const double up = kRadius * (1.0 + 1.7320508075688772);
+    for (const double x : {-2.0, 0.0, 2.0}) setup.particles.push_back(particle_of({x * kRadius, 0, kRadius}));
+    for (const double x : {-1.0, 1.0}) setup.particles.push_back(particle_of({x * kRadius, 0, up}));
+    for (Particle& particle : setup.particles) {
+        particle.radius = kRadius;
+        particle.mass = 1e-3;
+    }
+    return setup;
+}
+
+void advance(Simulation& simulation, int steps) {
+    for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
+}
+
+TEST(PileSleep, APileThatLiesStillSleepsAndStaysToTheLastBit) {
+    Simulation simulation(pile_setup(1.0));
+    advance(simulation, 100);
+    EXPECT_EQ(simulation.statistics().asleep, 5U);
+    const std::vector<Vec3> before = simulation.particles().position;
+    advance(simulation, 500);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(simulation.particles().position[i], before[i]) << i;
+        EXPECT_EQ(simulation.particles().velocity[i], Vec3{}) << i;
+    }
+    EXPECT_EQ(simulation.statistics().asleep, 5U);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+}
+
+TEST(PileSleep, WhatHitsItWakesIt) {
+    SimulationSetup setup = pile_setup(1.0);
+    Particle falling = particle_of({0.1 * kRadius, 0, 0.2}, {}, 0.9 * kRadius);
+    falling.mass = 1e-3;
+    setup.particles.push_back(falling);
+    Simulation simulation(std::move(setup));
+    advance(simulation, 180);
+    EXPECT_EQ(simulation.statistics().asleep, 5U);
+    const Vec3 before = simulation.particles().position[3];
+    advance(simulation, 30);  // it falls for 0.192 s
+    EXPECT_LT(simulation.statistics().asleep, 5U);
+    EXPECT_GT(length(simulation.particles().position[3] - before), 0.0);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+}
+
+TEST(PileSleep, TheLossOfASupportWakesIt) {
+    Simulation simulation(pile_setup(1.0));
+    advance(simulation, 100);
+    ASSERT_EQ(simulation.statistics().asleep, 5U);
+    ASSERT_TRUE(simulation.remove_particle(simulation.particles().id[0]));
+    advance(simulation, 60);
+    EXPECT_LT(simulation.particles().position[2].z, 0.9 * kRadius * 2.7320508075688772);
+}
+
+TEST(PileSleep, OtherForcesWakeIt) {
+    Simulation simulation(pile_setup(1.0));
+    advance(simulation, 100);
+    ASSERT_EQ(simulation.statistics().asleep, 5U);
+    std::vector<std::unique_ptr<Force>> up;
+    up.push_back(make_gravity({0, 0, 1.0}));
+    simulation.set_forces(std::move(up));
+    advance(simulation, 100);
+    for (const Vec3& velocity : simulation.particles().velocity) EXPECT_NEAR(velocity.z, 0.1, 1e-3);
+}
+
+TEST(PileSleep, SameBitsWhetherOthersMaySleepAndAfterResume) {
+    std::vector<std::uint64_t> hashes;
+    const auto made = [](bool sleeping) {
+        SimulationSetup setup = pile_setup(0.4);
+        Particle falling = particle_of({0.1 * kRadius, 0, 0.2}, {}, 0.9 * kRadius);
+        falling.mass = 1e-3;
+        setup.particles.push_back(falling);
+        setup.acceleration.sleeping = sleeping;
+        return setup;
+    };
+    for (const bool sleeping : {true, false}) {
+        Simulation simulation(made(sleeping));
+        advance(simulation, 400);
+        hashes.push_back(simulation.state_hash());
+    }
+    for (const int threads : {1, 7}) {
+        const ThreadLimit limit(threads);
+        Simulation first(made(true));
+        advance(first, 150);
+        EXPECT_EQ(first.statistics().asleep, 5U);
+        std::vector<std::byte> bytes;
+        first.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+        Simulation resumed(made(true));
+        std::size_t at = 0;
+        resumed.restore([&](std::span<std::byte> part) {
+            std::memcpy(part.data(), bytes.data() + at, part.size());
+            at += part.size();
+        });
+        advance(resumed, 250);
+        hashes.push_back(resumed.state_hash());
+    }
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
+}
+
+}  // namespace
+}  // namespace ricochet

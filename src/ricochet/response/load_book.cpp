@@ -34,10 +34,10 @@ void LoadBook::end_impact() {
 }
 
 void LoadBook::close() {
-    if (!scratch_.record_loads) return;
+    if (!scratch_.record_loads || scratch_.loads.size() == first_) return;
     const Vec3 spin = motion_in_world().spin;
     const Vec3 couple = couple_of(spin - std::exchange(spin_, spin));
-    if (couple == Vec3{} || scratch_.loads.size() == first_) return;
+    if (couple == Vec3{}) return;
     ColliderLoad& last = scratch_.loads.back();
     last.couple += couple;
     last.moment += couple;

@@ -19,11 +19,11 @@ constexpr int kCarryDepth = 16;
 
 }  // namespace
 
-MovingView ParticleStep::view_of(const Path& path) const {
+PathClock ParticleStep::clock_of(const Path& path) const {
     const double now = particle_.state.time;
     const double end =
         path.duration >= remaining_ ? particle_.step_end : std::min(now + path.duration, particle_.step_end);
-    return {*rules_->bodies, home_.body(), {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration}};
+    return {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration};
 }
 
 std::optional<Contact> ParticleStep::first_contact_among_bodies(const ContactQuery& query) {
@@ -48,7 +48,7 @@ ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query
     while (!sweep.is_done() && !travel.contact) {
         const double begin = sweep.begin();
         ContactQueryResult found = sweep.sweep(view.stored(stored_.position, begin));
-        const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
+        const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found, sweep.clock());
         if (found.contact) travel.contact = found.contact;
         const bool has_gone = elapsed >= sweep.path().duration;
         travel.elapsed = has_gone ? sweep.begin() : begin + elapsed;

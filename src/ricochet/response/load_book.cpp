@@ -20,6 +20,10 @@ void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change
     if (is_entered(hit.surface)) enter(hit, couple);
 }
 
+void LoadBook::add_couple(SurfaceId surface, const Vec3& couple) {
+    if (scratch_.record_loads && is_entered(surface)) enter({surface, Vec3{}, false}, couple);
+}
+
 void LoadBook::begin_impact(double approach) {
     if (!scratch_.record_loads) return;
     approach_ = approach;

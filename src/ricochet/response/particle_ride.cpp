@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/foreign_surfaces.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
@@ -71,9 +72,13 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     // The world's coordinates are what is stored: contact is felt as they are rounded, and a carried place stays off.
     const MotionBounds& bounds = home_.bodies().bounds(body);
     const double way = remaining_ * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
-    const double reach =
-        max_abs(stored_.position) + way + max_abs(home_.bodies().pose(body, stored_.time).world_from_frame.translation);
-    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, contact_offset({reach, 0.0, 0.0}));
+    const MovingPose pose = home_.bodies().pose(body, stored_.time);
+    const double reach = max_abs(stored_.position) + way + max_abs(pose.world_from_frame.translation);
+    double least_offset = contact_offset({reach, 0.0, 0.0});
+    if (home_.bodies().yields(body)) {
+        least_offset = std::max(least_offset, offset_for_carrying(pose, state().position));
+    }
+    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, least_offset);
     start_ = state().position;
     first_segment_ = scratch_.segments.size();
     turn_contact(contact, before, home_);

@@ -24,24 +24,36 @@ bool PairMotion::begins_dense(const Island& island) const {
                                [](const IslandMember& member) { return member.moving.id; });
 }
 
-std::vector<std::array<std::uint32_t, 2>> PairMotion::near_pairs(const Island& island) const {
-    std::vector<Box3> boxes;
+void PairMotion::find_near_pairs(const Island& island, DenseWork& work) const {
+    work.boxes.clear();
     for (const IslandMember& member : island.members) {
         const ForceInput& state = member.moving.state;
         const double duration = member.end - state.time;
         const Vec3 velocity = state.velocity + duration * response_.rules().forces.acceleration(state);
-        boxes.push_back(
+        work.boxes.push_back(
             ball_box(state.position, member.radius() + NetworkIsland::reach(velocity, member.radius(), duration)));
     }
-    NeighbourGrid grid;
-    std::vector<std::array<std::uint32_t, 2>> pairs;
-    for (const NeighbourPair& pair : grid.find_pairs(boxes)) pairs.push_back({pair.first, pair.second});
-    return pairs;
+    work.pairs.clear();
+    for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) work.pairs.push_back({pair.first, pair.second});
+}
+
+/// Islands in parallel have one each.
+std::unique_ptr<PairMotion::DenseWork> PairMotion::take_work() {
+    const std::lock_guard lock(spare_mutex_);
+    if (spare_.empty()) {
+        return std::make_unique<DenseWork>(
+            response_.rules(), PairLaw{settings_.restitution, settings_.friction, settings_.rolling_friction});
+    }
+    std::unique_ptr<DenseWork> work = std::move(spare_.back());
+    spare_.pop_back();
+    return work;
 }
 
 void PairMotion::run_dense(Island& island, const TimeSpan& step) {
-    NetworkIsland network(response_.rules(), {settings_.restitution, settings_.friction, settings_.rolling_friction});
-    std::vector<NetworkMember> members;
+    std::unique_ptr<DenseWork> work = take_work();
+    NetworkIsland& network = work->network;
+    std::vector<NetworkMember>& members = work->members;
+    members.clear();
     for (IslandMember& member : island.members) {
         const double duration = std::max(0.0, member.end - member.moving.state.time);
         member.moving.step_end = member.end;
@@ -51,7 +63,8 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
         members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps, {}});
     }
     MoveScratch scratch;
-    const NetworkReport report = network.plan(members, near_pairs(island), step.end - step.begin, memory_, scratch);
+    find_near_pairs(island, *work);
+    const NetworkReport report = network.plan(members, work->pairs, step.end - step.begin, memory_, scratch);
     island.is_unsolved = !report.is_converged;
     island.pressed = network.entries();
     island.still.clear();
@@ -81,6 +94,8 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
             }
         }
     });
+    const std::lock_guard lock(spare_mutex_);
+    spare_.push_back(std::move(work));
 }
 
 }  // namespace ricochet

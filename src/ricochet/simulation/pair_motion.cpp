@@ -187,22 +187,23 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
     });
 }
 
-/// As they are at the step's begin.
+/// As they are at the step's begin. By place, not by id, so that ids do not decide.
 void PairMotion::take_members(Island& island, const TimeSpan& step) {
-    island.members.clear();
-    for (const std::uint32_t k : island.particles) {
-        if (auto member = mover_.member_of(first_ + k, step))
-            island.members.push_back(std::move(*member));
-        else
-            continue;
-        if (is_asleep(k)) island.members.back().is_fixed = true;
-    }
-    // By place, not by id, so that ids do not decide.
-    std::sort(island.members.begin(), island.members.end(), [](const IslandMember& a, const IslandMember& b) {
-        const Vec3& p = a.moving.state.position;
-        const Vec3& q = b.moving.state.position;
+    const std::vector<Vec3>& position = store_.particles().position;
+    std::vector<std::uint32_t> order = island.particles;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Vec3& p = position[first_ + a];
+        const Vec3& q = position[first_ + b];
         return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
     });
+    island.members.clear();
+    island.members.reserve(order.size());
+    for (const std::uint32_t k : order) {
+        auto member = mover_.member_of(first_ + k, step);
+        if (!member) continue;
+        member->is_fixed = member->is_fixed || is_asleep(k);
+        island.members.push_back(std::move(*member));
+    }
 }
 
 /// Members that have gone another way than they would have gone by themselves, or farther than declared.

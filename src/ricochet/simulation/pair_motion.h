@@ -13,6 +13,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -96,7 +98,17 @@ private:
     [[nodiscard]] bool may_be_dense() const;
     [[nodiscard]] bool begins_dense(const Island& island) const;
     void run_dense(Island& island, const TimeSpan& step);
-    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> near_pairs(const Island& island) const;
+    /// What planning an island takes, kept for the next one.
+    struct DenseWork {
+        DenseWork(const ResponseRules& rules, const PairLaw& law) : network(rules, law) {}
+        NetworkIsland network;
+        NeighbourGrid grid;
+        std::vector<Box3> boxes;
+        std::vector<std::array<std::uint32_t, 2>> pairs;
+        std::vector<NetworkMember> members;
+    };
+    [[nodiscard]] std::unique_ptr<DenseWork> take_work();
+    void find_near_pairs(const Island& island, DenseWork& work) const;
     void rebuild(const TimeSpan& step);
 
     // Sleep, see pile_sleep.cpp.
@@ -138,6 +150,8 @@ private:
     PairCounts counts_;
     NetworkMemory memory_;  // of the contacts of dense islands
     std::uint64_t unsolved_ = 0;
+    std::mutex spare_mutex_;
+    std::vector<std::unique_ptr<DenseWork>> spare_;
     SleepingPiles piles_;
     std::vector<std::uint8_t> asleep_;  // of each particle of the range: it sleeps in a pile
     NeighbourGrid sleeper_grid_;

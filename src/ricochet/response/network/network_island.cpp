@@ -25,6 +25,9 @@ constexpr double kReach = 0.05;
 
 bool stays(const NetworkMember& member) { return member.is_fixed || member.is_squeezed; }
 
+/// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
+constexpr double kClear = 0.9;
+
 Vec3 velocity_of(const NetworkMember& member) { return stays(member) ? Vec3{} : member.moving->state.velocity; }
 
 }  // namespace
@@ -37,6 +40,7 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
     keys_.clear();
     surfaces_.clear();
     first_wall_.clear();
+    clear_.clear();
     add_bodies(members);
     add_pairs(members, pairs, memory);
     add_walls(members, memory, scratch);
@@ -96,12 +100,14 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, const Netw
     surfaces_.resize(contacts_.size());
     for (std::uint32_t i = 0; i < members.size(); ++i) {
         first_wall_.push_back(contacts_.size());
+        clear_.push_back(0.0);
         if (stays(members[i])) continue;
         const ForceInput& state = members[i].moving->state;
         walls_.clear();
         const double near = reach(bodies_[i].velocity, state.radius, duration_);
         if (rules_.bodies == nullptr) {
-            find_wall_contacts(geometry, state.position, state.radius, near, walls_);
+            const bool is_near = find_wall_contacts(geometry, state.position, state.radius, near, walls_);
+            if (!is_near) clear_.back() = kClear * near;
         } else {
             const TimeOfStep step{state.time, state.time + members[i].duration};
             find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
@@ -185,6 +191,7 @@ void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& 
     const double core = member.moving->state.radius;  // which turns faster than the whole sphere
     PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
                        member.duration, pushes_of(index)};
+    plan.is_clear = member.duration * length(plan.velocity) < clear_[index];
     member.outcome = move_as_planned(rules_, *member.moving, plan, scratch);
 }
 

@@ -83,6 +83,7 @@ private:
     std::vector<WallContact> walls_;
     std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
     std::vector<SurfaceId> surfaces_;      // of the contacts; of walls
+    std::vector<double> clear_;            // m, of each member: so far there is certainly no wall
     NetworkSolver solver_;
 };
 

@@ -31,6 +31,8 @@ public:
 
 private:
     void take_pushes();
+    void follow_at_rest();
+    void fly(const Path& path);
     void follow_among_bodies();
     void divert(const Contact& contact);
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
@@ -58,18 +60,38 @@ MoveOutcome PlannedMove::run() {
     if (rules_.bodies != nullptr) {
         follow_among_bodies();
     } else {
-        for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
-            const Path path = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
-            const std::optional<Contact> contact = step_.follow(path);
-            if (!contact) break;
-            divert(*contact);
-        }
-        if (step_.remaining() > 0.0) static_cast<void>(step_.wait(step_.remaining()));
+        follow_at_rest();
     }
     scratch_.driven = true;
     step_.log().note_impact();
     scratch_.driven = false;
     return step_.outcome();
+}
+
+void PlannedMove::follow_at_rest() {
+    const Path whole = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
+    if (plan_.is_clear && can_be_followed(whole)) {
+        fly(whole);
+        return;
+    }
+    for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
+        const Path path = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
+        const std::optional<Contact> contact = step_.follow(path);
+        if (!contact) break;
+        divert(*contact);
+    }
+    if (step_.remaining() > 0.0) static_cast<void>(step_.wait(step_.remaining()));
+}
+
+/// Along a line without anything in its way.
+void PlannedMove::fly(const Path& path) {
+    ForceInput& state = particle_.state;
+    if (scratch_.record_segments) scratch_.segments.push_back({state.position, path.end, state.time});
+    if (scratch_.record_flown) {
+        scratch_.flown.push_back({path, state.time, path.duration, plan_.velocity, plan_.velocity, false});
+    }
+    state.position = path.end;
+    state.time += path.duration;
 }
 
 /// At the begin of the step, as the plan has it.

@@ -22,6 +22,7 @@ struct PlannedMotion {
     Vec3 spin;              ///< rad/s, from now on
     double duration = 0.0;  ///< s
     std::vector<WallPush> pushes{};
+    bool is_clear = false;  ///< certainly no surface is that near
 };
 
 /// Along the straight line that its new velocity says: in certified segments up to what is on the way, and on along it.

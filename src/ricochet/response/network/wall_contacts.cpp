@@ -63,7 +63,8 @@ void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& 
     const std::size_t first = found.size();
     const MovingPose begin = bodies.pose(body, step.begin);
     const Vec3 image = begin.image(center);
-    find_wall_contacts(SurfaceGeometry(world, planes, contact_offset(center)), image, radius, reach, found);
+    static_cast<void>(
+        find_wall_contacts(SurfaceGeometry(world, planes, contact_offset(center)), image, radius, reach, found));
     if (found.size() == first || !(step.end > step.begin)) return;
     const MovingPose middle = bodies.pose(body, 0.5 * (step.begin + step.end));
     const MovingPose end = bodies.pose(body, step.end);
@@ -108,7 +109,7 @@ void find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& st
 
 }  // namespace
 
-void find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
+bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
                         std::vector<WallContact>& found) {
     std::vector<Near> near;
     const double within = radius + reach;
@@ -120,6 +121,7 @@ void find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
     keep_smallest(
         near, center, radius, same,
         [&](SurfaceId surface, const Vec3& p) { return geometry.nearest(surface, p).distance; }, found);
+    return !near.empty();
 }
 
 void find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
@@ -132,7 +134,7 @@ void find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, c
         if (!bodies.is_deforming(body)) find_on_body(bodies, body, step, center, radius, reach, found);
     }
     TrianglePlaneCache planes;
-    find_wall_contacts(SurfaceGeometry(bodies.world(kAtRest), planes), center, radius, reach, found);
+    static_cast<void>(find_wall_contacts(SurfaceGeometry(bodies.world(kAtRest), planes), center, radius, reach, found));
     if (!bodies.deforming().empty()) find_on_deforming(bodies.deforming(), step, center, radius, reach, found);
 }
 

@@ -25,8 +25,8 @@ struct WallContact {
 
 /// Appends the contacts of a sphere with gaps up to `reach` (m), in ascending order of the surfaces. The edge of a
 /// triangle is none where a neighbour that it belongs to is nearer: a floor of many triangles has one contact with a
-/// sphere, not one for each edge beside it.
-void find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
+/// sphere, not one for each edge beside it. Returns whether any surface is so near.
+bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
                         std::vector<WallContact>& found);
 
 /// The same among colliders that move, of those at rest and of all that come near in a step [begin, end], s, as they

@@ -32,7 +32,6 @@ class Scene(Thing):
         bounds: Any = ...,
         output: Any = ...,
         camera: Any = ...,
-        picture: Any = ...,
     ) -> None: ...
 
 class Attractor(Thing):
@@ -88,16 +87,10 @@ class Camera(Thing):
     def __init__(
         self,
         *,
-        position: Optional[Vector] = ...,
-        target: Optional[Vector] = ...,
-        path: Any = ...,
-        target_path: Any = ...,
-        frame: Optional[str] = ...,
+        position: Vector,
+        target: Vector,
         up: Optional[Vector] = ...,
         field_of_view: Optional[float] = ...,
-        focal_length: Optional[float] = ...,
-        aperture: Optional[float] = ...,
-        focus_distance: Optional[float] = ...,
     ) -> None: ...
 
 class PlaneCollider(Thing):
@@ -106,7 +99,6 @@ class PlaneCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
-        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         point: Optional[Vector] = ...,
@@ -119,7 +111,6 @@ class MeshCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
-        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         file: Any,
@@ -136,7 +127,6 @@ class SphereCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
-        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         radius: float,
@@ -151,7 +141,6 @@ class CylinderCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
-        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         radius: float,
@@ -167,23 +156,12 @@ class BoxCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
-        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         size: Vector,
         position: Optional[Vector] = ...,
         rotation: Any = ...,
         scale: Any = ...,
-    ) -> None: ...
-
-class ColliderLooks(Thing):
-    def __init__(
-        self,
-        *,
-        color: Optional[Vector] = ...,
-        roughness: Optional[float] = ...,
-        glass: Optional[bool] = ...,
-        hidden: Optional[bool] = ...,
     ) -> None: ...
 
 class Curve(Thing):
@@ -875,18 +853,6 @@ class Penalty(Thing):
         contact_steps: Optional[float] = ...,
         substeps: Optional[int] = ...,
         friction_speed: Optional[float] = ...,
-    ) -> None: ...
-
-class Picture(Thing):
-    def __init__(
-        self,
-        *,
-        light: Optional[str] = ...,
-        background: Optional[Vector] = ...,
-        transparent: Optional[bool] = ...,
-        particles: Optional[str] = ...,
-        shutter: Optional[float] = ...,
-        ground: Optional[float] = ...,
     ) -> None: ...
 
 class PinBox(Thing):

@@ -248,6 +248,10 @@ void print_report(const RunSummary& summary, const std::string& output) {
                    summary.energy_violations.value_or(0),
                    all_judged ? "" : "; overlaps from birth count once the sphere has been free");
     }
+    if (summary.leaks && summary.spheres_meet) {
+        cli::print("  spheres on each other: {} violations, largest overlap {:.2g} of a radius\n",
+                   statistics.pair_violations, statistics.overlap_verified);
+    }
     cli::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
 }
 
@@ -255,7 +259,8 @@ void print_report(const RunSummary& summary, const std::string& output) {
 bool print_violations(const Simulation& simulation) {
     const SimulationStatistics& statistics = simulation.statistics();
     const auto lines = cli::violation_lines(
-        simulation.violations(), statistics.violations + statistics.energy_violations, simulation.colliders());
+        simulation.violations(), statistics.violations + statistics.energy_violations + statistics.pair_violations,
+        simulation.colliders());
     for (const std::string& line : lines) cli::print(stderr, "{}\n", line);
     return !lines.empty();
 }

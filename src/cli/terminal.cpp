@@ -106,15 +106,23 @@ const char* text_of(ViolationKind kind) {
             return "overlaps";
         case ViolationKind::energy:
             return "has gained energy from surfaces";
+        case ViolationKind::pair_overlap:
+            return "stands in another sphere";
+        case ViolationKind::pair_impact:
+            return "its impact on another sphere does not add up";
     }
     return "";
 }
 
+const char* head_of(ViolationKind kind) {
+    if (kind == ViolationKind::pair_overlap || kind == ViolationKind::pair_impact) return "spheres";
+    return kind == ViolationKind::energy ? "energy" : "leak";
+}
+
 std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {
     std::string line = fmt::format("{}: particle {} at ({:.17g}, {:.17g}, {:.17g}) m, time {:.17g} s: {}",
-                                   violation.kind == ViolationKind::energy ? "energy" : "leak", violation.particle,
-                                   violation.position.x, violation.position.y, violation.position.z, violation.time,
-                                   text_of(violation.kind));
+                                   head_of(violation.kind), violation.particle, violation.position.x,
+                                   violation.position.y, violation.position.z, violation.time, text_of(violation.kind));
     if (violation.collider) line += fmt::format(" collider \"{}\"", colliders[*violation.collider].name);
     if (violation.triangle) line += fmt::format(", triangle {}", *violation.triangle);
     return line;

@@ -225,6 +225,8 @@ py::dict statistics_of(const Handle& handle) {
     d["started_inside"] = s.started_inside, d["started_in_overlap"] = s.started_in_overlap;
     d["stayed"] = s.stayed, d["squeezed"] = s.squeezed, d["frozen"] = s.frozen;
     d["violations"] = s.violations, d["energy_violations"] = s.energy_violations;
+    d["overlap_verified"] = s.overlap_verified, d["pair_violations"] = s.pair_violations;
+    d["born_in_overlap"] = s.born_in_overlap;
     d["penetrations"] = s.penetrations, d["springs_broken"] = s.springs_broken;
     return d;
 }

@@ -42,6 +42,7 @@
 #include "ricochet/queries/mesh_queries.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
+#include "ricochet/response/pair_record.h"
 #include "ricochet/response/settings.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/options.h"

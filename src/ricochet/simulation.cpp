@@ -88,6 +88,7 @@ std::size_t Simulation::degenerate_triangles() const {
 }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
+const std::vector<PairImpactRecord>& Simulation::pair_records() const { return impl().recorder.pair_records(); }
 bool Simulation::spawns_children() const { return impl().offspring != nullptr; }
 const std::vector<BirthRecord>& Simulation::birth_records() const { return impl().birth_records; }
 SurfacePosition Simulation::contact_point(const ContactRecord& record) const {

@@ -28,6 +28,7 @@
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
+#include "ricochet/response/pair_record.h"
 #include "ricochet/simulation/options.h"
 #include "ricochet/verify/verifier.h"
 
@@ -76,6 +77,9 @@ struct SimulationStatistics {
     std::uint64_t contacts = 0;                      ///< impacts
     std::uint64_t pair_impacts = 0;                  ///< impacts of two spheres on each other
     double overlap_largest = 0.0;                    ///< of two spheres at a step's end, over the smaller radius
+    double overlap_verified = 0.0;                   ///< the same as options.verify finds it
+    std::uint64_t pair_violations = 0;               ///< what options.verify found wrong between spheres
+    std::uint64_t born_in_overlap = 0;               ///< spheres that stood in others at their birth
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;             ///< particles at rest after the last step
     double unsimulated_time = 0.0;         ///< s, summed over particles, cut off by the bounce budget
@@ -249,6 +253,9 @@ public:
     /// options.record_contacts and on_contact(). An impact on one surface is one record; one in a corner has a record
     /// for every reflection, all of the same time. Surfaces are named by surface_name().
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
+    /// Every impact of two spheres on each other in the last step, where spheres meet, in the order of (time, first);
+    /// those of one island that is worked off impact by impact. Spheres that are planned together have none.
+    [[nodiscard]] const std::vector<PairImpactRecord>& pair_records() const;
     /// True where particles spawn others.
     [[nodiscard]] bool spawns_children() const;
     /// Where particles spawn others: those that were born in the last step, also where they are gone by its end, in the
@@ -266,7 +273,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& warnings() const;
 
     /// What options.verify found wrong, in the order of steps and particles; the first kMostViolations of them. All are
-    /// counted in statistics().violations and energy_violations.
+    /// counted in statistics().violations, energy_violations and pair_violations.
     [[nodiscard]] const std::vector<Violation>& violations() const;
     static constexpr std::size_t kMostViolations = 1000;
     /// All that options.verify found wrong in the last step, in the same order.

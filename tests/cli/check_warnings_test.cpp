@@ -152,6 +152,21 @@ TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
     EXPECT_EQ(warnings(floor + particles(0.5)), "");
 }
 
+TEST_F(CheckWarnings, TellsOfSpheresThatStandInOthersWhereTheyMeet) {
+    const std::string contacts = R"(, "particle_contacts": {"restitution": 0.5})";
+    const auto particles = [](const std::string& x) {
+        return R"(, "particles": [{"position": [9, 0, 5], "radius": 0.5}, {"position": [0, 0, 5], "radius": 0.5}, )"
+               R"({"position": [)" +
+               x + R"(, 0, 5], "radius": 0.25}])";
+    };
+    EXPECT_EQ(warnings(contacts + particles("0.5")),
+              "2 spheres are born in overlap with others: the first is particle 1, 0.25 m deep in particle 2; the "
+              "deepest is 0.25 m; they get no deeper, but nothing parts them at once: place them the sum of their "
+              "radii apart\n");
+    EXPECT_EQ(warnings(contacts + particles("0.75")), "");
+    EXPECT_EQ(warnings(particles("0.5")), "");
+}
+
 TEST_F(CheckWarnings, TellsOfAnEmitterWithoutFreePositions) {
     const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
     const auto point = [](const std::string& z) {

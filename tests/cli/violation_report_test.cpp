@@ -12,16 +12,20 @@ TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
                                                {ViolationKind::wrong_side, 8, {0, 0, 0}, 1, 0, {}},
                                                {ViolationKind::overlap, 9, {0, 0, 0}, 1, 1, 3},
                                                {ViolationKind::gap, 10, {0, 0, 0}, 1, {}, {}},
-                                               {ViolationKind::energy, 11, {0, 0, 0}, 1, {}, {}}};
+                                               {ViolationKind::energy, 11, {0, 0, 0}, 1, {}, {}},
+                                               {ViolationKind::pair_overlap, 12, {0, 0, 0}, 1, {}, {}},
+                                               {ViolationKind::pair_impact, 13, {0, 0, 0}, 1, {}, {}}};
     EXPECT_EQ(
-        violation_lines(violations, 5, kColliders),
+        violation_lines(violations, 7, kColliders),
         (std::vector<std::string>{
             "leak: particle 7 at (1, 0.10000000000000001, -2) m, time 0.25 s: a segment crosses collider \"tube\", "
             "triangle 99",
             "leak: particle 8 at (0, 0, 0) m, time 1 s: is on another side than at birth of collider \"floor\"",
             "leak: particle 9 at (0, 0, 0) m, time 1 s: overlaps collider \"tube\", triangle 3",
             "leak: particle 10 at (0, 0, 0) m, time 1 s: its segments do not join",
-            "energy: particle 11 at (0, 0, 0) m, time 1 s: has gained energy from surfaces"}));
+            "energy: particle 11 at (0, 0, 0) m, time 1 s: has gained energy from surfaces",
+            "spheres: particle 12 at (0, 0, 0) m, time 1 s: stands in another sphere",
+            "spheres: particle 13 at (0, 0, 0) m, time 1 s: its impact on another sphere does not add up"}));
 }
 
 TEST(ViolationReport, ListsTwentyAndCountsTheRest) {

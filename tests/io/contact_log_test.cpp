@@ -143,6 +143,35 @@ TEST(ContactLog, ADropIsLoggedAsItsClosedFormSays) {
     EXPECT_EQ(column<double>(file, "radius")[0], 0.25);
 }
 
+// The second sphere stands; 0.3 m between the surfaces take 0.15 s. Then it falls back to the wall.
+TEST(ContactLog, NamesBothSpheresWhereTheyMeet) {
+    const TemporaryFolder folder;
+    SimulationSetup setup = logged_setup(1.0, 1.0);
+    setup.options.particle_contacts.emplace();
+    setup.colliders.push_back({"wall", PlaneShape{{-0.1, 0, 0}, {1, 0, 0}}, 0});
+    add_particle(setup, {0.5, 0, 0}, {}, 3.0, 0.1);
+    add_particle(setup, {0, 0, 0}, {2, 0, 0}, 1.0, 0.1);
+    run_into(folder.path(""), std::move(setup));
+    const auto files = contact_files(folder);
+    const VtkPolyData& file = files.at(1);
+    ASSERT_EQ(file.points.size(), 2U);
+    const double tiny = 1e-13;
+    EXPECT_EQ(column<std::int64_t>(file, "particle"), (std::vector<std::int64_t>{0, 1}));
+    EXPECT_EQ(column<std::int64_t>(file, "other"), (std::vector<std::int64_t>{1, -1}));
+    EXPECT_EQ(column<std::uint32_t>(file, "collider"), (std::vector<std::uint32_t>{0xFFFFFFFFU, 0}));
+    EXPECT_EQ(column<std::int64_t>(file, "triangle")[0], -1);
+    EXPECT_NEAR(column<double>(file, "time")[0], 0.15, tiny);
+    EXPECT_NEAR(column<double>(file, "time")[1], 0.45, tiny);  // back at 1 m/s
+    EXPECT_LE(length(file.points[0] - Vec3(0.4, 0, 0)), tiny);
+    EXPECT_LE(length(column<Vec3>(file, "normal")[0] - Vec3(1, 0, 0)), tiny);
+    EXPECT_LE(length(column<Vec3>(file, "velocity_after")[0] - Vec3(1, 0, 0)), tiny);
+    EXPECT_LE(length(column<Vec3>(file, "impulse")[0] - Vec3(-3, 0, 0)), tiny);
+    EXPECT_EQ(column<double>(file, "radius")[0], 0.1);
+    TemporaryFolder without;
+    run_into(without.path(""), gas(20));
+    EXPECT_EQ(find_array(contact_files(without).begin()->second.point_arrays, "other"), nullptr);
+}
+
 TEST(ContactLog, HasTheVelocityOfSurfacesWhereMaterialsMove) {
     const TemporaryFolder folder;
     SimulationSetup setup = logged_setup(0.5, 1.0);

@@ -82,6 +82,22 @@ TEST(Summary, LeaksAreANumberOnceTheRunHasBeenVerified) {
     EXPECT_EQ(of_verified.energy_violations, 0U);
 }
 
+TEST(Summary, SpeaksOfSpheresOnEachOtherOnlyWhereTheyMeet) {
+    RunSummary summary;
+    EXPECT_FALSE(parsed(summary).contains("pair_impacts"));
+    EXPECT_FALSE(parsed(summary).contains("pair_violations"));
+    summary.spheres_meet = true;
+    summary.statistics.pair_violations = 2;
+    summary.statistics.overlap_verified = 0.25;
+    summary.statistics.born_in_overlap = 4;
+    EXPECT_TRUE(parsed(summary)["pair_violations"].is_null());
+    EXPECT_TRUE(parsed(summary)["overlap_verified"].is_null());
+    EXPECT_EQ(parsed(summary)["born_in_overlap"], 4);
+    summary.leaks = 0;
+    EXPECT_EQ(parsed(summary)["pair_violations"], 2);
+    EXPECT_EQ(parsed(summary)["overlap_verified"], 0.25);
+}
+
 TEST(Summary, NumbersReadBackToTheSameBits) {
     RunSummary summary;
     summary.kinetic_energy = 1.0 / 3.0;

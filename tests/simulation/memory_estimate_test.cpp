@@ -50,6 +50,15 @@ std::string refusal_of(SimulationSetup setup) {
     return "it was taken";
 }
 
+TEST(MemoryEstimate, CountsMoreForSpheresThatMeet) {
+    EmitterDescription emitter = source("tap");
+    emitter.burst = 1000;
+    SimulationSetup setup = setup_with(emitter);
+    const double alone = estimate_memory(setup).bytes();
+    setup.options.particle_contacts.emplace();
+    EXPECT_GT(estimate_memory(setup).bytes(), alone + 1000.0 * 500.0);
+}
+
 TEST(MemoryEstimate, CountsMoreForParticlesThatActOnEachOther) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 1000;

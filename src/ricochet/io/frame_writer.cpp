@@ -196,6 +196,7 @@ void ContactColumns::resize(std::size_t rows) {
     impulse.resize(rows);
     radius.resize(rows);
     if (surface_velocity) surface_velocity->resize(rows);
+    if (other) other->resize(rows);
 }
 
 namespace {
@@ -206,7 +207,38 @@ ContactColumns no_rows(const Simulation& simulation) {
     const bool moves = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); }) ||
                        std::any_of(simulation.colliders().begin(), simulation.colliders().end(), is_moving);
     if (moves) columns.surface_velocity.emplace();
+    if (simulation.options().particle_contacts) columns.other.emplace();
     return columns;
+}
+
+}  // namespace
+
+namespace {
+
+/// Of rows that name no collider.
+constexpr std::uint32_t kNoCollider = 0xFFFFFFFFU;
+
+/// An entry of one of the two lists of a step.
+struct LogRow {
+    std::size_t number = 0;
+    bool is_pair = false;
+};
+
+/// Both lists are in the order of (time, particle); surfaces first where these are the same.
+std::vector<LogRow> rows_in_order(const std::vector<ContactRecord>& records,
+                                  const std::vector<PairImpactRecord>& pairs) {
+    std::vector<LogRow> order;
+    order.reserve(records.size() + pairs.size());
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto is_before = [&](const ContactRecord& record) {
+            return record.time != pairs[k].time ? record.time < pairs[k].time : record.particle <= pairs[k].first;
+        };
+        for (; next < records.size() && is_before(records[next]); ++next) order.push_back({next, false});
+        order.push_back({k, true});
+    }
+    for (; next < records.size(); ++next) order.push_back({next, false});
+    return order;
 }
 
 }  // namespace
@@ -225,6 +257,7 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
     if (columns.surface_velocity) {
         frame.point_arrays.push_back({"surface_velocity", std::move(*columns.surface_velocity)});
     }
+    if (columns.other) frame.point_arrays.push_back({"other", std::move(*columns.other)});
     return frame;
 }
 
@@ -249,10 +282,18 @@ void ContactLog::add_step(const Simulation& simulation) {
     if (simulation.step_index() != step_ + 1) throw std::logic_error("a step was left out of the contact log");
     step_ = simulation.step_index();
     const std::vector<ContactRecord>& records = simulation.contact_records();
+    const std::vector<PairImpactRecord>& pairs = simulation.pair_records();
     const std::size_t first = columns_.size();
-    columns_.resize(first + records.size());
-    parallel_for_blocks(records.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) set_row(first + i, records[i], simulation);
+    columns_.resize(first + records.size() + pairs.size());
+    const std::vector<LogRow> order = rows_in_order(records, pairs);
+    parallel_for_blocks(order.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (order[i].is_pair) {
+                set_row(first + i, pairs[order[i].number]);
+            } else {
+                set_row(first + i, records[order[i].number], simulation);
+            }
+        }
     });
     if (columns_.size() >= most_rows_) write(simulation);
 }
@@ -272,6 +313,23 @@ void ContactLog::set_row(std::size_t row, const ContactRecord& record, const Sim
     columns_.impulse[row] = record.mass * (record.velocity_before - record.velocity_after);
     columns_.radius[row] = record.radius;
     if (columns_.surface_velocity) (*columns_.surface_velocity)[row] = record.surface_velocity;
+    if (columns_.other) (*columns_.other)[row] = -1;
+}
+
+void ContactLog::set_row(std::size_t row, const PairImpactRecord& record) {
+    columns_.point[row] = record.position - record.radius * record.normal;
+    columns_.time[row] = record.time;
+    columns_.particle[row] = static_cast<std::int64_t>(record.first);
+    columns_.collider[row] = kNoCollider;
+    columns_.triangle[row] = -1;
+    columns_.barycentric[row] = {};
+    columns_.normal[row] = record.normal;
+    columns_.velocity_before[row] = record.velocity_before;
+    columns_.velocity_after[row] = record.velocity_after;
+    columns_.impulse[row] = record.impulse;
+    columns_.radius[row] = record.radius;
+    if (columns_.surface_velocity) (*columns_.surface_velocity)[row] = {};
+    (*columns_.other)[row] = static_cast<std::int64_t>(record.second);
 }
 
 void ContactLog::write(const Simulation& simulation) {

@@ -90,7 +90,7 @@ private:
     std::shared_ptr<WriterThread> thread_;
 };
 
-/// The columns of the contact log, one row an entry of Simulation::contact_records().
+/// The columns of the contact log, one row an entry of Simulation::contact_records() or pair_records().
 struct ContactColumns {
     std::vector<Vec3> point;             ///< on the surface, m
     std::vector<double> time;            ///< s
@@ -105,6 +105,8 @@ struct ContactColumns {
     std::vector<double> radius;          ///< of the particle, m
     /// Of the surface's own material, m/s; only where materials move.
     std::optional<std::vector<Vec3>> surface_velocity;
+    /// Id of the sphere that was met; -1: a surface was. Only where spheres meet each other.
+    std::optional<std::vector<std::int64_t>> other;
 
     [[nodiscard]] std::size_t size() const { return time.size(); }
     void resize(std::size_t rows);
@@ -138,6 +140,7 @@ public:
 
 private:
     void set_row(std::size_t row, const ContactRecord& record, const Simulation& simulation);
+    void set_row(std::size_t row, const PairImpactRecord& record);
 
     FrameWriter files_;
     std::size_t most_rows_;

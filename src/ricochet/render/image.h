@@ -10,12 +10,11 @@
 
 namespace ricochet {
 
-/// An RGB picture, 8 bits a channel, sRGB, rows from the top, with an alpha channel where it has one.
+/// An RGB picture, 8 bits a channel, sRGB, rows from the top.
 struct Image {
     int width = 0;
     int height = 0;
-    std::vector<std::uint8_t> rgb;      ///< 3 * width * height bytes
-    std::vector<std::uint8_t> alpha{};  ///< width * height bytes, 255 for opaque; or empty: all of it is
+    std::vector<std::uint8_t> rgb;  ///< 3 * width * height bytes
 
     /// Red, green and blue of a pixel; x to the right, y down.
     [[nodiscard]] std::array<int, 3> pixel(int x, int y) const;

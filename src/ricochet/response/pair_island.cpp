@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
@@ -11,44 +12,11 @@
 namespace ricochet {
 namespace {
 
-template <class T>
-void append(std::vector<T>& list, const std::vector<T>& more) {
-    list.insert(list.end(), more.begin(), more.end());
-}
-
-void add(MoveOutcome& sum, const MoveOutcome& next) {
-    MoveOutcome outcome = next;
-    outcome.bounces += sum.bounces;
-    outcome.unsimulated_time += sum.unsimulated_time;
-    outcome.stayed += sum.stayed;
-    outcome.squeezed = std::max(outcome.squeezed, sum.squeezed);
-    outcome.trials += sum.trials;
-    sum = outcome;
+void append_to(std::vector<FlownPiece>& way, const std::vector<FlownPiece>& more) {
+    way.insert(way.end(), more.begin(), more.end());
 }
 
 }  // namespace
-
-void MoveLists::clear() { hits.clear(), records.clear(), segments.clear(), motions.clear(), loads.clear(); }
-
-void MoveLists::take(MoveScratch& scratch) {
-    hits.swap(scratch.hits), records.swap(scratch.records), segments.swap(scratch.segments);
-    motions.swap(scratch.motions), loads.swap(scratch.loads);
-    scratch.hits.clear(), scratch.records.clear(), scratch.segments.clear();
-    scratch.motions.clear(), scratch.loads.clear();
-}
-
-void MoveLists::put_into(MoveScratch& scratch) {
-    hits.swap(scratch.hits), records.swap(scratch.records), segments.swap(scratch.segments);
-    motions.swap(scratch.motions), loads.swap(scratch.loads);
-}
-
-void MoveLists::append(const MoveLists& more) {
-    ricochet::append(hits, more.hits);
-    ricochet::append(records, more.records);
-    ricochet::append(segments, more.segments);
-    ricochet::append(motions, more.motions);
-    ricochet::append(loads, more.loads);
-}
 
 FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end) {
     const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, end - state.time);
@@ -73,18 +41,19 @@ bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, s
     members_ = &members;
     scratch_ = &scratch;
     impacts_.clear();
+    meetings_.clear();
     if (predictions_.size() < members.size()) predictions_.resize(members.size());
     boxes_.assign(members.size(), {});
-    next_.assign(members.size(), {});
+    partners_.assign(members.size(), 0);
+    times_.reset(members.size());
     resumed_.resize(std::max(resumed_.size(), members.size()));
     scratch.record_flown = true;
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
-    for (std::size_t m = 0; m < members.size(); ++m) find_next(m);
+    neighbours_.begin(boxes_);
+    find_all();
     while (true) {
-        const auto first = std::min_element(next_.begin(), next_.end(),
-                                            [](const Meeting& a, const Meeting& b) { return a.time < b.time; });
-        if (!std::isfinite(first->time) || impacts_.size() > most_impacts) break;
-        const double time = first->time;
+        const double time = times_.earliest();
+        if (!std::isfinite(time) || impacts_.size() > most_impacts) break;
         std::vector<PairContact> contacts = contacts_at(time);
         keep_fastest(contacts, time);
         answer(contacts, time);
@@ -170,7 +139,7 @@ void PairIsland::bring(std::size_t m, double time) {
     MoveLists lists;
     lists.take(*scratch_);
     member.lists.append(lists);
-    ricochet::append(member.way, scratch_->flown);
+    append_to(member.way, scratch_->flown);
     Box3 box;
     for (const FlownPiece& piece : scratch_->flown) box.include(box_of(piece.path, piece.duration));
     box.include(moving.state.position);
@@ -195,7 +164,7 @@ void PairIsland::commit(std::size_t m) {
     Prediction& prediction = predictions_[m];
     member.swept.include(boxes_[m]);
     member.moving.planned = nullptr;
-    if (member.impacts > 0) ricochet::append(member.way, prediction.flown);
+    if (member.impacts > 0) append_to(member.way, prediction.flown);
     if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
     member.moving = prediction.moved;
     member.moving.planned = nullptr;
@@ -209,11 +178,8 @@ double PairIsland::slow(std::size_t a, std::size_t b) const {
     return kPairApproachRounding * (speed(a) + speed(b));
 }
 
-bool PairIsland::may_meet(std::size_t a, std::size_t b) const {
-    return a != b && overlap(boxes_[a], boxes_[b]) && !((*members_)[a].is_fixed && (*members_)[b].is_fixed);
-}
-
 std::optional<double> PairIsland::meeting_of(std::size_t a, std::size_t b) const {
+    if ((*members_)[a].is_fixed && (*members_)[b].is_fixed) return std::nullopt;
     // In one order, so that both find the same time.
     if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
     const std::vector<FlownPiece>& first = predictions_[a].flown;
@@ -222,31 +188,53 @@ std::optional<double> PairIsland::meeting_of(std::size_t a, std::size_t b) const
     return first_meeting(std::span(first), std::span(second), distance, slow(a, b));
 }
 
+/// Of the next meeting of a member, if it is that.
+void PairIsland::note(std::size_t m, double time, std::size_t partner) {
+    if (!(time < times_.time_of(m))) return;
+    times_.set(m, time);
+    partners_[m] = partner;
+}
+
+/// Who meets whom next, of all.
+void PairIsland::find_all() {
+    for (std::size_t m = 0; m < members_->size(); ++m) {
+        const std::vector<std::uint32_t>& near = neighbours_.of(m);
+        for (auto other = std::upper_bound(near.begin(), near.end(), m); other != near.end(); ++other) {
+            const auto time = meeting_of(m, *other);
+            if (!time) continue;
+            note(m, *time, *other);
+            note(*other, *time, m);
+        }
+    }
+}
+
 void PairIsland::find_next(std::size_t m) {
-    next_[m] = {};
-    for (std::size_t other = 0; other < boxes_.size(); ++other) {
-        if (!may_meet(m, other)) continue;
-        const auto time = meeting_of(m, other);
-        if (time && *time < next_[m].time) next_[m] = {*time, other};
+    times_.set(m, std::numeric_limits<double>::infinity());
+    for (const std::uint32_t other : neighbours_.of(m)) {
+        if (const auto time = meeting_of(m, other)) note(m, *time, other);
     }
 }
 
 /// Of members that have been changed: their paths, and who meets whom next.
 void PairIsland::predict_anew(const std::vector<std::size_t>& changed) {
-    for (const std::size_t m : changed) predict(m);
     const auto is_changed = [&](std::size_t m) { return std::binary_search(changed.begin(), changed.end(), m); };
-    for (std::size_t other = 0; other < boxes_.size(); ++other) {
-        if (is_changed(other) || !std::isfinite(next_[other].time) || !is_changed(next_[other].partner)) continue;
-        find_next(other);
-    }
+    std::vector<std::size_t> left;  // by their partners
     for (const std::size_t m : changed) {
-        next_[m] = {};
-        for (std::size_t other = 0; other < boxes_.size(); ++other) {
-            if (!may_meet(m, other)) continue;
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const bool is_left = partners_[other] == m && std::isfinite(times_.time_of(other));
+            if (is_left && !is_changed(other)) left.push_back(other);
+        }
+    }
+    for (const std::size_t m : changed) predict(m);
+    neighbours_.update(changed);
+    for (const std::size_t other : left) find_next(other);
+    for (const std::size_t m : changed) {
+        times_.set(m, std::numeric_limits<double>::infinity());
+        for (const std::uint32_t other : neighbours_.of(m)) {
             const auto time = meeting_of(m, other);
             if (!time) continue;
-            if (*time < next_[m].time) next_[m] = {*time, other};
-            if (*time < next_[other].time) next_[other] = {*time, m};
+            note(m, *time, other);
+            note(other, *time, m);
         }
     }
 }
@@ -264,14 +252,16 @@ PhaseState PairIsland::state_of(std::size_t m, double time) const {
 std::vector<PairContact> PairIsland::contacts_at(double time) const {
     const double until = time + kSameImpactUlps * ulp(time);
     std::vector<PairContact> contacts;
-    for (std::size_t m = 0; m < next_.size(); ++m) {
-        if (next_[m].time > until) continue;
-        for (std::size_t other = 0; other < boxes_.size(); ++other) {
-            if (!may_meet(m, other)) continue;
-            const bool is_known = other < m && next_[other].time <= until;  // found from there
+    std::vector<std::size_t> first;
+    times_.collect(until, first);
+    for (const std::size_t m : first) {
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const bool is_known = other < m && times_.time_of(other) <= until;  // found from there
             if (is_known) continue;
             const auto meeting = meeting_of(m, other);
-            if (meeting && *meeting <= until) contacts.push_back({std::min(m, other), std::max(m, other)});
+            if (meeting && *meeting <= until) {
+                contacts.push_back({std::min<std::size_t>(m, other), std::max<std::size_t>(m, other)});
+            }
         }
     }
     return contacts;
@@ -313,6 +303,7 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
     }
     answer_pair_impacts(settings_, response_.rules().settings.resting_speed, bodies, contacts);
     for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
+    if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
     for (std::size_t k = 0; k < changed.size(); ++k) {
         if (!(*members_)[changed[k]].is_gone()) take_over(changed[k], bodies[k]);
     }
@@ -377,6 +368,25 @@ void PairIsland::record(const PairContact& contact, const std::vector<std::size_
     impacts_.push_back({time, moving_of(first).id, moving_of(second).id, before[first].position, -sign * contact.normal,
                         before[first].velocity, after[first].velocity, sign * contact.impulse, contact.approach,
                         moving_of(first).state.mass, before[first].radius});
+}
+
+void PairIsland::record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
+                                const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time) {
+    PairMeeting meeting{time, {}, {}};
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+        const MovingParticle& moving = (*members_)[changed[k]].moving;
+        const PairBody& body = before[k];
+        meeting.spheres.push_back({moving.id,
+                                   moving.state.mass,
+                                   body.radius,
+                                   body.inverse_mass == 0.0,
+                                   {body.position, body.velocity, body.spin},
+                                   {after[k].position, after[k].velocity, after[k].spin}});
+    }
+    for (const PairContact& contact : contacts) {
+        meeting.contacts.push_back({contact.first, contact.second, contact.impulse});
+    }
+    meetings_.push_back(std::move(meeting));
 }
 
 }  // namespace ricochet

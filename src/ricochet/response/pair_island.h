@@ -16,42 +16,15 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/pair_meeting.h"
 #include "ricochet/dynamics/coupled_member.h"
+#include "ricochet/response/island_neighbours.h"
+#include "ricochet/response/move_lists.h"
 #include "ricochet/response/pair_impact.h"
+#include "ricochet/response/pair_record.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
-
-/// What moves have left behind, besides the particle: the lists of MoveScratch.
-struct MoveLists {
-    std::vector<SurfaceHit> hits;
-    std::vector<ContactRecord> records;
-    std::vector<Segment> segments;
-    std::vector<MotionPart> motions;
-    std::vector<ColliderLoad> loads;
-
-    void clear();
-    /// Takes what a move has left in the scratch memory.
-    void take(MoveScratch& scratch);
-    void append(const MoveLists& more);
-    /// Leaves them in scratch memory.
-    void put_into(MoveScratch& scratch);
-};
-
-/// An impact of two spheres.
-struct PairImpactRecord {
-    double time = 0.0;         ///< s
-    std::uint64_t first = 0;   ///< id, the lower one
-    std::uint64_t second = 0;  ///< id
-    Vec3 position;             ///< m, of the first's centre
-    Vec3 normal;               ///< unit, from the second to the first
-    Vec3 velocity_before;      ///< m/s, of the first
-    Vec3 velocity_after;       ///< m/s, of the first
-    Vec3 impulse;              ///< N s, given to the second
-    double approach = 0.0;     ///< m/s
-    double mass = 0.0;         ///< kg, of the first
-    double radius = 0.0;       ///< m, of the first
-};
 
 /// A member of an island: in, what it is at the step's begin; out, at its end.
 struct IslandMember {
@@ -99,6 +72,8 @@ public:
 
     /// Impacts of the last run, in the order of time.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
+    /// The same for the verifier, where motions are recorded.
+    [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
 
 private:
     /// What a member does until the step's end if it meets none of the others.
@@ -108,20 +83,17 @@ private:
         MoveLists lists;
         std::vector<FlownPiece> flown;
     };
-    struct Meeting {
-        double time = std::numeric_limits<double>::infinity();  ///< s
-        std::size_t partner = 0;
-    };
 
     void predict(std::size_t m);
     void stay(std::size_t m);
     void fly_freely(IslandMember& member, double duration);
     void bring(std::size_t m, double time);
     void commit(std::size_t m);
+    void note(std::size_t m, double time, std::size_t partner);
+    void find_all();
     void find_next(std::size_t m);
     void predict_anew(const std::vector<std::size_t>& changed);
     [[nodiscard]] std::optional<double> meeting_of(std::size_t a, std::size_t b) const;
-    [[nodiscard]] bool may_meet(std::size_t a, std::size_t b) const;
     [[nodiscard]] PhaseState state_of(std::size_t m, double time) const;
     [[nodiscard]] std::vector<PairContact> contacts_at(double time) const;
     void keep_fastest(std::vector<PairContact>& contacts, double time) const;
@@ -131,6 +103,8 @@ private:
     void resume(std::size_t m);
     void record(const PairContact& contact, const std::vector<std::size_t>& changed,
                 const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
+    void record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
+                        const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
 
     const Response& response_;
@@ -138,10 +112,13 @@ private:
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;
-    std::vector<Box3> boxes_;      // of the predictions
-    std::vector<Meeting> next_;    // of each member, the first
-    std::vector<Flight> resumed_;  // of each member, where it has been kicked in this step
+    std::vector<Box3> boxes_;  // of the predictions
+    IslandNeighbours neighbours_;
+    EarliestTime times_;                 // s, of each member's first meeting; infinite: it meets nobody
+    std::vector<std::size_t> partners_;  // in it
+    std::vector<Flight> resumed_;        // of each member, where it has been kicked in this step
     std::vector<PairImpactRecord> impacts_;
+    std::vector<PairMeeting> meetings_;
 };
 
 }  // namespace ricochet

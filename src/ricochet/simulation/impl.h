@@ -47,6 +47,7 @@ struct Simulation::Impl {
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
     [[nodiscard]] ParticleRange spawn_children(const TimeSpan& step);
     void retire_particles(double time);
+    void check_spheres(double begin, double end);
     void end_step();
 
     /// Between the steps of advance() nothing asks where a particle in free flight is. But bounds and checks do in
@@ -72,6 +73,8 @@ struct Simulation::Impl {
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
     /// A sentence about those of the setup's particles that are in overlap; nothing without any.
     [[nodiscard]] std::optional<std::string> overlap_warning() const;
+    /// The same of those that stand in other spheres, which are counted.
+    [[nodiscard]] std::optional<std::string> sphere_overlap_warning();
     void remove_leavers(double time);
     void compact(const std::vector<std::uint8_t>& keep);
 

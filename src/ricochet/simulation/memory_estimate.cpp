@@ -19,6 +19,7 @@ constexpr double kAttributeComponent = 32.0;  // of it the same
 constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
 constexpr double kSide = 16.0;                // what penalty and its like remember of a collider
 constexpr double kVerifiedParticle = 90.0;    // by options.verify
+constexpr double kMeetingParticle = 1500.0;   // of spheres that meet: boxes, pairs, islands, contacts, as counted
 constexpr double kTriangle = 330.0;           // of a mesh with its search structures, while they are made
 constexpr double kVerifiedTriangle = 160.0;   // by options.verify
 constexpr double kContact = 412.0;            // a record, and its row in the log
@@ -211,6 +212,7 @@ double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
     if (has_children(setup)) bytes += kFamily;
     if (setup.options.verify) bytes += kVerifiedParticle;
+    if (setup.options.particle_contacts) bytes += kMeetingParticle;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;
     if (setup.options.response != ResponseKind::exact) bytes += kSide * static_cast<double>(setup.colliders.size());
     return bytes;

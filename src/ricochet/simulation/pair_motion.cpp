@@ -28,7 +28,9 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
     counts_ = {};
     impacts_.clear();
+    meetings_.clear();
     islands_.clear();
+    round_ = 0;
     boxes_.resize(range.size());
     find_sleepers(range, step);
     do {
@@ -143,6 +145,8 @@ bool PairMotion::join(std::uint32_t a, std::uint32_t b) {
     b = root_of(b);
     if (a == b) return false;
     parents_[std::max(a, b)] = std::min(a, b);
+    joined_.push_back(a);
+    joined_.push_back(b);
     return true;
 }
 
@@ -169,6 +173,7 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
         for (std::size_t n = begin; n < end; ++n) {
             Island& island = islands[n];
             if (!island.members.empty()) continue;  // as before
+            island.round = round_;
             take_members(island, step);
             bool is_dense = begins_dense(island);
             const bool may_give_up = may_be_dense() && settings_.method == PairMethod::automatic;
@@ -183,6 +188,7 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
                 continue;
             }
             island.impacts = worker.impacts();
+            island.meetings = worker.meetings();
         }
     });
 }
@@ -206,17 +212,24 @@ void PairMotion::take_members(Island& island, const TimeSpan& step) {
     }
 }
 
-/// Members that have gone another way than they would have gone by themselves, or farther than declared.
-std::vector<const IslandMember*> PairMotion::members_off_plan() const {
-    std::vector<const IslandMember*> members;
+/// Members that have gone another way than they would have gone by themselves, or farther than declared: first those of
+/// islands of this round, then those of islands that have been joined before.
+PairMotion::OffPlan PairMotion::members_off_plan() const {
+    OffPlan off;
+    std::vector<const IslandMember*> earlier;
     for (const Island& island : islands_) {
+        const bool is_new = island.round == round_;
+        if (!is_new && island.round == 0) continue;
         for (const IslandMember& member : island.members) {
             if (member.is_fixed) continue;
             const bool is_inside = contains(boxes_[member.particle - first_], member.swept);
-            if (member.impacts > 0 || !is_inside) members.push_back(&member);
+            if (member.impacts > 0 || !is_inside) (is_new ? off.members : earlier).push_back(&member);
         }
     }
-    return members;
+    off.of_this_round = off.members.size();
+    off.members.insert(off.members.end(), earlier.begin(), earlier.end());
+    for (const IslandMember* member : off.members) off.swept.push_back(member->swept);
+    return off;
 }
 
 /// Whether a member's way leads it onto a sphere of another island that flies freely and meets nobody; of others that
@@ -228,40 +241,59 @@ bool PairMotion::comes_to(const IslandMember& member, std::uint32_t k, const Tim
     return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
 }
 
-/// True where members that are off their plans have met particles of other islands, which are joined.
+/// False where both ways are known and do not meet.
+bool PairMotion::may_have_met(const IslandMember& first, const IslandMember& second) {
+    if (first.way.empty() || second.way.empty()) return true;
+    return first_meeting(first.way, second.way, first.radius() + second.radius(), 0.0).has_value();
+}
+
+/// True where members that are off their plans have met particles of other islands, which are joined. What islands of
+/// earlier rounds have to do with each other is known.
 bool PairMotion::join_those_met(const TimeSpan& step) {
-    const std::vector<const IslandMember*> off_plan = members_off_plan();
-    std::vector<Box3> swept;
-    for (const IslandMember* member : off_plan) swept.push_back(member->swept);
-    std::vector<std::vector<std::uint32_t>> met(off_plan.size());
-    parallel_for_blocks(off_plan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    const OffPlan off = members_off_plan();
+    const auto number = [&](const IslandMember& member) {
+        return static_cast<std::uint32_t>(member.particle - first_);
+    };
+    std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
+    parallel_for_blocks(off.of_this_round, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> near;
         for (std::size_t n = begin; n < end; ++n) {
-            find_all_near(swept[n], met[n]);
-            std::erase_if(met[n], [&](std::uint32_t k) { return !comes_to(*off_plan[n], k, step); });
+            const IslandMember& member = *off.members[n];
+            find_all_near(off.swept[n], met[n]);
+            std::erase_if(met[n], [&](std::uint32_t k) { return !comes_to(member, k, step); });
+            if (round_ == 0) continue;
+            near.clear();
+            first_off_plan_grid_.find_near(off.swept[n], near);
+            for (const std::uint32_t k : near) {
+                const IslandMember* const other = first_off_plan_[k];  // valid where it has not been run anew
+                if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other)) {
+                    met[n].push_back(first_numbers_[k]);
+                }
+            }
         }
     });
-    const auto number = [&](std::size_t n) { return static_cast<std::uint32_t>(off_plan[n]->particle - first_); };
-    bool has_joined = false;
-    for (std::size_t n = 0; n < off_plan.size(); ++n) {
-        for (const std::uint32_t k : met[n]) has_joined |= join(number(n), k);
+    joined_.clear();
+    for (std::size_t n = 0; n < off.of_this_round; ++n) {
+        for (const std::uint32_t k : met[n]) static_cast<void>(join(number(*off.members[n]), k));
     }
-    for (const NeighbourPair& pair : off_plan_grid_.find_pairs(swept)) {
-        const IslandMember& first = *off_plan[pair.first];
-        const IslandMember& second = *off_plan[pair.second];
-        const bool are_known = !first.way.empty() && !second.way.empty();
-        if (are_known && !first_meeting(first.way, second.way, first.radius() + second.radius(), 0.0)) continue;
-        has_joined |= join(number(pair.first), number(pair.second));
+    NeighbourGrid& grid = round_ == 0 ? first_off_plan_grid_ : off_plan_grid_;
+    for (const NeighbourPair& pair : grid.find_pairs(off.swept)) {
+        if (pair.first >= off.of_this_round) continue;  // both are of earlier rounds
+        const IslandMember& first = *off.members[pair.first];
+        const IslandMember& second = *off.members[pair.second];
+        if (may_have_met(first, second)) static_cast<void>(join(number(first), number(second)));
     }
-    return has_joined;
+    if (round_ == 0) {
+        first_off_plan_ = off.members;
+        first_numbers_.clear();
+        for (const IslandMember* member : off.members) first_numbers_.push_back(number(*member));
+    }
+    return !joined_.empty();
 }
 
 /// Islands that have been joined begin anew; the others stay.
 void PairMotion::rebuild(const TimeSpan& step) {
-    std::vector<std::uint32_t> involved;
-    for (std::uint32_t k = 0; k < parents_.size(); ++k) {
-        const std::uint32_t root = root_of(k);
-        if (root != k) involved.push_back(root), involved.push_back(k);
-    }
+    std::vector<std::uint32_t> involved = joined_;
     for (const Island& island : islands_) {
         involved.insert(involved.end(), island.particles.begin(), island.particles.end());
     }
@@ -272,7 +304,12 @@ void PairMotion::rebuild(const TimeSpan& step) {
         if (before != islands_.end() && before->particles == island.particles) island = std::move(*before++);
     }
     islands_ = std::move(next);
+    if (round_++ == 0) has_run_anew_.assign(parents_.size(), 0);
     run(islands_, step);
+    for (const Island& island : islands_) {
+        if (island.round != round_) continue;
+        for (const std::uint32_t k : island.particles) has_run_anew_[k] = 1;
+    }
 }
 
 void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -287,6 +324,7 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     std::vector<NetworkMemory::Entry> pressed;
     for (const Island& island : islands_) {
         impacts_.insert(impacts_.end(), island.impacts.begin(), island.impacts.end());
+        meetings_.insert(meetings_.end(), island.meetings.begin(), island.meetings.end());
         pressed.insert(pressed.end(), island.pressed.begin(), island.pressed.end());
         unsolved_ += island.is_unsolved ? 1 : 0;
     }

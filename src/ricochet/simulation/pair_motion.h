@@ -51,6 +51,8 @@ public:
     [[nodiscard]] const PairCounts& counts() const { return counts_; }
     /// Impacts of the last step's islands, island by island.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
+    /// The same for the verifier, where there is one.
+    [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
 
     /// Islands that were dense and not solved to the tolerance, in all steps.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
@@ -71,11 +73,19 @@ private:
         std::vector<std::uint32_t> particles;  ///< ascending
         std::vector<IslandMember> members;
         std::vector<PairImpactRecord> impacts;
+        std::vector<PairMeeting> meetings;
         std::vector<NetworkMemory::Entry> pressed;  ///< where it is dense: what its contacts do
         bool is_unsolved = false;
         std::vector<SleepingPiles::Still> still;  ///< where it is dense: those that have not moved
         std::vector<std::uint64_t> falling_asleep;
         std::vector<SleepingPiles::Weight> weights;  ///< of those
+        std::size_t round = 0;                       ///< in which it has been worked off
+    };
+    /// Members that may have met others than those of their island.
+    struct OffPlan {
+        std::vector<const IslandMember*> members;
+        std::vector<Box3> swept;        ///< by them
+        std::size_t of_this_round = 0;  ///< so many come first
     };
 
     [[nodiscard]] Box3 declared_box(std::size_t i, const TimeSpan& step) const;
@@ -88,7 +98,8 @@ private:
     [[nodiscard]] FlownPiece way_of_free(std::uint32_t k, const TimeSpan& step) const;
     [[nodiscard]] bool may_meet(const NeighbourPair& pair, const TimeSpan& step) const;
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k, const TimeSpan& step) const;
-    [[nodiscard]] std::vector<const IslandMember*> members_off_plan() const;
+    [[nodiscard]] OffPlan members_off_plan() const;
+    [[nodiscard]] static bool may_have_met(const IslandMember& first, const IslandMember& second);
     [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
     bool join(std::uint32_t a, std::uint32_t b);
     [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
@@ -140,6 +151,12 @@ private:
     const PairContactSettings& settings_;
     std::size_t first_ = 0;  // of the range: the numbers below count from it
     NeighbourGrid grid_;
+    std::size_t round_ = 0;              // of joining islands
+    std::vector<std::uint32_t> joined_;  // in the last round
+    NeighbourGrid first_off_plan_grid_;  // of the members that were off their plans in the first round
+    std::vector<const IslandMember*> first_off_plan_;
+    std::vector<std::uint32_t> first_numbers_;  // of these
+    std::vector<std::uint8_t> has_run_anew_;    // by number, in a later round
     NeighbourGrid off_plan_grid_;
     std::vector<Box3> boxes_;             // declared
     std::vector<NeighbourPair> pairs_;    // whose declared boxes overlap
@@ -147,6 +164,7 @@ private:
     std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
     std::vector<Island> islands_;
     std::vector<PairImpactRecord> impacts_;
+    std::vector<PairMeeting> meetings_;
     PairCounts counts_;
     NetworkMemory memory_;  // of the contacts of dense islands
     std::uint64_t unsolved_ = 0;

@@ -79,6 +79,7 @@ std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks)
 
 void RunRecorder::begin_step() {
     contacts_.clear();
+    pair_records_.clear();
     last_violations_.clear();
 }
 
@@ -115,6 +116,19 @@ void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {
         std::count_if(found.begin(), found.end(), [](const Violation& v) { return v.kind == ViolationKind::energy; }));
     statistics_.energy_violations += of_energy;
     statistics_.violations += found.size() - of_energy;
+    list(found);
+}
+
+void RunRecorder::add_pair_violations(const std::vector<Violation>& found) {
+    statistics_.pair_violations += found.size();
+    list(found);
+}
+
+void RunRecorder::add_pair_impacts(const std::vector<PairImpactRecord>& impacts) {
+    if (shows_contacts_) pair_records_.insert(pair_records_.end(), impacts.begin(), impacts.end());
+}
+
+void RunRecorder::list(const std::vector<Violation>& found) {
     last_violations_.insert(last_violations_.end(), found.begin(), found.end());
     const std::size_t kept = std::min(found.size(), Simulation::kMostViolations - violations_.size());
     violations_.insert(violations_.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept));
@@ -130,6 +144,10 @@ void RunRecorder::end_step() {
     std::stable_sort(contacts_.begin(), contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
+    std::stable_sort(pair_records_.begin(), pair_records_.end(),
+                     [](const PairImpactRecord& a, const PairImpactRecord& b) {
+                         return a.time != b.time ? a.time < b.time : a.first < b.first;
+                     });
 }
 
 namespace {
@@ -204,6 +222,32 @@ void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput
         particles.id[i], particles.position[i], moved.position, particles.radius[i], times.end, segments,
         motion,          times.stored};
     verifier_.check(step, watched_[i], violations);
+}
+
+std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,
+                                                const verify::PairBooks& books) {
+    std::vector<Violation> found;
+    for (const PairMeeting& meeting : meetings) {
+        if (!verify::is_wrong(meeting, books)) continue;
+        const MetSphere& sphere = meeting.spheres.front();
+        found.push_back({ViolationKind::pair_impact, sphere.particle, sphere.before.position, meeting.time, {}, {}});
+    }
+    return found;
+}
+
+std::vector<Violation> RunCheck::check_spheres(const Particles& particles, const TimeSpan& step, double most) {
+    std::vector<StandingSphere> spheres;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (particles.radius[i] == 0.0 || particles.frozen[i] != 0) continue;
+        const bool is_new = !has_looked_ || particles.birth_time[i] >= step.begin;
+        spheres.push_back({particles.id[i], particles.position[i], particles.radius[i], is_new});
+    }
+    has_looked_ = true;
+    std::vector<Violation> violations;
+    for (const SphereOverlaps::Found& found : overlaps_.check(spheres, most)) {
+        violations.push_back({ViolationKind::pair_overlap, found.first, found.position, step.end, {}, {}});
+    }
+    return violations;
 }
 
 void RunCheck::restart(const ParticleStore& store, double now) {

@@ -17,6 +17,9 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation.h"
+#include "ricochet/simulation/query_schedule.h"
+#include "ricochet/verify/pair_books.h"
+#include "ricochet/verify/sphere_overlaps.h"
 #include "ricochet/verify/verifier.h"
 
 namespace ricochet {
@@ -156,17 +159,23 @@ public:
     /// Of all colliders, since the start.
     [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }
     [[nodiscard]] std::vector<ColliderTotals>& loads() { return loads_; }
+    /// Of a part of the step.
+    void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);
+    void add_pair_violations(const std::vector<Violation>& found);
+    [[nodiscard]] const std::vector<PairImpactRecord>& pair_records() const { return pair_records_; }
     void add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders);
 
 private:
     void record_cut_off(const std::vector<BlockRecord>& blocks);
     void record_violations(const std::vector<BlockRecord>& blocks);
+    void list(const std::vector<Violation>& found);
 
     SimulationStatistics statistics_;
     SurfaceTotals totals_;
     std::vector<ColliderTotals> loads_;
-    std::vector<ContactRecord> contacts_;        // of the step
-    std::vector<ContactRecord> batch_contacts_;  // of the particles that were moved last
+    std::vector<ContactRecord> contacts_;         // of the step
+    std::vector<ContactRecord> batch_contacts_;   // of the particles that were moved last
+    std::vector<PairImpactRecord> pair_records_;  // of the step
     std::vector<Violation> violations_;
     std::vector<Violation> last_violations_;  // of the step
     bool shows_contacts_;
@@ -198,8 +207,19 @@ public:
     /// Keeps what Particles::compact() keeps.
     void compact(const std::vector<std::uint8_t>& keep);
 
+    /// What is wrong with impacts of spheres on each other.
+    [[nodiscard]] static std::vector<Violation> check_meetings(const std::vector<PairMeeting>& meetings,
+                                                               const verify::PairBooks& books);
+    /// Which spheres stand in each other at the end of a step by more than a part of the smaller radius, and did not
+    /// before, or less.
+    [[nodiscard]] std::vector<Violation> check_spheres(const Particles& particles, const TimeSpan& step, double most);
+    /// Of the last call, over the smaller radius.
+    [[nodiscard]] double largest_overlap() const { return overlaps_.largest(); }
+
 private:
     Verifier verifier_;
+    SphereOverlaps overlaps_;
+    bool has_looked_ = false;  // at overlaps
     std::vector<VerifiedParticle> watched_;
 };
 

@@ -6,14 +6,17 @@
 #include <limits>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"
 #include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/validation.h"
+#include "ricochet/verify/sphere_overlaps.h"
 
 namespace ricochet {
 namespace {
@@ -171,6 +174,42 @@ std::optional<std::string> Simulation::Impl::overlap_warning() const {
         named(world.colliders()[collider], collider), deepest);
 }
 
+/// Counts those, too. Spheres that touch are not in each other.
+std::optional<std::string> Simulation::Impl::sphere_overlap_warning() {
+    if (!pairs) return std::nullopt;
+    std::vector<Box3> boxes;
+    for (std::size_t i = 0; i < store.size(); ++i) {
+        const double radius = particles().radius[i];
+        const bool meets = radius > 0.0 && particles().frozen[i] == 0;
+        boxes.push_back(meets ? ball_box(particles().position[i], radius) : Box3{});
+    }
+    std::vector<std::uint8_t> is_inside(store.size(), 0);
+    std::optional<NeighbourPair> first;
+    double deepest = 0.0;
+    const auto depth_of = [&](const NeighbourPair& pair) {
+        return particles().radius[pair.first] + particles().radius[pair.second] -
+               length(particles().position[pair.first] - particles().position[pair.second]);
+    };
+    NeighbourGrid grid;
+    for (const NeighbourPair& pair : grid.find_pairs(boxes)) {
+        const double depth = depth_of(pair);
+        if (!(depth > kMostMetOverlap * std::min(particles().radius[pair.first], particles().radius[pair.second]))) {
+            continue;
+        }
+        if (!first) first = pair;
+        deepest = std::max(deepest, depth);
+        is_inside[pair.first] = is_inside[pair.second] = 1;
+    }
+    if (!first) return std::nullopt;
+    const auto count = std::count(is_inside.begin(), is_inside.end(), 1);
+    recorder.statistics().born_in_overlap = static_cast<std::uint64_t>(count);
+    return fmt::format(
+        "{} spheres are born in overlap with others: the first is particle {}, {:.3g} m deep in particle {}; the "
+        "deepest is {:.3g} m; they get no deeper, but nothing parts them at once: place them the sum of their radii "
+        "apart",
+        count, particles().id[first->first], depth_of(*first), particles().id[first->second], deepest);
+}
+
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
       particle_bytes(bytes_per_particle(setup)),
@@ -216,6 +255,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
     reserve(setup.particles.size());
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
+    if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
     if (coupled.is_active()) coupled.bind(particles());
     most_that_fit = store.size() + particles_that_fit(particle_bytes);
     if (offspring) offspring->set_memory(most_that_fit, particle_bytes);

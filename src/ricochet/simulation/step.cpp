@@ -59,6 +59,7 @@ void Simulation::Impl::step() {
         batch = spawn_children(step);
     } while (!batch.empty());
     retire_particles(step.end);
+    check_spheres(step.begin, step.end);
     end_step();
     report_contacts();
 }
@@ -188,6 +189,21 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     SimulationStatistics& statistics = recorder.statistics();
     statistics.pair_impacts += pairs->counts().impacts;
     statistics.overlap_largest = std::max(statistics.overlap_largest, pairs->counts().largest_overlap);
+    recorder.add_pair_impacts(pairs->impacts());
+    if (!check) return;
+    const PairContactSettings& law = *options.particle_contacts;
+    const verify::PairBooks books{law.restitution, law.friction, law.rolling_friction, options.resting_speed,
+                                  forces.is_uniform()};
+    recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), books));
+}
+
+void Simulation::Impl::check_spheres(double begin, double end) {
+    if (!check || !pairs) return;
+    const bool may_be_planned = options.particle_contacts->method != PairMethod::events;
+    recorder.add_pair_violations(
+        check->check_spheres(particles(), {begin, end}, may_be_planned ? kMostPlannedOverlap : kMostMetOverlap));
+    SimulationStatistics& statistics = recorder.statistics();
+    statistics.overlap_verified = std::max(statistics.overlap_verified, check->largest_overlap());
 }
 
 // Depths of penetration are added up by blocks of all particles, active or not; no other sum depends on how the active

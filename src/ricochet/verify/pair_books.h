@@ -1,0 +1,30 @@
+/// \file
+/// Whether a recorded impact of spheres on each other adds up: that they touched, that impulses push and stay in the
+/// cone of friction, that each sphere has what it was given and no other change, that momentum and angular momentum are
+/// those before, that no energy was gained, and that none was lost where nothing takes any.
+#pragma once
+
+#include "ricochet/core/pair_meeting.h"
+
+namespace ricochet::verify {
+
+/// What the books of an impact of spheres may be off by, relative to the sums of the amounts of what they add up:
+/// momentum, energy, and for angular momentum. Reason: roundings of impulses and, where many touch at once, of the
+/// sweeps over them. Smaller: rounding is reported. Larger: wrong impulses are not seen.
+inline constexpr double kPairBooks = 1e-12;
+inline constexpr double kPairAngularBooks = 1e-10;
+
+/// What spheres are said to do to each other.
+struct PairBooks {
+    double restitution = 1.0;
+    double friction = 0.0;
+    double rolling_friction = 0.0;
+    double resting_speed = 0.0;  ///< m/s: with a restitution below 1 a slower rebound is none
+    bool has_exact_paths =
+        true;  ///< they are the parabolas of a uniform force: at the impact spheres touch to rounding
+};
+
+/// True where something is wrong with it.
+[[nodiscard]] bool is_wrong(const PairMeeting& meeting, const PairBooks& books);
+
+}  // namespace ricochet::verify

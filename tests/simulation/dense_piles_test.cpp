@@ -1,0 +1,184 @@
+// Spheres that rest on each other, and on floors of triangles.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::mesh_collider;
+using testing::particle_of;
+using testing::setup_of;
+
+constexpr double kRadius = 0.005;
+
+SimulationSetup pile_setup(double duration, double friction) {
+    SimulationSetup setup = setup_of(1e-3, duration, Material{"", 0.5, friction}, {0, 0, -9.81});
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.5, .friction = friction};
+    setup.options.verify = true;
+    return setup;
+}
+
+void add_plane(SimulationSetup& setup, const Vec3& point, const Vec3& normal) {
+    setup.colliders.push_back({"", PlaneShape{point, normal}, 0});
+}
+
+/// A square of 8 x 8 cells of 0.1 m, each cut by a diagonal, around the origin.
+TriangleMesh triangulated_floor() {
+    TriangleMesh mesh;
+    constexpr std::uint32_t kCells = 8;
+    for (std::uint32_t j = 0; j <= kCells; ++j) {
+        for (std::uint32_t i = 0; i <= kCells; ++i) mesh.vertices.push_back({0.1 * i - 0.4, 0.1 * j - 0.4, 0.0});
+    }
+    for (std::uint32_t j = 0; j < kCells; ++j) {
+        for (std::uint32_t i = 0; i < kCells; ++i) {
+            const std::uint32_t k = j * (kCells + 1) + i;
+            mesh.triangles.push_back({k, k + 1, k + kCells + 2});
+            mesh.triangles.push_back({k, k + kCells + 2, k + kCells + 1});
+        }
+    }
+    return mesh;
+}
+
+// On a face, an edge and a vertex, alone and with a second one on top, which is a problem of contacts.
+TEST(DensePiles, AFloorOfTrianglesAnswersOnFacesEdgesAndVerticesAlike) {
+    for (const bool has_second : {false, true}) {
+        SimulationSetup setup = pile_setup(0.25, 0.3);
+        setup.colliders = {mesh_collider(triangulated_floor())};
+        setup.options.particle_contacts->method = PairMethod::contacts;
+        for (const Vec3& place :
+             {Vec3{-0.23, -0.18, 0}, Vec3{-0.25, 0.1, 0}, Vec3{0.15, 0.15, 0}, Vec3{0.2, -0.2, 0}}) {
+            setup.particles.push_back(particle_of(place + Vec3{0, 0, 0.1}, {}, kRadius));
+            if (has_second) setup.particles.push_back(particle_of(place + Vec3{0, 0, 0.112}, {}, kRadius));
+        }
+        Simulation simulation(std::move(setup));
+        double fastest = 0.0;
+        while (!simulation.finished()) {
+            simulation.step();
+            const Particles& p = simulation.particles();
+            const std::size_t each = has_second ? 2 : 1;
+            for (std::size_t i = each; i < p.size(); ++i) {
+                EXPECT_NEAR(p.velocity[i].z, p.velocity[i % each].z, 1e-11) << simulation.time();
+                EXPECT_NEAR(p.position[i].z, p.position[i % each].z, 1e-12);
+                fastest = std::max(fastest, p.velocity[i].z);
+            }
+        }
+        EXPECT_GT(fastest, 0.3);  // it has bounced
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+        EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+    }
+}
+
+/// How far spheres have come from where they stood, over their radius.
+double drift(const Particles& particles, const std::vector<Vec3>& start) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+        largest = std::max(largest, length(particles.position[i] - start[i]) / particles.radius[i]);
+    }
+    return largest;
+}
+
+// Of square section, one thousandth wider than the spheres, which stand in it to and fro: they lean on the walls, where
+// they sink by a part of that; then they stay.
+TEST(DensePiles, AColumnInATubeStands) {
+    SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 1.0, 0.3);
+    const double half = 1.001 * kRadius;
+    add_plane(setup, {}, {0, 0, 1});
+    for (const double side : {-1.0, 1.0}) {
+        add_plane(setup, {side * half, 0, 0}, {-side, 0, 0});
+        add_plane(setup, {0, side * half, 0}, {0, -side, 0});
+    }
+    std::vector<Vec3> start;
+    double height = kRadius;
+    for (int k = 0; k < 20; ++k) {
+        const double lean = (k % 2 == 0 ? 1.0 : -1.0) * 0.001 * kRadius;
+        start.push_back({lean, 0.5 * lean, height});
+        setup.particles.push_back(particle_of(start.back(), {}, kRadius));
+        height += 2.0 * kRadius;
+    }
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    EXPECT_LT(drift(simulation.particles(), start), 1e-3);
+    EXPECT_LT(simulation.statistics().overlap_verified, 1e-3);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+}
+
+// Layers of squares in each other's hollows, held by friction against sliding and rolling: 55 spheres, 1240 in a long
+// run.
+TEST(DensePiles, APyramidStands) {
+    const int layers = test::is_long_run() ? 15 : 5;
+    SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 1.0, 0.8);
+    setup.materials[0].rolling_friction = 0.3;
+    setup.options.particle_contacts->rolling_friction = 0.3;
+    add_plane(setup, {}, {0, 0, 1});
+    std::vector<Vec3> start;
+    for (int layer = 0; layer < layers; ++layer) {
+        const int side = layers - layer;
+        for (int i = 0; i < side; ++i) {
+            for (int j = 0; j < side; ++j) {
+                const double x = 2.0 * kRadius * (i - 0.5 * (side - 1));
+                const double y = 2.0 * kRadius * (j - 0.5 * (side - 1));
+                start.push_back({x, y, kRadius * (1.0 + std::sqrt(2.0) * layer)});
+                setup.particles.push_back(particle_of(start.back(), {}, kRadius));
+            }
+        }
+    }
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    RecordProperty("drift", std::to_string(drift(simulation.particles(), start)));
+    EXPECT_LT(drift(simulation.particles(), start), 1e-3);
+    EXPECT_LT(simulation.statistics().overlap_verified, 1e-3);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+}
+
+/// Degrees, slope of the cone that has the mean height and mean distance from the axis of a column that has fallen.
+double angle_of_repose(double friction) {
+    SimulationSetup setup = pile_setup(1.0, friction);
+    setup.materials[0].rolling_friction = 0.1;
+    setup.options.verify = false;
+    setup.options.particle_contacts->restitution = 0.2;
+    setup.options.particle_contacts->rolling_friction = 0.1;
+    add_plane(setup, {}, {0, 0, 1});
+    RandomSequence random(5, 0, 0);
+    for (int k = 0; k < 120; ++k) {
+        const Vec3 at{2.2 * kRadius * (k % 4 - 1.5), 2.2 * kRadius * (k / 4 % 4 - 1.5), 2.5 * kRadius * (k / 16 + 0.5)};
+        setup.particles.push_back(particle_of(at + (0.05 * kRadius) * random.unit_vector(), {}, kRadius));
+    }
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    const Particles& p = simulation.particles();
+    double height = 0.0;
+    double distance = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        height += p.position[i].z - kRadius;
+        distance += std::hypot(p.position[i].x, p.position[i].y);
+    }
+    // Of a cone of height h and radius R they are h / 4 and R / 2.
+    return std::atan(2.0 * height / distance) * 180.0 / 3.14159265358979;
+}
+
+TEST(DensePiles, HeapsAreSteeperWithMoreFriction) {
+    const std::array<double, 3> angles = {angle_of_repose(0.05), angle_of_repose(0.3), angle_of_repose(0.8)};
+    EXPECT_GT(angles[1], angles[0] + 1.0);
+    EXPECT_GT(angles[2], angles[1] + 1.0);
+    EXPECT_LT(angles[2], 45.0);
+    RecordProperty("angles",
+                   std::to_string(angles[0]) + " " + std::to_string(angles[1]) + " " + std::to_string(angles[2]));
+}
+
+}  // namespace
+}  // namespace ricochet

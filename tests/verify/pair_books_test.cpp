@@ -1,0 +1,78 @@
+#include "ricochet/verify/pair_books.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ricochet {
+namespace {
+
+using verify::is_wrong;
+using verify::PairBooks;
+
+/// Two spheres of 1 kg and 0.1 m that meet along x at 2 m/s, answered as e and the friction impulse along y say.
+PairMeeting meeting_of(double e, double drag) {
+    PairMeeting meeting{0.5, {{}, {}}, {{0, 1, {}}}};
+    MetSphere& a = meeting.spheres[0];
+    MetSphere& b = meeting.spheres[1];
+    a = {1, 1.0, 0.1, false, {{0, 0, 0}, {1, 0.5, 0}, {}}, {}};
+    b = {2, 1.0, 0.1, false, {{0.2, 0, 0}, {-1, -0.5, 0}, {}}, {}};
+    const Vec3 impulse{(1.0 + e), drag, 0.0};
+    meeting.contacts[0].impulse = impulse;
+    const double inertia = 0.4 * 0.1 * 0.1;
+    const Vec3 turn = (-0.1 / inertia) * cross(Vec3{1, 0, 0}, impulse);
+    a.after = {a.before.position, a.before.velocity - impulse, turn};
+    b.after = {b.before.position, b.before.velocity + impulse, turn};
+    return meeting;
+}
+
+constexpr double kSticks = 1.0 / 7.0;  // N s: stops the slip of 1 m/s
+
+TEST(PairBooks, RightImpactsAddUp) {
+    EXPECT_FALSE(is_wrong(meeting_of(1.0, 0.0), {}));
+    EXPECT_FALSE(is_wrong(meeting_of(0.5, 0.0), {.restitution = 0.5}));
+    EXPECT_FALSE(is_wrong(meeting_of(0.5, kSticks), {.restitution = 0.5, .friction = 0.3}));
+    EXPECT_FALSE(is_wrong(meeting_of(0.0, 0.0), {.restitution = 0.5, .resting_speed = 1.5}));
+}
+
+TEST(PairBooks, EachKindOfMistakeIsSeen) {
+    const PairBooks books{.restitution = 0.5, .friction = 0.3};
+    const std::vector<std::pair<std::string, std::function<void(PairMeeting&)>>> mistakes = {
+        {"apart", [](PairMeeting& m) { m.spheres[1].before.position.x += 1e-8; }},
+        {"not where they were",
+         [](PairMeeting& m) { m.spheres[1].before.position.x = m.spheres[0].before.position.x; }},
+        {"velocity", [](PairMeeting& m) { m.spheres[0].after.velocity.z += 1e-10; }},
+        {"spin", [](PairMeeting& m) { m.spheres[1].after.spin.z += 1e-7; }},
+        {"impulse", [](PairMeeting& m) { m.contacts[0].impulse.x += 1e-10; }},
+        {"energy", [](PairMeeting& m) { m = meeting_of(1.5, 0.0); }},
+        {"restitution", [](PairMeeting& m) { m = meeting_of(0.4, 0.0); }},
+        {"friction", [](PairMeeting& m) { m = meeting_of(0.5, 0.5); }},
+        {"pull", [](PairMeeting& m) { m = meeting_of(-1.5, 0.0); }},
+        {"fixed", [](PairMeeting& m) {
+             m.spheres[0].after.velocity = {1e300, 0, 0};
+         }}};
+    for (const auto& [name, make] : mistakes) {
+        PairMeeting meeting = meeting_of(0.5, kSticks);
+        ASSERT_FALSE(is_wrong(meeting, books));
+        make(meeting);
+        EXPECT_TRUE(is_wrong(meeting, books)) << name;
+    }
+}
+
+TEST(PairBooks, EnergyThatIsLostIsSeenWhereNothingTakesAny) {
+    EXPECT_TRUE(is_wrong(meeting_of(0.9, 0.0), {}));
+    EXPECT_FALSE(is_wrong(meeting_of(0.9, 0.0), {.restitution = 0.9}));
+}
+
+TEST(PairBooks, OnPathsThatAreNotExactSpheresMayBeApart) {
+    PairMeeting meeting = meeting_of(1.0, 0.0);
+    meeting.spheres[1].before.position.x += 1e-6;
+    EXPECT_TRUE(is_wrong(meeting, {}));
+    EXPECT_FALSE(is_wrong(meeting, {.has_exact_paths = false}));
+}
+
+}  // namespace
+}  // namespace ricochet

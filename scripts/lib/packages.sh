@@ -17,6 +17,7 @@ packages_format=(clang-format)
 packages_tidy=(clang-tidy)
 packages_clang=(clang)
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
+# Blender, which one of them uses too, is left to who wants it: half a gigabyte.
 packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv)
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.

@@ -20,6 +20,9 @@ void add_compare_command(cli::Command program, int& exit_code);
 /// `info MESH [--json]`: what a mesh file holds and what its defects mean.
 void add_info_command(cli::Command program, int& exit_code);
 
+/// `new MESH --output SCENE.json [--template NAME]`: a scene fitted to a mesh.
+void add_new_command(cli::Command program, int& exit_code);
+
 /// `render DIR --output FILE.png|.mp4`: pictures and films of a run.
 void add_render_command(cli::Command program, int& exit_code);
 

@@ -41,6 +41,7 @@ struct RenderArguments {
     double exposure = 1.0;
     bool night = false;
     std::string threads;
+    std::string progress = "auto";
     bool quiet = false;
 };
 
@@ -137,7 +138,8 @@ void check_numbers(const RenderArguments& arguments) {
 // Shows how far the pictures are.
 class Watch {
 public:
-    Watch(std::size_t pictures, bool quiet) : line_(quiet), pictures_(pictures) {}
+    Watch(std::size_t pictures, const RenderArguments& arguments)
+        : line_(arguments.quiet, parse_progress(arguments.progress)), pictures_(pictures) {}
 
     [[nodiscard]] std::function<void(double)> callback(std::size_t picture) {
         return [this, picture](double part) {
@@ -158,7 +160,7 @@ private:
 void write_film(RunPictures& pictures, const std::vector<FrameFile>& frames, PictureOptions options,
                 const RenderArguments& arguments) {
     Film film(arguments.output, options.width, options.height, arguments.frames_per_second);
-    Watch watch(frames.size(), arguments.quiet);
+    Watch watch(frames.size(), arguments);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         options.progress = watch.callback(i);
         film.add(pictures.picture(frames[i], options));
@@ -173,7 +175,7 @@ std::filesystem::path numbered(const std::filesystem::path& path, std::uint64_t 
 void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames, PictureOptions options,
                     const RenderArguments& arguments) {
     const std::filesystem::path output = arguments.output;
-    Watch watch(frames.size(), arguments.quiet);
+    Watch watch(frames.size(), arguments);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         options.progress = watch.callback(i);
         const Image image = pictures.picture(frames[i], options);
@@ -194,6 +196,7 @@ void render(const RenderArguments& arguments) {
         refuse(fmt::format("--output {}: expected a name that ends in .png or .mp4", arguments.output));
     }
     check_numbers(arguments);
+    (void)parse_progress(arguments.progress);  // wrong words are told before the work
     const PictureSize size = parse_picture_size(arguments.size);
     const bool film = extension == ".mp4";
     if (film && (size.width % 2 != 0 || size.height % 2 != 0)) {
@@ -241,7 +244,12 @@ void add_options(cli::Command command, RenderArguments& a) {
     command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
     command.add_option("--fps", a.frames_per_second, "Pictures a second of a film").show_default();
     command.add_option("--threads", a.threads, "Worker threads (default: all)");
-    command.add_flag("--quiet", a.quiet, "No progress, no report");
+    command
+        .add_option("--progress", a.progress,
+                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
+        .type_name("auto|always|never")
+        .show_default();
+    command.add_flag("--quiet", a.quiet, "No report, and no progress unless --progress always");
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void check_target(const std::string& target, const SceneDescription& scene, cons
 // The progress line of a run. Steps cost more as particles are born, so the time left is told from the latest steps.
 class RunProgress {
 public:
-    explicit RunProgress(bool quiet) : line_(quiet) {}
+    RunProgress(bool quiet, cli::Progress progress) : line_(quiet, progress) {}
 
     // output_share: of the run's time so far.
     void show(const Simulation& simulation, double output_share) {
@@ -123,6 +123,7 @@ struct RunPlan {
     double earlier_seconds = 0.0;  // wall time before it was resumed
     Clock::time_point start = Clock::now();
     bool quiet = false;
+    cli::Progress progress = cli::Progress::automatic;
 
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
     // Of the time so far; the clock need not have moved.
@@ -168,7 +169,7 @@ private:
 // the guard lives from then on.
 std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan,
                                           std::optional<InterruptGuard>& guard, LastState& last) {
-    RunProgress progress(plan.quiet);
+    RunProgress progress(plan.quiet, plan.progress);
     writer.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
@@ -313,7 +314,12 @@ void add_options(cli::Command command, RunArguments& a) {
     command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
     command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
         .type_name("exact|rollback|project|penalty");
-    command.add_flag("--quiet", a.quiet, "No progress, no report");
+    command
+        .add_option("--progress", a.progress,
+                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
+        .type_name("auto|always|never")
+        .show_default();
+    command.add_flag("--quiet", a.quiet, "No report, and no progress unless --progress always");
     command.add_flag(
         "--verify", a.verify,
         "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
@@ -326,6 +332,7 @@ void add_options(cli::Command command, RunArguments& a) {
 
 int cli::run_scene(const RunArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
+    const Progress progress = parse_progress(arguments.progress);
     SceneDescription scene = scene_of(arguments);
     check_target(arguments.output_state, scene, arguments.output);
     RunInfo info = run_info_of(scene);
@@ -339,7 +346,8 @@ int cli::run_scene(const RunArguments& arguments) {
     using Earlier = OutputDirectory::Earlier;
     const OutputDirectory folder(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
     check_writable(arguments.output_state);
-    RunPlan plan{.output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet};
+    RunPlan plan{
+        .output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet, .progress = progress};
     const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
     RunWriter writer(folder.path(), info, simulation, region, resumed);
     std::optional<InterruptGuard> guard;

@@ -15,6 +15,7 @@ struct RunArguments {
     std::string output_state;  ///< file; empty: none
     std::string threads;
     std::string response;
+    std::string progress = "auto";  ///< auto, always or never
     bool quiet = false;
     bool resume = false;
     bool verify = false;

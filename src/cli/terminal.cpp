@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ricochet/core/error.h"
+
 namespace ricochet::cli {
 
 void reserve_standard_streams() {
@@ -36,13 +38,23 @@ void print_table(std::vector<std::vector<std::string>> table) {
 namespace {
 
 constexpr std::string_view kErase = "\r\033[K";
+constexpr std::chrono::seconds kPipeInterval{10};
 
 std::atomic<bool> is_line_shown = false;  // on the terminal, by any ProgressLine
 
 }  // namespace
 
-ProgressLine::ProgressLine(bool quiet)
-    : enabled_(!quiet && ::isatty(STDERR_FILENO) == 1), next_(std::chrono::steady_clock::now()) {}
+Progress parse_progress(const std::string& text) {
+    if (text == "auto") return Progress::automatic;
+    if (text == "always") return Progress::always;
+    if (text == "never") return Progress::never;
+    throw InputError(fmt::format("--progress: found \"{}\", expected auto, always or never", text));
+}
+
+ProgressLine::ProgressLine(bool quiet, Progress progress)
+    : is_terminal_(::isatty(STDERR_FILENO) == 1),
+      enabled_(progress == Progress::always || (progress == Progress::automatic && !quiet && is_terminal_)),
+      next_(std::chrono::steady_clock::now()) {}
 
 ProgressLine::~ProgressLine() { erase(); }
 
@@ -51,13 +63,18 @@ bool ProgressLine::due() {
     const std::lock_guard lock(mutex_);
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return false;
-    next_ = now + std::chrono::milliseconds(100);
+    next_ = now + (is_terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(kPipeInterval));
     return true;
 }
 
 void ProgressLine::show(const std::string& text) {
     if (!enabled_) return;
     const std::lock_guard lock(mutex_);
+    if (!is_terminal_) {
+        (void)std::fputs(fmt::format("{}\n", printable(text)).c_str(), stderr);
+        (void)std::fflush(stderr);
+        return;
+    }
     (void)std::fputs(fmt::format("\r{}\033[K", printable(text)).c_str(), stderr);
     (void)std::fflush(stderr);
     shown_ = true;

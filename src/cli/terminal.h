@@ -54,19 +54,29 @@ void reserve_standard_streams();
 /// A header and rows of as many cells each: the first column to the left, numbers to the right.
 void print_table(std::vector<std::vector<std::string>> table);
 
-// One line on a terminal that is drawn over and over, and nothing at all in a pipe.
+// One line on a terminal that is drawn over and over; in a pipe nothing, or a line every ten seconds.
+
+/// When progress is shown.
+enum class Progress {
+    automatic,  ///< on a terminal
+    always,     ///< in a pipe too: a line at once, then one every ten seconds
+    never,
+};
+
+/// `auto`, `always` or `never`. Throws InputError.
+[[nodiscard]] Progress parse_progress(const std::string& text);
 
 /// Progress on stderr. May be used from several threads.
 class ProgressLine {
 public:
-    /// quiet: show nothing even on a terminal.
-    explicit ProgressLine(bool quiet);
+    /// quiet: show nothing even on a terminal, unless it is to be shown always.
+    explicit ProgressLine(bool quiet, Progress progress = Progress::automatic);
     /// Erases the line.
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// True when it is time to draw again (ten times a second at most).
+    /// True when it is time to draw again: ten times a second at most, every ten seconds in a pipe.
     [[nodiscard]] bool due();
     void show(const std::string& text);
     void erase();
@@ -75,6 +85,7 @@ public:
 
 private:
     bool shown_ = false;
+    bool is_terminal_;
     bool enabled_;
     std::chrono::steady_clock::time_point next_;
     std::mutex mutex_;

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/scene_templates.h"
+#include "cli/terminal.h"
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/io/scene.h"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NewArguments {
+    std::string mesh;
+    std::string output;
+    std::string kind = "rain";
+    std::string up = "z";
+    bool force = false;
+};
+
+cli::SceneTemplate wanted_template(const NewArguments& arguments) {
+    if (const auto kind = cli::template_named(arguments.kind)) return *kind;
+    throw InputError(
+        fmt::format("--template: found \"{}\", expected rain, debris, sparks, gas or fountain", arguments.kind));
+}
+
+// The box of what the quarter turn about x makes of it: y becomes z, z becomes -y.
+Box3 turned(const Box3& box) {
+    return {{box.lower.x, -box.upper.z, box.lower.y}, {box.upper.x, -box.lower.z, box.upper.y}};
+}
+
+// As the scene names it: from its own folder, so that both can be moved together.
+std::string file_from(const fs::path& scene, const fs::path& mesh) {
+    const fs::path folder = fs::weakly_canonical(scene.parent_path().empty() ? fs::path(".") : scene.parent_path());
+    return fs::proximate(fs::weakly_canonical(mesh), folder).generic_string();
+}
+
+cli::FittedMesh fitted_mesh(const NewArguments& arguments) {
+    if (arguments.up != "z" && arguments.up != "y")
+        throw InputError(fmt::format("--up: found \"{}\", expected z or y", arguments.up));
+    const MeshReport report = report_on(read_mesh(arguments.mesh));
+    cli::FittedMesh mesh;
+    mesh.y_up = arguments.up == "y";
+    mesh.bounds = mesh.y_up ? turned(report.bounds) : report.bounds;
+    mesh.closed = report.topology.closed;
+    mesh.file = file_from(arguments.output, arguments.mesh);
+    if (!(mesh.bounds.diagonal() > 0.0) || !std::isfinite(mesh.bounds.diagonal()))
+        throw InputError(fmt::format("{}: the mesh has no extent, a scene cannot be fitted to it", arguments.mesh));
+    return mesh;
+}
+
+// A scene that is written is one that runs.
+void check_scene(const NewArguments& arguments, const std::string& text) {
+    try {
+        const Simulation simulation(parse_scene(text, arguments.output).setup);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: no {} scene can be fitted to this mesh: {}", arguments.mesh, arguments.kind,
+                                     error.what()));
+    }
+}
+
+void make_scene(const NewArguments& arguments) {
+    const cli::SceneTemplate kind = wanted_template(arguments);
+    const fs::path target(arguments.output);
+    std::error_code ignored;
+    if (fs::equivalent(target, arguments.mesh, ignored))
+        throw InputError(fmt::format("--output {}: is the mesh itself, expected another name", arguments.output));
+    if (!arguments.force && fs::exists(fs::symlink_status(target, ignored)))
+        throw InputError(
+            fmt::format("--output {}: exists already; another name, or --force to replace it", arguments.output));
+    const std::string text = cli::scene_text(kind, fitted_mesh(arguments));
+    check_scene(arguments, text);
+    write_file(target, text);
+    const std::string folder = (target.parent_path() / target.stem()).generic_string();
+    cli::print("{}: a {} scene for {}, {} up\n", arguments.output, arguments.kind, arguments.mesh, arguments.up);
+    if (arguments.up == "z") cli::print("  where the mesh lies on its side: --up y --force\n");
+    cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);
+}
+
+}  // namespace
+
+void add_new_command(cli::Command program, int& exit_code) {
+    const auto arguments = std::make_shared<NewArguments>();
+    cli::Command command = program.add_command("new", "Write a scene that is fitted to a mesh, to begin with");
+    command.add_option("mesh", arguments->mesh, "OBJ, PLY, STL or OFF file").required();
+    command.add_option("--output", arguments->output, "Scene file to write").type_name("FILE.json").required();
+    command.add_option("--template", arguments->kind, "What happens in it")
+        .type_name("rain|debris|sparks|gas|fountain")
+        .show_default();
+    command.add_option("--up", arguments->up, "Axis of the mesh file that points up").type_name("z|y").show_default();
+    command.add_flag("--force", arguments->force, "Replace a scene file of that name");
+    command.on_call([arguments, &exit_code] {
+        make_scene(*arguments);
+        exit_code = 0;
+    });
+}
+
+}  // namespace ricochet

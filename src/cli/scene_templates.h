@@ -1,0 +1,30 @@
+/// \file
+/// Scenes that `ricochet new` writes: fitted to a mesh, with comments.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ricochet/core/box3.h"
+
+namespace ricochet::cli {
+
+/// What happens in the scene.
+enum class SceneTemplate { rain, debris, sparks, gas, fountain };
+
+/// The template of this name; nothing where there is none.
+[[nodiscard]] std::optional<SceneTemplate> template_named(std::string_view name);
+
+/// What a scene is fitted to.
+struct FittedMesh {
+    std::string file;     ///< as the scene names it
+    Box3 bounds;          ///< m, as the mesh stands in the scene; not empty
+    bool y_up = false;    ///< turned by a quarter about x, so that its y axis points up
+    bool closed = false;  ///< a gas can be inside
+};
+
+/// The text of a scene file: the mesh on a ground (a gas has none), emitter, camera; sizes and times from the bounds.
+[[nodiscard]] std::string scene_text(SceneTemplate kind, const FittedMesh& mesh);
+
+}  // namespace ricochet::cli

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "cli/run_program.h"
+#include "geometry/mesh_files.h"
+#include "support/temporary_folder.h"
+
+namespace ricochet {
+namespace {
+
+const std::string kOpen = "v 0 0 0\nv 3 0 0\nv 0 4 1\nf 1 2 3\n";
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(NewCommand, WritesOfEveryTemplateASceneThatRunsForClosedAndOpenMeshes) {
+    const test::TemporaryFolder folder;
+    (void)folder.write("closed.obj", test::kObjTetrahedron);
+    (void)folder.write("open.obj", kOpen);
+    for (const std::string mesh : {"closed.obj", "open.obj"}) {
+        for (const std::string kind : {"rain", "debris", "sparks", "gas", "fountain"}) {
+            SCOPED_TRACE(mesh + " " + kind);
+            const std::string scene = folder.path(mesh + kind + ".json").string();
+            const auto made = test::run_ricochet(
+                {"new", folder.path(mesh).string(), "--output", scene, "--template", kind, "--up", "y"});
+            ASSERT_EQ(made.exit_code, 0) << made.errors;
+            EXPECT_EQ(made.errors, "");
+            EXPECT_NE(text_of(scene).find("\"file\": \"" + mesh + "\""), std::string::npos) << "not relative";
+            const auto run =
+                test::run_ricochet({"run", scene, "--output", scene + "_run", "--set", "output.every=100"});
+            ASSERT_EQ(run.exit_code, 0) << run.errors;
+            EXPECT_EQ(run.output.find("  0 particles emitted"), std::string::npos) << run.output;
+            EXPECT_EQ(run.output.find(", 0 contacts"), std::string::npos) << run.output;
+        }
+    }
+}
+
+TEST(NewCommand, FitsToAMeshOfAnySizeAndPlace) {
+    const test::TemporaryFolder folder;
+    for (const std::string mesh : {"v 0 0 0\nv 1e-4 0 0\nv 0 1e-4 2e-5\nf 1 2 3\n",
+                                   "v 400000 5000000 80\nv 400900 5000000 90\nv 400000 5000800 120\nf 1 2 3\n",
+                                   "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n"}) {
+        SCOPED_TRACE(mesh);
+        const std::string scene = folder.path("s.json").string();
+        const auto made = test::run_ricochet(
+            {"new", folder.write("m.obj", mesh), "--output", scene, "--template", "debris", "--force"});
+        ASSERT_EQ(made.exit_code, 0) << made.errors;
+        const auto run = test::run_ricochet({"run", scene, "--output", scene + "_run", "--set", "output.every=100"});
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        EXPECT_EQ(run.output.find(", 0 contacts"), std::string::npos) << run.output;
+    }
+}
+
+TEST(NewCommand, LeavesAFileThatIsThereAloneUnlessItIsTold) {
+    const test::TemporaryFolder folder;
+    const std::string mesh = folder.write("m.obj", test::kObjTetrahedron);
+    const std::string scene = folder.write("s.json", "mine");
+    const auto refused = test::run_ricochet({"new", mesh, "--output", scene});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.errors.find("exists already"), std::string::npos) << refused.errors;
+    EXPECT_EQ(text_of(scene), "mine");
+    EXPECT_EQ(test::run_ricochet({"new", mesh, "--output", scene, "--force"}).exit_code, 0);
+    EXPECT_NE(text_of(scene), "mine");
+    EXPECT_EQ(test::run_ricochet({"new", mesh, "--output", mesh, "--force"}).exit_code, 2);
+    EXPECT_EQ(text_of(mesh), test::kObjTetrahedron);
+}
+
+TEST(NewCommand, AnswersWrongInputWithOneLine) {
+    const test::TemporaryFolder folder;
+    const std::string mesh = folder.write("m.obj", test::kObjTetrahedron);
+    const std::string scene = folder.path("s.json").string();
+    const std::string point = folder.write("p.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
+    const std::vector<std::vector<std::string>> cases = {{"new", mesh, "--output", scene, "--template", "snow"},
+                                                         {"new", mesh, "--output", scene, "--up", "w"},
+                                                         {"new", point, "--output", scene},
+                                                         {"new", "missing.obj", "--output", scene}};
+    for (const auto& arguments : cases) {
+        const auto result = test::run_ricochet(arguments);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+        EXPECT_FALSE(std::filesystem::exists(scene));
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -17,6 +17,7 @@
 #include "ricochet/core/byte_stream.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
+#include "ricochet/core/ranks.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
@@ -58,6 +59,8 @@ struct SimulationSetup {
     std::optional<Box3> bounds;                       ///< particles outside are retired
     std::vector<AttributeDescription> attributes;     ///< what particles carry of the user's own, and for looks
     std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
+    /// The processes that share the particles, each with the same setup; null: this one has all. See show_whole().
+    std::shared_ptr<Ranks> ranks = {};
 };
 
 /// Counters over the whole run so far. Every one is the same for any thread count.
@@ -133,6 +136,13 @@ struct BodyState {
 
 class CollisionWorld;
 
+/// What Simulation::show_whole() shows.
+enum class Shown {
+    contacts,   ///< contact_records()
+    particles,  ///< those, particles(), statistics(), collider_totals() and what is made of them
+    all,        ///< those, triangle_totals(), and what save() saves
+};
+
 /// A particle that was born, by its id, and where it comes from.
 struct BirthRecord {
     std::uint64_t particle = 0;
@@ -188,6 +198,13 @@ public:
     /// be used then. What options.verify found before it is not known, and particles are
     /// watched from where they are.
     void restore(const ByteSource& source);
+
+    /// Where ranks share the run (SimulationSetup::ranks), each has particles of its own, and what they have done; the
+    /// bits are those of one process. The simulations of all ranks make the same calls of step(), advance(), restore()
+    /// and of this: while `show` runs, which it does on the first rank only, the simulation there has what all of them
+    /// have together. A state that it saves then can be restored by any number of ranks. Without ranks it just calls
+    /// `show`. Throws what that throws.
+    void show_whole(Shown what, const std::function<void()>& show);
 
     // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
     // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended

@@ -63,7 +63,7 @@ TEST(BinaryArchive, RefusesListsThatDoNotBelongTogether) {
     const Bytes bytes = written([](BinaryWriter& a) { a(std::vector<double>{1, 2, 3}); });
     std::vector<double> list;
     EXPECT_THROW(reader_of(bytes)(list, 2), InputError);
-    EXPECT_THROW(reader_of(bytes).all_or_none(list, 2), InputError);
+    EXPECT_THROW(reader_of(bytes).all_or_none(list, 2, 0.0), InputError);
     BinaryReader entries = reader_of(bytes);
     EXPECT_THROW(archive_entries(
                      entries, list, [&](double& x) { entries(x); }, 4),
@@ -71,7 +71,7 @@ TEST(BinaryArchive, RefusesListsThatDoNotBelongTogether) {
     reader_of(bytes)(list, 3);
     EXPECT_EQ(list.size(), 3U);
     const Bytes empty = written([](BinaryWriter& a) { a(std::vector<double>{}); });
-    reader_of(empty).all_or_none(list, 2);
+    reader_of(empty).all_or_none(list, 2, 0.0);
     EXPECT_TRUE(list.empty());
 }
 

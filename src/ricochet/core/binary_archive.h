@@ -49,9 +49,10 @@ public:
         static_cast<void>(size);
         (*this)(values);
     }
-    /// The same, or an empty one.
+    /// The same, or an empty one, which means that all have `absent`.
     template <class T>
-    void all_or_none(const std::vector<T>& values, std::size_t size) {
+    void all_or_none(const std::vector<T>& values, std::size_t size, const T& absent) {
+        static_cast<void>(absent);
         (*this)(values, size);
     }
     void operator()(const std::string& text) {
@@ -94,7 +95,8 @@ public:
     /// The same, or an empty one.
     template <class T>
     requires kIsFlat<T>
-    void all_or_none(std::vector<T>& values, std::size_t size) {
+    void all_or_none(std::vector<T>& values, std::size_t size, const T& absent) {
+        static_cast<void>(absent);
         const std::uint64_t found = length();
         if (found != 0 && found != size) throw InputError("saved lists that belong together have different lengths");
         fill(values, found);

@@ -283,7 +283,9 @@ std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) 
     if (piles_ != nullptr && piles_->has(id)) {
         piles_->add_weight(id, elapsed, hits);
     } else if (parts_.store.is_asleep(i)) {
-        parts_.response.add_weight(load(i, until), elapsed, hits);
+        MovingParticle sleeper = parts_.store.load(i, until, true);
+        sleeper.state.coupling = parts_.coupled.coupling_of(i);
+        parts_.response.add_weight(sleeper, elapsed, hits);
     }
     for (SurfaceHit& hit : hits) hit.impulse *= sign;
     return totals.add(hits);

@@ -232,6 +232,7 @@ void Simulation::restore(const ByteSource& source) {
     impl().replay_emitters();
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
     impl().driven.show();
+    if (!impl().share.is_alone()) impl().keep_share();
     if (impl().check) impl().check->restart(impl().store, time());
     impl().inside_step = false;
 }

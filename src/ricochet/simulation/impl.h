@@ -22,10 +22,20 @@
 #include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
+#include "ricochet/simulation/rank_share.h"
 #include "ricochet/simulation/retirement.h"
 #include "ricochet/simulation/run_recorder.h"
 
 namespace ricochet {
+
+/// What all ranks have together: only what is to be shown.
+struct WholeRun {
+    std::optional<std::vector<ContactRecord>> contacts;
+    std::optional<ParticleStore> store;
+    std::optional<SimulationStatistics> statistics;
+    std::optional<std::vector<ColliderTotals>> loads;
+    std::optional<SurfaceTotals> totals;
+};
 
 /// Members refer to members above them; it is never moved.
 struct Simulation::Impl {
@@ -45,7 +55,8 @@ struct Simulation::Impl {
     void move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks);
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
-    [[nodiscard]] ParticleRange spawn_children(const TimeSpan& step);
+    [[nodiscard]] std::string runaway_message(const std::vector<BlockRecord>& blocks, std::size_t i, double time) const;
+    [[nodiscard]] std::optional<ParticleRange> spawn_children(const TimeSpan& step);
     void retire_particles(double time);
     void check_spheres(double begin, double end);
     void end_step();
@@ -60,6 +71,8 @@ struct Simulation::Impl {
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
     void add(Particle&& particle);
+    /// Where it lives here: it takes its id in any case.
+    void add_to_share(Particle&& particle);
     /// room: filled with the spheres that are there by the first birth.
     [[nodiscard]] BirthTest birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const;
     [[nodiscard]] BirthRoom room_among_spheres(const TimeSpan& step) const;
@@ -76,6 +89,13 @@ struct Simulation::Impl {
     /// The same of those that stand in other spheres, which are counted.
     [[nodiscard]] std::optional<std::string> sphere_overlap_warning();
     void remove_leavers(double time);
+    /// Where ranks share the run, all of which have all particles so far: each keeps its own, and the first one what
+    /// has been counted.
+    void keep_share();
+    /// What all ranks have together, on the first one. All call it.
+    [[nodiscard]] WholeRun gather(Shown what);
+    /// Puts it in the place of what this rank has itself, or back.
+    void exchange(WholeRun& whole);
     void compact(const std::vector<std::uint8_t>& keep);
 
     /// Lends the weight of sleeping particles to the totals of surfaces (sign 1), or takes it back (-1).
@@ -97,6 +117,7 @@ struct Simulation::Impl {
     double particle_bytes;            ///< memory that one more takes
     std::uint64_t most_that_fit = 0;  ///< particles that the memory holds: more end the run, they are not refused
     AccelerationSwitches acceleration;
+    RankShare share;
     StepClock clock;
     std::vector<std::string> warnings;
     bool has_spheres;

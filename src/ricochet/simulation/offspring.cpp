@@ -199,7 +199,8 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
 }
 
 std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
-                                         std::vector<ContactRecord> records, OffspringCounts& counts) const {
+                                         std::vector<ContactRecord> records, const RankShare& share,
+                                         OffspringCounts& counts) const {
     std::stable_sort(records.begin(), records.end(),
                      [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
     const auto records_of = [&](std::uint64_t id) {
@@ -212,7 +213,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
     };
     const std::size_t count = positions_.size();
     std::vector<std::vector<SpawnBatch>> blocks((count + kBlock - 1) / kBlock);
-    const std::uint64_t room = room_below(limits_.most_particles, particles.size());
+    const std::uint64_t room = room_below(limits_.most_particles, share.living(particles.size()));
     const std::uint64_t fitting = room_below(most_that_fit_, particles.size());
     std::atomic<std::uint64_t> gathered{0};
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -242,56 +243,100 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
     for (std::vector<SpawnBatch>& block : blocks) {
         batches.insert(batches.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
     }
-    return spawn(batches, particles.size(), counts);
+    return spawn(batches, particles.size(), share, counts);
 }
 
-std::uint64_t Offspring::count_of(const std::vector<SpawnBatch>& batches) {
-    std::uint64_t count = 0;
-    for (const SpawnBatch& batch : batches) count += batch.count;
-    return count;
+std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnBatch>& batches) {
+    std::vector<Claim> claims;
+    claims.reserve(batches.size());
+    for (const SpawnBatch& batch : batches) {
+        claims.push_back({batch.time, batch.parent.id, batch.emitter, batch.first_ordinal, batch.count,
+                          batch.parent.origin.generation, batch.parent.mass, batch.share});
+    }
+    return claims;
 }
 
-Child Offspring::child_of(const SpawnBatch& batch, Particle&& particle) const {
+/// Decides of all batches of a pass, in their order, how many of each may live.
+void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
+                      OffspringCounts& counts) const {
+    for (Claim& claim : claims) {
+        if (claim.generation >= limits_.max_depth) {
+            counts.refused_by_depth += claim.count;
+            continue;
+        }
+        if (claim.share) --living;  // the parent makes room
+        const std::uint64_t room = room_below(limits_.most_particles, living);
+        const std::uint32_t most = claim.share ? most_fragments(claim.mass) : claim.count;
+        claim.allowed = static_cast<std::uint32_t>(
+            std::min<std::uint64_t>({claim.count, most, std::max<std::uint64_t>(room, claim.share ? 1 : 0)}));
+        claim.first = counts.children;
+        counts.refused_by_population += claim.count - claim.allowed;
+        if (claim.allowed > room_below(most_that_fit, living)) refuse_to_grow(living, bytes_each_);
+        living += claim.allowed;
+        counts.children += claim.allowed;
+    }
+}
+
+/// The same where ranks share the run: each decides of all batches of all of them. A parent's are on one rank.
+void Offspring::allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
+                               OffspringCounts& counts) const {
+    const auto rank = static_cast<std::uint32_t>(share.ranks().rank());
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].batch = k;
+    std::vector<Claim> all = gather_list_to_all(share.ranks(), mine);
+    std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) {
+        return std::tuple(a.time, a.parent, a.emitter, a.first_ordinal) <
+               std::tuple(b.time, b.parent, b.emitter, b.first_ordinal);
+    });
+    allot(all, share.living(here), std::numeric_limits<std::uint64_t>::max(), counts);
+    std::uint64_t born_here = 0;
+    for (const Claim& claim : all) {
+        if (claim.rank != rank) continue;
+        mine[claim.batch] = claim;
+        born_here += claim.allowed;
+    }
+    if (born_here > room_below(most_that_fit_, here)) refuse_to_grow(here, bytes_each_);
+}
+
+Child Offspring::child_of(const SpawnBatch& batch, Particle&& particle, std::uint64_t number) const {
     const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
     const auto sides = std::span(sides_).subspan(batch.entry * colliders, colliders);
     const bool is_fragment = batch.share && emitters_[batch.emitter].description().parent->on == BirthEvent::impact;
-    return {std::move(particle), positions_[batch.entry], sides, is_fragment};
+    return {std::move(particle), positions_[batch.entry], sides, is_fragment, number};
 }
 
-std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t here, const RankShare& share,
                                     OffspringCounts& counts) const {
     std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
         return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
     });
+    std::vector<Claim> claims = claims_of(batches);
+    if (share.is_alone()) {
+        allot(claims, here, most_that_fit_, counts);
+    } else {
+        allot_together(claims, share, here, counts);
+    }
     std::vector<Child> children;
-    children.reserve(std::min({count_of(batches), room_below(limits_.most_particles, living) + batches.size(),
-                               room_below(most_that_fit_, living)}));
-    for (const SpawnBatch& batch : batches) {
-        if (batch.parent.origin.generation >= limits_.max_depth) {
-            counts.refused_by_depth += batch.count;
+    std::size_t born_here = 0;
+    for (const Claim& claim : claims) born_here += claim.allowed;
+    children.reserve(born_here);
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+        const SpawnBatch& batch = batches[i];
+        const Claim& claim = claims[i];
+        if (claim.allowed == 0) continue;
+        const Emitter& emitter = emitters_[batch.emitter];
+        std::uint64_t number = claim.first;
+        if (batch.share) {
+            for (Particle& fragment :
+                 make_fragments(emitter, batch.parent, claim.allowed, batch.first_ordinal, batch.time)) {
+                children.push_back(child_of(batch, std::move(fragment), number++));
+            }
             continue;
         }
-        if (batch.share) --living;  // the parent makes room
-        const std::uint64_t room = room_below(limits_.most_particles, living);
-        const std::uint32_t most = batch.share ? most_fragments(batch.parent.mass) : batch.count;
-        const auto allowed = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>({batch.count, most, std::max<std::uint64_t>(room, batch.share ? 1 : 0)}));
-        counts.refused_by_population += batch.count - allowed;
-        if (allowed > room_below(most_that_fit_, living)) refuse_to_grow(living, bytes_each_);
-        const Emitter& emitter = emitters_[batch.emitter];
-        if (batch.share) {
-            for (Particle& fragment : make_fragments(emitter, batch.parent, allowed, batch.first_ordinal, batch.time)) {
-                children.push_back(child_of(batch, std::move(fragment)));
-            }
-        } else {
-            for (std::uint32_t k = 0; k < allowed; ++k) {
-                children.push_back(
-                    child_of(batch, make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time)));
-            }
+        for (std::uint32_t k = 0; k < claim.allowed; ++k) {
+            Particle child = make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time);
+            children.push_back(child_of(batch, std::move(child), number++));
         }
-        living += allowed;
-        counts.children += allowed;
     }
     return children;
 }

@@ -18,6 +18,7 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/options.h"
+#include "ricochet/simulation/rank_share.h"
 
 namespace ricochet {
 
@@ -38,6 +39,7 @@ struct Child {
     Vec3 parent_start;                         ///< m, where the parent's move began
     std::span<const SideMemory> parent_sides;  ///< its sides there; valid until the next before_move()
     bool goes_on = false;                      ///< a fragment: what its parent touches it is in contact with already
+    std::uint64_t number = 0;                  ///< among all children of the pass, those of other ranks too
 };
 
 /// What a pass has spawned and refused.
@@ -68,9 +70,9 @@ public:
     /// any.
     void before_move(const Particles& particles, std::size_t first, std::span<const SideMemory> sides);
     /// The children that the entries kept have spawned in [from, to), in the order of (time, parent, ordinal). records:
-    /// of the impacts of these entries, those of one particle in the order of time.
+    /// of the impacts of these entries, those of one particle in the order of time. counts: of all ranks, on each.
     [[nodiscard]] std::vector<Child> after_move(const CollisionWorld& world, Particles& particles, double from,
-                                                double to, std::vector<ContactRecord> records,
+                                                double to, std::vector<ContactRecord> records, const RankShare& share,
                                                 OffspringCounts& counts) const;
 
 private:
@@ -84,6 +86,21 @@ private:
         Particle parent;        ///< as it is at the birth
         std::size_t entry = 0;  ///< of the parent, from first_ on
     };
+    /// What decides how many of a batch may live, and what has been decided.
+    struct Claim {
+        double time = 0.0;
+        std::uint64_t parent = 0;  ///< id
+        std::uint32_t emitter = 0;
+        std::uint32_t first_ordinal = 0;
+        std::uint32_t count = 0;
+        std::uint32_t generation = 0;  ///< the parent's
+        double mass = 0.0;             ///< kg, the parent's
+        bool share = false;
+        std::uint32_t rank = 0;
+        std::uint64_t batch = 0;  ///< its number there
+        std::uint32_t allowed = 0;
+        std::uint64_t first = 0;  ///< number of its first child among all of the pass
+    };
     struct Trajectory;
 
     [[nodiscard]] Trajectory trajectory_of(const Particles& particles, std::size_t i, double from, double to,
@@ -93,9 +110,13 @@ private:
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                      std::vector<SpawnBatch>& batches) const;
     void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
-    [[nodiscard]] static std::uint64_t count_of(const std::vector<SpawnBatch>& batches);
-    [[nodiscard]] Child child_of(const SpawnBatch& batch, Particle&& particle) const;
-    [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnBatch>& batches, std::size_t living,
+    [[nodiscard]] static std::vector<Claim> claims_of(const std::vector<SpawnBatch>& batches);
+    void allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
+               OffspringCounts& counts) const;
+    void allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
+                        OffspringCounts& counts) const;
+    [[nodiscard]] Child child_of(const SpawnBatch& batch, Particle&& particle, std::uint64_t number) const;
+    [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnBatch>& batches, std::size_t here, const RankShare& share,
                                            OffspringCounts& counts) const;
 
     const std::vector<Emitter>& emitters_;

@@ -47,7 +47,7 @@ public:
     /// Saves or restores all; a: an archive of core/binary_archive.h, count: of the particles.
     template <class Archive>
     void archive(Archive& a, std::size_t count) {
-        a.all_or_none(cores_, count);
+        a.all_or_none(cores_, count, kNone);
     }
 
     /// Spin of the core of a sphere, rad/s.

@@ -24,6 +24,11 @@ ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool 
     particles_.keeps_origin = keeps_origin;
 }
 
+ParticleStore ParticleStore::empty_copy() const {
+    const auto columns = particles_.attributes.columns();
+    return {{columns.begin(), columns.end()}, particles_.keeps_origin, may_sleep_, colliders_, keeps_rides_};
+}
+
 void ParticleStore::append(Particle&& particle) {
     particle.id = next_id_++;
     particle.position = flush_tiny(particle.position);

@@ -83,6 +83,10 @@ public:
 
     /// The id of the next particle that is added.
     [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
+    /// Where particles with the ids between live on other ranks.
+    void set_next_id(std::uint64_t id) { next_id_ = id; }
+    /// A store like this one, without particles.
+    [[nodiscard]] ParticleStore empty_copy() const;
 
     /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
     template <class Archive>

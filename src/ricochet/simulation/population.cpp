@@ -21,7 +21,7 @@ namespace ricochet {
 
 // Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
 void Simulation::Impl::emit_particles(const TimeSpan& step) {
-    const std::uint64_t room = room_below(options.most_particles, store.size());
+    const std::uint64_t room = room_below(options.most_particles, share.living(store.size()));
     const std::uint64_t fitting = room_below(most_that_fit, store.size());
     std::vector<Particle> born;
     std::uint64_t count = 0;
@@ -41,32 +41,46 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     std::stable_sort(born.begin(), born.end(),
                      [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
     const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
-    recorder.statistics().births_refused_by_overlap += refused;
-    recorder.statistics().births_refused_by_population += count - refused - allowed;
-    reserve(allowed);
-    for (std::size_t k = 0; k < allowed; ++k) add(std::move(born[k]));
+    if (share.is_first()) {
+        recorder.statistics().births_refused_by_overlap += refused;
+        recorder.statistics().births_refused_by_population += count - refused - allowed;
+    }
+    if (share.is_alone()) reserve(allowed);
+    for (std::size_t k = 0; k < allowed; ++k) add_to_share(std::move(born[k]));
+    share.add_births(allowed);
     if (allowed > 0 && coupled.is_active()) coupled.bind(particles());
     if (check) check->watch_spawned(particles());
 }
 
-/// Returns the children.
-ParticleRange Simulation::Impl::spawn_children(const TimeSpan& step) {
-    const ParticleRange none{store.size(), store.size()};
-    if (!offspring) return none;
+void Simulation::Impl::add_to_share(Particle&& particle) {
+    const std::uint64_t id = store.next_id();
+    if (share.has_place_for(id)) return add(std::move(particle));
+    store.set_next_id(id + 1);
+}
+
+/// Returns the children that live here; nothing where none is born, not on other ranks either.
+std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& step) {
+    if (!offspring) return std::nullopt;
+    const std::size_t first = store.size();
+    const std::uint64_t first_id = store.next_id();
     OffspringCounts counts;
-    for (Child& child :
-         offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(), counts)) {
+    for (Child& child : offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(),
+                                              share, counts)) {
+        store.set_next_id(first_id + child.number);
         add(std::move(child.particle));
         if (response->keeps_sides()) inherit_sides(store.size() - 1, child);
     }
-    SimulationStatistics& statistics = recorder.statistics();
-    statistics.children += counts.children;
-    statistics.births_refused_by_depth += counts.refused_by_depth;
-    statistics.births_refused_by_population += counts.refused_by_population;
-    const ParticleRange children{none.begin, store.size()};
-    if (!children.empty() && coupled.is_active()) coupled.bind(particles());
+    store.set_next_id(first_id + counts.children);
+    share.add_births(counts.children);
+    if (share.is_first()) {
+        SimulationStatistics& statistics = recorder.statistics();
+        statistics.children += counts.children;
+        statistics.births_refused_by_depth += counts.refused_by_depth;
+        statistics.births_refused_by_population += counts.refused_by_population;
+    }
+    if (counts.children > 0 && coupled.is_active()) coupled.bind(particles());
     if (check) check->watch_spawned(particles());
-    return children;
+    return counts.children > 0 ? std::optional(ParticleRange{first, store.size()}) : std::nullopt;
 }
 
 /// A child belongs to the sides that its parent belongs to, on whichever it begins.
@@ -200,6 +214,7 @@ std::uint64_t Simulation::add_particle(Particle particle) { return add_particles
 
 std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> particles) {
     impl().require_between_steps();
+    impl().share.require_alone("add_particles");
     for (std::size_t k = 0; k < particles.size(); ++k) {
         validate(particles[k], k, impl().particles().attributes.columns().size());
     }
@@ -236,6 +251,7 @@ bool Simulation::remove_particle(std::uint64_t id) { return remove_particles(std
 
 std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
     impl().require_between_steps();
+    impl().share.require_alone("remove_particles");
     std::vector<std::uint64_t> sorted(ids.begin(), ids.end());
     std::sort(sorted.begin(), sorted.end());
     std::vector<std::uint8_t> keep(impl().store.size(), 1);

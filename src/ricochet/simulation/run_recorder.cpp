@@ -37,6 +37,21 @@ std::uint64_t SurfaceTotals::add(std::span<const SurfaceHit> hits) {
     return lost;
 }
 
+void SurfaceTotals::add(const SurfaceTotals& other) {
+    const auto add_words = [](FixedPointSum& sum, const FixedPointSum& more) {
+        const auto [low, high] = sum.words();
+        const auto [low_more, high_more] = more.words();
+        const std::uint64_t carry = low + low_more < low ? 1 : 0;
+        sum.set_words({low + low_more, high + high_more + carry});
+    };
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+        entries_[k].hits.fetch_add(other.hits(k), std::memory_order_relaxed);
+        add_words(entries_[k].x, other.entries_[k].x);
+        add_words(entries_[k].y, other.entries_[k].y);
+        add_words(entries_[k].z, other.entries_[k].z);
+    }
+}
+
 Vec3 SurfaceTotals::impulse(std::size_t surface) const {
     const Entry& entry = entries_[surface];
     return {entry.x.value(kImpulseUnit), entry.y.value(kImpulseUnit), entry.z.value(kImpulseUnit)};
@@ -92,14 +107,16 @@ void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
     record_violations(blocks);
 }
 
+void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders) {
+    ColliderTotals& of_collider = totals[colliders.collider_of(load.surface)];
+    of_collider.hits += load.impact ? 1 : 0;
+    of_collider.impulse += load.impulse;
+    of_collider.moment += load.moment;
+    of_collider.work += load.work;
+}
+
 void RunRecorder::add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders) {
-    for (const ColliderLoad& load : loads) {
-        ColliderTotals& totals = loads_[colliders.collider_of(load.surface)];
-        totals.hits += load.impact ? 1 : 0;
-        totals.impulse += load.impulse;
-        totals.moment += load.moment;
-        totals.work += load.work;
-    }
+    for (const ColliderLoad& load : loads) add_load(loads_, load, colliders);
 }
 
 void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
@@ -140,8 +157,8 @@ void RunRecorder::end_batch(std::size_t particles) {
 }
 
 // Within a particle impacts are in the order of time already.
-void RunRecorder::end_step() {
-    std::stable_sort(contacts_.begin(), contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) {
+void RunRecorder::put_in_order(std::vector<ContactRecord>& records) {
+    std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
     std::stable_sort(pair_records_.begin(), pair_records_.end(),

@@ -43,6 +43,8 @@ public:
     [[nodiscard]] std::uint64_t hits(std::size_t surface) const {
         return entries_[surface].hits.load(std::memory_order_relaxed);
     }
+    /// Adds the sums of another part of the run, of as many surfaces.
+    void add(const SurfaceTotals& other);
     /// N s, given to the surface.
     [[nodiscard]] Vec3 impulse(std::size_t surface) const;
 
@@ -118,6 +120,9 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
     penetration_deepest = std::max(penetration_deepest, outcome.depth);
 }
 
+/// Adds what a particle has done to a collider to the totals of all.
+void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders);
+
 /// The first particle of all blocks that has come beyond kMaxSpeed.
 [[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);
 
@@ -136,6 +141,7 @@ public:
 
     /// From the next step on.
     void show_contacts(bool shows) { shows_contacts_ = shows; }
+    [[nodiscard]] bool shows_contacts() const { return shows_contacts_; }
     void begin_step();
     /// The particles that are moved next.
     void begin_batch() { batch_contacts_.clear(); }
@@ -144,10 +150,12 @@ public:
     /// particles: how many were moved.
     void end_batch(std::size_t particles);
     /// Puts the contact records in the order of (time, particle, order of events).
-    void end_step();
+    void end_step() { put_in_order(contacts_); }
+    static void put_in_order(std::vector<ContactRecord>& records);
 
     [[nodiscard]] bool collects_contacts() const { return shows_contacts_ || collects_contacts_; }
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const { return contacts_; }
+    [[nodiscard]] std::vector<ContactRecord>& contact_records() { return contacts_; }
     [[nodiscard]] const std::vector<ContactRecord>& batch_contacts() const { return batch_contacts_; }
     [[nodiscard]] const std::vector<Violation>& violations() const { return violations_; }
     [[nodiscard]] const std::vector<Violation>& last_violations() const { return last_violations_; }

@@ -214,6 +214,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
       particle_bytes(bytes_per_particle(setup)),
       acceleration(setup.acceleration),
+      share(std::move(setup.ranks)),
       clock(options.time_step, options.duration),
       warnings(warnings_of(setup)),
       has_spheres(makes_spheres(setup)),
@@ -256,6 +257,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
     if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
+    if (!share.is_alone()) keep_share();
     if (coupled.is_active()) coupled.bind(particles());
     most_that_fit = store.size() + particles_that_fit(particle_bytes);
     if (offspring) offspring->set_memory(most_that_fit, particle_bytes);

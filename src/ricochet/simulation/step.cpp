@@ -53,11 +53,11 @@ bool Simulation::Impl::may_defer() const {
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
     emit_particles(step);
-    ParticleRange batch{0, store.size()};
+    std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
     do {
-        move_batch(batch, step);
+        move_batch(*batch, step);
         batch = spawn_children(step);
-    } while (!batch.empty());
+    } while (batch);
     retire_particles(step.end);
     check_spheres(step.begin, step.end);
     end_step();
@@ -134,6 +134,7 @@ double Simulation::Impl::oldest_position() const {
 
 void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks) {
     recorder.record(blocks);
+    if (!share.is_alone()) share.note(blocks, particles().id);
     std::vector<ColliderLoad> loads;
     for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
     if (!driven.is_active()) {
@@ -216,24 +217,32 @@ void Simulation::Impl::order_active_set(ActiveSet& active) const {
     }
 }
 
+// Where ranks share the run, it ends on all of them in the same step, by the particle that would have ended it.
 void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {
     const std::optional<std::size_t> i = first_runaway(blocks);
-    if (!i) return;
+    if (!i && share.is_alone()) return;
+    std::optional<std::string> message;
+    if (i) message = runaway_message(blocks, *i, time);
+    if (!share.is_alone()) message = share.first_message(message, i ? particles().id[*i] : 0);
+    if (message) throw DivergedError(*message);
+}
+
+std::string Simulation::Impl::runaway_message(const std::vector<BlockRecord>& blocks, std::size_t i,
+                                              double time) const {
     // Surfaces at rest give no speed.
-    const bool is_thrown =
-        recorder.collects_loads() && std::any_of(blocks.begin(), blocks.end(), [&](const BlockRecord& block) {
-            return block.runaway == i && block.runaway_is_thrown;
-        });
+    const bool is_thrown = recorder.collects_loads() && std::any_of(blocks.begin(), blocks.end(), [&](const auto& b) {
+                               return b.runaway == i && b.runaway_is_thrown;
+                           });
     if (is_thrown) {
-        throw DivergedError(fmt::format(
+        return fmt::format(
             "by t = {:.6g} s a surface has thrown particle {} at {:.3g} m/s, beyond the speed of light: let "
             "the colliders, or their materials, move more slowly",
-            time, particles().id[*i], length(particles().velocity[*i])));
+            time, particles().id[i], length(particles().velocity[i]));
     }
-    throw DivergedError(fmt::format(
+    return fmt::format(
         "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
         "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
-        time, particles().id[*i], length(particles().velocity[*i])));
+        time, particles().id[i], length(particles().velocity[i]));
 }
 
 void Simulation::Impl::retire_particles(double time) {
@@ -276,6 +285,7 @@ void Simulation::Impl::end_step() {
     statistics.springs_lost = coupled.springs().lost();
     statistics.unsolved_steps = coupled.unsolved_steps() + (pairs ? pairs->unsolved() : 0);
     ++statistics.steps;
+    if (!share.is_alone()) share.end_step(store.size(), *colliders);
     inside_step = false;
 }
 

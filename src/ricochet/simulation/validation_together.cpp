@@ -147,9 +147,25 @@ void validate_bodies(const SimulationSetup& setup) {
     }
 }
 
+/// What one process must do alone.
+void validate_ranks(const SimulationSetup& setup) {
+    if (!setup.ranks || setup.ranks->size() < 2) return;
+    const auto refuse = [&](const char* what, const char* why) {
+        Subject(what).refuse("ranks", setup.ranks->size(),
+                             fmt::format("1 (run it in one process, with threads): {}", why));
+    };
+    if (!setup.springs.empty() || setup.solver) refuse("springs", "particles that act on each other move together");
+    if (!setup.particles_forces.empty()) refuse("particle_forces", "each particle pulls at all others");
+    if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
+    if (!setup.bodies.empty()) refuse("bodies", "what all particles do to a body moves it within a step");
+    if (setup.options.response != ResponseKind::exact) refuse("response", "only exact moves each particle by itself");
+    if (setup.options.verify) refuse("verify", "the list of what is wrong is made in one process");
+}
+
 }  // namespace
 
 void validate_together(const SimulationSetup& setup) {
+    validate_ranks(setup);
     validate_moving_colliders(setup);
     validate_bodies(setup);
     validate_particle_contacts(setup);

@@ -1,0 +1,144 @@
+// A run that ranks share, put together on the first of them.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/binary_archive.h"
+#include "ricochet/core/merging_reader.h"
+#include "ricochet/simulation/impl.h"
+
+namespace ricochet {
+namespace {
+
+/// Everything that is counted by each rank for its own particles.
+constexpr std::array kCounted = {
+    &SimulationStatistics::particle_steps,
+    &SimulationStatistics::emitted,
+    &SimulationStatistics::expired,
+    &SimulationStatistics::absorbed,
+    &SimulationStatistics::shattered,
+    &SimulationStatistics::children,
+    &SimulationStatistics::births_refused_by_depth,
+    &SimulationStatistics::births_refused_by_population,
+    &SimulationStatistics::births_refused_by_overlap,
+    &SimulationStatistics::out_of_bounds,
+    &SimulationStatistics::removed,
+    &SimulationStatistics::contacts,
+    &SimulationStatistics::pair_impacts,
+    &SimulationStatistics::resting,
+    &SimulationStatistics::budget_exhausted,
+    &SimulationStatistics::asleep,
+    &SimulationStatistics::started_inside,
+    &SimulationStatistics::started_in_overlap,
+    &SimulationStatistics::stayed,
+    &SimulationStatistics::squeezed,
+    &SimulationStatistics::lost_impulses,
+    &SimulationStatistics::violations,
+    &SimulationStatistics::energy_violations,
+    &SimulationStatistics::trials,
+    &SimulationStatistics::penetrations,
+    &SimulationStatistics::springs_broken,
+    &SimulationStatistics::springs_lost,
+    &SimulationStatistics::unsolved_steps,
+    &SimulationStatistics::frozen,
+};
+/// Besides them there are: the steps, the most bounces with a gap, three numbers of what ranks refuse (of spheres that
+/// meet, and of penetrations), and the time that is added up by its own order.
+static_assert(sizeof(SimulationStatistics) == (kCounted.size() + 6) * sizeof(std::uint64_t),
+              "a counter is missing in kCounted");
+
+SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks, double unsimulated_time) {
+    SimulationStatistics all = of_ranks.front();
+    for (std::size_t k = 1; k < of_ranks.size(); ++k) {
+        for (const auto counter : kCounted) all.*counter += of_ranks[k].*counter;
+        all.bounces_per_step_max = std::max(all.bounces_per_step_max, of_ranks[k].bounces_per_step_max);
+    }
+    all.unsimulated_time = unsimulated_time;
+    return all;
+}
+
+template <class Archived>
+std::vector<std::byte> bytes_of(Archived& archived) {
+    std::vector<std::byte> bytes;
+    BinaryWriter writer([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    archived.archive(writer);
+    return bytes;
+}
+
+/// On the first rank.
+SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
+    SurfaceTotals all(own.size());
+    for (const std::vector<std::byte>& part : ranks.gather(bytes_of(own))) {
+        SurfaceTotals of_rank(own.size());
+        std::size_t at = 0;
+        BinaryReader reader([&](std::span<std::byte> into) {
+            std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(at), into.size(), into.begin());
+            at += into.size();
+        });
+        of_rank.archive(reader);
+        all.add(of_rank);
+    }
+    return all;
+}
+
+}  // namespace
+
+void Simulation::Impl::keep_share() {
+    std::vector<std::uint8_t> keep(store.size());
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = share.has_place_for(particles().id[i]) ? 1 : 0;
+    share.begin(store.size());
+    share.begin_sums(recorder.statistics().unsimulated_time, recorder.loads());
+    compact(keep);
+    if (share.is_first()) return;
+    SimulationStatistics none;
+    none.steps = recorder.statistics().steps;
+    recorder.statistics() = none;
+    recorder.totals() = SurfaceTotals(recorder.totals().size());
+}
+
+WholeRun Simulation::Impl::gather(Shown what) {
+    Ranks& ranks = share.ranks();
+    WholeRun whole;
+    if (recorder.shows_contacts()) {
+        whole.contacts = gather_list(ranks, recorder.contact_records());
+        RunRecorder::put_in_order(*whole.contacts);
+    }
+    if (what == Shown::contacts) return whole;
+    share.add_up(*colliders);
+    const auto statistics = gather_list(ranks, std::vector{recorder.statistics()});
+    const std::vector<std::vector<std::byte>> stores = ranks.gather(bytes_of(store));
+    if (what == Shown::all) whole.totals = gather_totals(ranks, recorder.totals());
+    if (!share.is_first()) return {};
+    MergingReader reader(stores);
+    whole.store = store.empty_copy();
+    whole.store->archive(reader);
+    whole.statistics = together(statistics, share.unsimulated_time());
+    whole.loads = share.loads();
+    return whole;
+}
+
+void Simulation::Impl::exchange(WholeRun& whole) {
+    if (whole.contacts) std::swap(recorder.contact_records(), *whole.contacts);
+    if (whole.store) std::swap(store, *whole.store);
+    if (whole.statistics) std::swap(recorder.statistics(), *whole.statistics);
+    if (whole.loads) std::swap(recorder.loads(), *whole.loads);
+    if (whole.totals) std::swap(recorder.totals(), *whole.totals);
+}
+
+void Simulation::show_whole(Shown what, const std::function<void()>& show) {
+    if (impl().share.is_alone()) return show();
+    WholeRun whole = impl().gather(what);
+    if (!impl().share.is_first()) return;
+    impl().exchange(whole);
+    try {
+        show();
+    } catch (...) {
+        impl().exchange(whole);
+        throw;
+    }
+    impl().exchange(whole);
+}
+
+}  // namespace ricochet

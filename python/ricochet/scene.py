@@ -39,6 +39,7 @@ class Scene(Thing):
     bounds: Where particles are retired.
     output: What is written.
     camera: For pictures.
+    picture: Light and surroundings of pictures.
     """
 
     _fixed = {"ricochet": 1}
@@ -104,10 +105,17 @@ class Bounds(Thing):
 class Camera(Thing):
     """Where `ricochet render` looks from, unless it is told otherwise.
 
-    position: Where it stands. Unit: m. Required.
-    target: The point in the middle of the picture. Unit: m. Required.
+    position: Where it stands. Unit: m.
+    target: The point in the middle of the picture. Unit: m.
+    path: Instead of `position`: where it goes, a curve of [x, y, z]. Unit: m.
+    target_path: Instead of `target`: a curve of [x, y, z]. Unit: m.
+    frame: One of the names in `frames`, in whose coordinates the camera stands, looks and is up.
     up: What is up in the picture.
     field_of_view: Angle from the lower to the upper edge. Unit: degrees. Default: 35.
+    focal_length: Instead of `field_of_view`: of a lens before a film 24 mm high. Unit: mm.
+    aperture: Diameter of the lens: what is nearer or farther than `focus_distance` blurs. 0: everything is sharp.
+        Unit: m. Default: 0.
+    focus_distance: Along the view to what is sharp; 0: as far as the target. Unit: m. Default: 0.
     """
 
 
@@ -116,6 +124,7 @@ class PlaneCollider(Thing):
 
     name: For messages, reports and emitters; no two colliders share one.
     material: One of the names in `materials`.
+    looks: How pictures show it.
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
@@ -133,6 +142,7 @@ class MeshCollider(Thing):
 
     name: For messages, reports and emitters; no two colliders share one.
     material: One of the names in `materials`.
+    looks: How pictures show it.
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
@@ -157,6 +167,7 @@ class SphereCollider(Thing):
 
     name: For messages, reports and emitters; no two colliders share one.
     material: One of the names in `materials`.
+    looks: How pictures show it.
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
@@ -176,6 +187,7 @@ class CylinderCollider(Thing):
 
     name: For messages, reports and emitters; no two colliders share one.
     material: One of the names in `materials`.
+    looks: How pictures show it.
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
@@ -196,6 +208,7 @@ class BoxCollider(Thing):
 
     name: For messages, reports and emitters; no two colliders share one.
     material: One of the names in `materials`.
+    looks: How pictures show it.
     frame: One of the names in `frames`: the collider stands in it and moves with it. Only with the response
         "exact".
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
@@ -208,6 +221,16 @@ class BoxCollider(Thing):
     """
 
     _fixed = {"type": "box"}
+
+
+class ColliderLooks(Thing):
+    """How pictures show a collider; it does nothing to the run.
+
+    color: Red, green and blue, linear light.
+    roughness: From 0, which mirrors what is around, to 1, which is matt. Default: 1.
+    glass: It is seen through. Default: false.
+    hidden: It is not shown. Default: false.
+    """
 
 
 class Curve(Thing):
@@ -1017,6 +1040,19 @@ class Penalty(Thing):
     contact_steps: Sub-steps that an undamped contact lasts, where no stiffness is given. Default: 20.
     substeps: Equal parts that every step is cut into. Default: 10.
     friction_speed: Friction grows linearly with the slip up to this speed. Unit: m/s. Default: 0.001.
+    """
+
+
+class Picture(Thing):
+    """Light and surroundings of `ricochet render`, unless it is told otherwise.
+
+    light: What lights it.
+    background: Red, green and blue behind everything, linear light.
+    transparent: Nothing behind everything: an alpha channel in PNG files. Default: false.
+    particles: What particles are drawn as.
+    shutter: How long it is open, up to the picture's time: moving particles blur. 0: not at all. Unit: s. Default:
+        0.
+    ground: A level ground at this height along the upward axis. Unit: m.
     """
 
 

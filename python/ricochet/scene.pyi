@@ -32,6 +32,7 @@ class Scene(Thing):
         bounds: Any = ...,
         output: Any = ...,
         camera: Any = ...,
+        picture: Any = ...,
     ) -> None: ...
 
 class Attractor(Thing):
@@ -87,10 +88,16 @@ class Camera(Thing):
     def __init__(
         self,
         *,
-        position: Vector,
-        target: Vector,
+        position: Optional[Vector] = ...,
+        target: Optional[Vector] = ...,
+        path: Any = ...,
+        target_path: Any = ...,
+        frame: Optional[str] = ...,
         up: Optional[Vector] = ...,
         field_of_view: Optional[float] = ...,
+        focal_length: Optional[float] = ...,
+        aperture: Optional[float] = ...,
+        focus_distance: Optional[float] = ...,
     ) -> None: ...
 
 class PlaneCollider(Thing):
@@ -99,6 +106,7 @@ class PlaneCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
+        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         point: Optional[Vector] = ...,
@@ -111,6 +119,7 @@ class MeshCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
+        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         file: Any,
@@ -127,6 +136,7 @@ class SphereCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
+        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         radius: float,
@@ -141,6 +151,7 @@ class CylinderCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
+        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         radius: float,
@@ -156,12 +167,23 @@ class BoxCollider(Thing):
         *,
         name: Optional[str] = ...,
         material: Optional[str] = ...,
+        looks: Any = ...,
         frame: Optional[str] = ...,
         motion: Optional[Sequence[Any]] = ...,
         size: Vector,
         position: Optional[Vector] = ...,
         rotation: Any = ...,
         scale: Any = ...,
+    ) -> None: ...
+
+class ColliderLooks(Thing):
+    def __init__(
+        self,
+        *,
+        color: Optional[Vector] = ...,
+        roughness: Optional[float] = ...,
+        glass: Optional[bool] = ...,
+        hidden: Optional[bool] = ...,
     ) -> None: ...
 
 class Curve(Thing):
@@ -853,6 +875,18 @@ class Penalty(Thing):
         contact_steps: Optional[float] = ...,
         substeps: Optional[int] = ...,
         friction_speed: Optional[float] = ...,
+    ) -> None: ...
+
+class Picture(Thing):
+    def __init__(
+        self,
+        *,
+        light: Optional[str] = ...,
+        background: Optional[Vector] = ...,
+        transparent: Optional[bool] = ...,
+        particles: Optional[str] = ...,
+        shutter: Optional[float] = ...,
+        ground: Optional[float] = ...,
     ) -> None: ...
 
 class PinBox(Thing):

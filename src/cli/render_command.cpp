@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/arguments.h"
+#include "cli/film.h"
+#include "cli/render_options.h"
 #include "cli/run_pictures.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
@@ -19,31 +23,6 @@ namespace ricochet {
 namespace {
 
 using namespace cli;
-
-// The arguments as they stand on the command line.
-struct RenderArguments {
-    std::string folder;
-    std::string output;
-    std::string frame = "last";
-    std::string size = "1280x720";
-    std::string camera;
-    std::string up;
-    std::string color_by;
-    std::string drawing = "auto";
-    std::string color_map = "plasma";
-    std::string range;
-    std::string collider_color = "plain";
-    std::vector<std::string> hidden;
-    std::vector<std::string> glass;
-    double particle_radius = 0.0;
-    int samples = 16;
-    int frames_per_second = 30;
-    double exposure = 1.0;
-    bool night = false;
-    std::string threads;
-    std::string progress = "auto";
-    bool quiet = false;
-};
 
 [[noreturn]] void refuse(const std::string& message) { throw InputError(message); }
 
@@ -60,79 +39,6 @@ std::vector<FrameFile> chosen_frames(const RunFolder& folder, const std::string&
     }
     refuse(fmt::format("--frame {}: the run has no such frame; it has {} from step {} to {}", frame,
                        folder.frames.size(), folder.frames.front().step, folder.frames.back().step));
-}
-
-std::optional<Camera> parse_camera(const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    const std::vector<double> v = parse_number_list("--camera", text);
-    if (v.size() != 6 && v.size() != 7) {
-        refuse(fmt::format("--camera {}: expected px,py,pz,tx,ty,tz[,fov] (position, target, degrees)", text));
-    }
-    Camera camera;
-    camera.position = {v[0], v[1], v[2]};
-    camera.target = {v[3], v[4], v[5]};
-    if (v.size() == 7) camera.fov_degrees = v[6];
-    if (camera.position == camera.target) refuse(fmt::format("--camera {}: position and target are the same", text));
-    if (camera.fov_degrees < 1.0 || camera.fov_degrees > 170.0) {
-        refuse(fmt::format("--camera {}: the field of view must be from 1 to 170 degrees", text));
-    }
-    return camera;
-}
-
-std::optional<Vec3> parse_up(const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    if (text == "x") return Vec3{1, 0, 0};
-    if (text == "y") return Vec3{0, 1, 0};
-    if (text == "z") return Vec3{0, 0, 1};
-    refuse(fmt::format("--up {}: expected x, y or z", text));
-}
-
-std::optional<ValueRange> parse_range(const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    const std::vector<double> v = parse_number_list("--range", text);
-    if (v.size() != 2 || !(v[0] < v[1])) refuse(fmt::format("--range {}: expected low,high with low < high", text));
-    return ValueRange{v[0], v[1]};
-}
-
-ColorMap parse_color_map(const std::string& text) {
-    if (const auto map = color_map_from_name(text)) return *map;
-    refuse(fmt::format("--color-map {}: expected one of {}", text, fmt::join(color_map_names(), ", ")));
-}
-
-ParticleDrawing parse_drawing(const std::string& text) {
-    if (text == "auto") return ParticleDrawing::automatic;
-    if (text == "spheres") return ParticleDrawing::spheres;
-    if (text == "soft") return ParticleDrawing::soft;
-    if (text == "glow") return ParticleDrawing::glow;
-    refuse(fmt::format("--draw {}: expected auto, spheres, soft or glow", text));
-}
-
-PictureStyle picture_style(const RenderArguments& arguments) {
-    PictureStyle style;
-    style.color_by = arguments.color_by;
-    style.drawing = parse_drawing(arguments.drawing);
-    style.range = parse_range(arguments.range);
-    style.map = parse_color_map(arguments.color_map);
-    if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
-    if (arguments.collider_color != "plain" && arguments.collider_color != "hits") {
-        refuse(fmt::format("--collider-color {}: expected plain or hits", arguments.collider_color));
-    }
-    style.collider_hits = arguments.collider_color == "hits";
-    style.hidden = arguments.hidden;
-    style.glass = arguments.glass;
-    style.camera = parse_camera(arguments.camera);
-    style.up = parse_up(arguments.up);
-    return style;
-}
-
-void check_numbers(const RenderArguments& arguments) {
-    const auto in_range = [](const char* option, double value, double low, double high) {
-        if (!(value >= low && value <= high)) refuse(fmt::format("{} {}: expected {} to {}", option, value, low, high));
-    };
-    in_range("--samples", arguments.samples, 1, 4096);
-    in_range("--fps", arguments.frames_per_second, 1, 240);
-    in_range("--exposure", arguments.exposure, 0.01, 100);
-    in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
 }
 
 // Shows how far the pictures are.
@@ -157,13 +63,35 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void write_film(RunPictures& pictures, const std::vector<FrameFile>& frames, PictureOptions options,
+Image labelled(RunPictures& pictures, double time, const PictureOptions& options, const RenderArguments& arguments) {
+    Image image = pictures.picture(time, options);
+    if (arguments.color_bar) draw_color_bars(image, pictures.color_bars());
+    return image;
+}
+
+// The times of a film's pictures: film time is simulation time over --speed.
+std::vector<double> film_times(RunTimeline& timeline, const RenderArguments& arguments) {
+    constexpr double kMostPictures = 1e6;
+    const double step = arguments.speed / arguments.frames_per_second;
+    const double first = timeline.first_time();
+    const double length = timeline.last_time() - first;
+    if (length / step > kMostPictures) {
+        refuse(fmt::format("--speed {}: a film of {:.4g} s would have more than {:.0f} pictures", arguments.speed,
+                           length / arguments.speed, kMostPictures));
+    }
+    std::vector<double> times;
+    for (double k = 0.0; k * step <= length * (1.0 + 1e-12); k += 1.0) times.push_back(first + k * step);
+    times.back() = std::min(times.back(), timeline.last_time());
+    return times;
+}
+
+void write_film(RunPictures& pictures, const std::vector<double>& times, PictureOptions options,
                 const RenderArguments& arguments) {
     Film film(arguments.output, options.width, options.height, arguments.frames_per_second);
-    Watch watch(frames.size(), arguments);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
+    Watch watch(times.size(), arguments);
+    for (std::size_t i = 0; i < times.size(); ++i) {
         options.progress = watch.callback(i);
-        film.add(pictures.picture(frames[i], options));
+        film.add(labelled(pictures, times[i], options, arguments));
     }
     film.finish();
 }
@@ -178,9 +106,22 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
     Watch watch(frames.size(), arguments);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         options.progress = watch.callback(i);
-        const Image image = pictures.picture(frames[i], options);
+        const Image image = labelled(pictures, pictures.timeline().go_to(frames[i].step), options, arguments);
         write_png(arguments.frame == "all" ? numbered(output, frames[i].step) : output, image);
     }
+}
+
+// What lies between frames, and what is known of it.
+std::string film_report(RunPictures& pictures, const RenderArguments& arguments) {
+    const double step = arguments.speed / arguments.frames_per_second;
+    const double spacing = pictures.timeline().spacing();
+    const double ratio = spacing > 0.0 ? step / spacing : 1.0;
+    const std::string text = fmt::format("{:.4g} s of the run a second", arguments.speed);
+    if (ratio >= 0.999999 && std::fabs(ratio - std::round(ratio)) < 1e-6) return text;
+    return fmt::format("{}, interpolated between frames {:.4g} s apart{}", text, spacing,
+                       pictures.timeline().knows_impacts()
+                           ? ""
+                           : " (without the impacts in between, which output.contacts = true would log)");
 }
 
 void require_room(const PictureSize& size, bool has_sprites, bool film, const std::string& text) {
@@ -209,10 +150,30 @@ void render(const RenderArguments& arguments) {
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
     require_room(size, pictures.draws_sprites(), film, arguments.size);
-    const PictureOptions options{size.width, size.height, arguments.samples, arguments.exposure, arguments.night, {}};
-    film ? write_film(pictures, frames, options, arguments) : write_pictures(pictures, frames, options, arguments);
+    PictureOptions options;
+    options.width = size.width;
+    options.height = size.height;
+    options.samples = arguments.samples;
+    options.exposure = arguments.exposure;
+    options.filter = !arguments.no_filter;
+    pictures.set_scenery(options);
+    if (film && options.transparent) {
+        refuse("--background transparent: a film has no transparent background, expected --output with a .png name");
+    }
+    std::vector<double> times;
+    if (film) {
+        times = frames.size() == 1 ? std::vector<double>{pictures.timeline().go_to(frames[0].step)}
+                                   : film_times(pictures.timeline(), arguments);
+        write_film(pictures, times, options, arguments);
+    } else {
+        write_pictures(pictures, frames, options, arguments);
+    }
     if (arguments.quiet) return;
-    cli::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    if (film) {
+        cli::print("{}: {} pictures, {}; ", arguments.output, times.size(), film_report(pictures, arguments));
+    } else {
+        cli::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    }
     if (pictures.shows_own_colors()) {
         cli::print("in the particles' own colours\n");
     } else {
@@ -220,44 +181,12 @@ void render(const RenderArguments& arguments) {
     }
 }
 
-void add_options(cli::Command command, RenderArguments& a) {
-    command.add_option("DIR", a.folder, "Output folder of a run").required();
-    command.add_option("--output", a.output, "Picture (.png) or film (.mp4, needs ffmpeg)").required();
-    command.add_option("--frame", a.frame, "Step number, last, or all (numbered pictures)").show_default();
-    command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels").show_default();
-    command.add_option("--camera", a.camera, "px,py,pz,tx,ty,tz[,fov]: position, target, vertical degrees");
-    command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
-    command.add_option("--color-by", a.color_by,
-                       "Array of the frames that colours the particles (default: their own color, or speed)");
-    command
-        .add_option("--draw", a.drawing,
-                    "Particles as spheres, soft discs by opacity, or glow that adds up (auto: soft with an opacity)")
-        .show_default();
-    command.add_flag("--night", a.night, "A dark sky");
-    command.add_option("--color-map", a.color_map, "viridis, plasma or turbo").show_default();
-    command.add_option("--range", a.range, "low,high of the colours (default: from the frames)");
-    command.add_option("--collider-color", a.collider_color, "plain, or hits per triangle").show_default();
-    command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)").one_value_each();
-    command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)").one_value_each();
-    command.add_option("--particle-radius", a.particle_radius, "Radius drawn, m (default: the particles' own)");
-    command.add_option("--samples", a.samples, "Rays a pixel").show_default();
-    command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
-    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film").show_default();
-    command.add_option("--threads", a.threads, "Worker threads (default: all)");
-    command
-        .add_option("--progress", a.progress,
-                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
-        .type_name("auto|always|never")
-        .show_default();
-    command.add_flag("--quiet", a.quiet, "No report, and no progress unless --progress always");
-}
-
 }  // namespace
 
 void add_render_command(cli::Command program, int& exit_code) {
     cli::Command command = program.add_command("render", "Make a picture or a film of a run");
     const auto arguments = std::make_shared<RenderArguments>();
-    add_options(command, *arguments);
+    add_render_options(command, *arguments);
     command.on_call([arguments, &exit_code] {
         render(*arguments);
         exit_code = 0;

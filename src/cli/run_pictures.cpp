@@ -1,136 +1,23 @@
 #include "cli/run_pictures.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <cstring>
 #include <numbers>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/particles.h"
+#include "ricochet/io/camera_frames.h"
 #include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
-
 namespace ricochet::cli {
-
-namespace {
-
-std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& output, int width, int height, int rate) {
-    return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-            // in: raw pictures on standard input
-            "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", width, height),
-            "-framerate", std::to_string(rate), "-i", "pipe:0",
-            // out: what every player understands
-            "-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
-            "-f", "mp4", "file:" + output.string()};
-}
-
-std::filesystem::path temporary_name(std::filesystem::path target) {
-    return target += fmt::format(".{}.partial", ::getpid());
-}
-
-}  // namespace
-
-Film::Film(std::filesystem::path target, int width, int height, int frames_per_second)
-    : target_(std::move(target)), temporary_(temporary_name(target_)), unfinished_(temporary_) {
-    (void)std::signal(SIGPIPE, SIG_IGN);  // a dead ffmpeg shows in write()
-    messages_ = std::tmpfile();
-    if (messages_ == nullptr) throw RunError(fmt::format("no temporary file for ffmpeg ({})", std::strerror(errno)));
-    start(width, height, frames_per_second);
-}
-
-void Film::start(int width, int height, int frames_per_second) {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-        throw RunError(fmt::format("no pipe for ffmpeg ({})", std::strerror(errno)));
-    std::vector<std::string> arguments = ffmpeg_arguments(temporary_, width, height, frames_per_second);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, ::fileno(messages_), STDERR_FILENO);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // Ctrl-C is for us; we end ffmpeg
-    const int error = ::posix_spawnp(&process_, "ffmpeg", &actions, &attributes, pointers.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[0]);
-    pipe_ = ends[1];
-    if (error == 0) {
-        unfinished_.set_writer(process_);
-        return;
-    }
-    ::close(pipe_);
-    (void)std::fclose(messages_);
-    throw RunError(fmt::format("{}: ffmpeg cannot be started ({}); install ffmpeg, or give --output a .png name",
-                               target_.string(), std::strerror(error)));
-}
-
-Film::~Film() {
-    if (pipe_ >= 0) ::close(pipe_);
-    if (process_ > 0) {
-        (void)::kill(process_, SIGKILL);
-        (void)wait();
-    }
-    (void)std::fclose(messages_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
-}
-
-int Film::wait() {
-    int status = 0;
-    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
-    process_ = -1;
-    unfinished_.set_writer(0);
-    return status;
-}
-
-void Film::fail() {
-    if (pipe_ >= 0) ::close(std::exchange(pipe_, -1));
-    if (process_ > 0) (void)wait();
-    std::array<char, 400> text{};
-    std::rewind(messages_);
-    const char* line = std::fgets(text.data(), static_cast<int>(text.size()), messages_);
-    std::string said = line == nullptr ? "it said nothing" : line;
-    while (!said.empty() && said.back() == '\n') said.pop_back();
-    throw RunError(fmt::format("{}: ffmpeg failed: {}", target_.string(), said));
-}
-
-void Film::add(const Image& image) {
-    std::size_t written = 0;
-    while (written < image.rgb.size()) {
-        const ssize_t count = ::write(pipe_, image.rgb.data() + written, image.rgb.size() - written);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) fail();
-        written += static_cast<std::size_t>(count);
-    }
-}
-
-void Film::finish() {
-    ::close(std::exchange(pipe_, -1));
-    if (wait() != 0) fail();
-    std::error_code error;
-    std::filesystem::rename(temporary_, target_, error);
-    if (error) throw RunError(fmt::format("{}: cannot name the film ({})", target_.string(), error.message()));
-}
 
 namespace {
 
@@ -145,8 +32,6 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
                                                   {0.26, 0.19, 0.16},
                                                   {0.24, 0.26, 0.29}}};
 constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
-constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
-constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
 constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
 constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
 constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
@@ -168,22 +53,6 @@ std::string known_arrays(const VtkPolyData& frame) {
 }
 
 Vec3 vec3_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
-
-// Counts span orders of magnitude: they are shown by their logarithm.
-std::vector<Vec3> hit_colors(const VtkPolyData& collider, ColorMap map) {
-    const VtkArray* hits = find_array(collider.cell_arrays, "hits");
-    if (hits == nullptr) return {};
-    std::vector<double> values = scalar_values(*hits);
-    double largest = 1.0;
-    for (double& value : values) {
-        value = std::log1p(value);
-        largest = std::max(largest, value);
-    }
-    std::vector<Vec3> colors;
-    colors.reserve(values.size());
-    for (const double value : values) colors.push_back(map_color(map, value / largest));
-    return colors;
-}
 
 // Colliders of one material share a colour.
 std::size_t color_index(const RunInfo& info, const std::filesystem::path& file) {
@@ -220,14 +89,23 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+std::optional<ParticleDrawing> drawing_from_name(std::string_view name) {
+    constexpr std::array<std::string_view, 5> kNames = {"auto", "spheres", "streaks", "soft", "glow"};
+    const auto found = std::find(kNames.begin(), kNames.end(), name);
+    if (found == kNames.end()) return std::nullopt;
+    return static_cast<ParticleDrawing>(found - kNames.begin());
+}
+
 RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style,
                          double aspect)
-    : style_(std::move(style)) {
+    : style_(std::move(style)), timeline_(folder) {
     check_names("--hide", style_.hidden, folder);
     check_names("--glass", style_.glass, folder);
+    choose_scenery(folder.info);
     survey(chosen);
     load_colliders(folder);
     survey_moving(chosen);
+    lay_ground(folder);
     choose_camera(folder, aspect);
     preview_.emplace(std::move(meshes_), planes_, camera_.target);
 }
@@ -237,7 +115,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     for (const FrameFile& file : spread_sample(chosen)) {
         const VtkPolyData frame = read_vtp(file.path);
         choose_looks(frame);
-        const std::vector<double> here = shown_values(frame, file);
+        const std::vector<double> here = shown_values(frame);
         values.insert(values.end(), here.begin(), here.end());
         subject_.particles.insert(subject_.particles.end(), frame.points.begin(), frame.points.end());
         most_particles_ = std::max(most_particles_, frame.points.size());
@@ -261,30 +139,45 @@ void RunPictures::choose_looks(const VtkPolyData& frame) {
     has_sizes_ = has_sizes_ || std::any_of(values.begin(), values.end(), [](double size) { return size > 0.0; });
 }
 
+// What the command line says comes before what the scene says.
+RunPictures::Looks RunPictures::looks_of(const RunInfo& info, const std::filesystem::path& file) const {
+    const std::string name = collider_name(info, file);
+    ColliderLooks own;
+    for (const ColliderInfo& collider : info.colliders) {
+        if (collider.file == file.filename().string()) own = collider.looks;
+    }
+    Looks looks;
+    looks.glass = own.glass || contains(style_.glass, name);
+    looks.hidden = own.hidden || contains(style_.hidden, name);
+    looks.roughness = own.roughness;
+    looks.color = own.color ? *own.color : looks.glass ? kGlassColor : kColliderColors[color_index(info, file)];
+    looks.has_color = own.color.has_value();
+    return looks;
+}
+
 void RunPictures::load_colliders(const RunFolder& folder) {
     for (const std::filesystem::path& file : folder.colliders) {
-        const std::string name = collider_name(folder.info, file);
+        const Looks looks = looks_of(folder.info, file);
         const bool moves = folder.info.moves(file.filename().string());
         if (moves) {
-            moving_looks_[static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0))] = {
-                contains(style_.glass, name) ? kGlassColor : kColliderColors[color_index(folder.info, file)],
-                contains(style_.glass, name), contains(style_.hidden, name)};
+            const auto index = index_of_collider_file(file.filename().string());
+            moving_looks_[static_cast<std::uint32_t>(index.value_or(0))] = looks;
         }
-        if (moves || contains(style_.hidden, name)) continue;
+        if (moves || looks.hidden) continue;
         VtkPolyData data = read_vtp(file);
         const std::vector<double>* point = find_field(data, "plane_point");
         const std::vector<double>* normal = find_field(data, "plane_normal");
         if (point != nullptr && normal != nullptr && point->size() == 3 && normal->size() == 3) {
-            planes_.push_back({vec3_of(*point), normalized(vec3_of(*normal)), kPlaneColor});
+            planes_.push_back({vec3_of(*point), normalized(vec3_of(*normal)),
+                               looks.has_color ? looks.color : kPlaneColor, looks.roughness});
             continue;
         }
         subject_.colliders.insert(subject_.colliders.end(), data.points.begin(), data.points.end());
-        std::vector<Vec3> colors = style_.collider_hits ? hit_colors(data, ColorMap::viridis) : std::vector<Vec3>{};
-        meshes_.push_back({{std::move(data.points), std::move(data.triangles)},
-                           contains(style_.glass, name) ? kGlassColor : kColliderColors[color_index(folder.info, file)],
-                           std::move(colors),
-                           contains(style_.glass, name)});
+        mesh_files_.push_back(file);
+        meshes_.push_back(
+            {{std::move(data.points), std::move(data.triangles)}, looks.color, {}, looks.glass, looks.roughness});
     }
+    if (style_.collider_quantity) color_colliders(folder);
 }
 
 // The picture is to show where they come.
@@ -293,7 +186,7 @@ void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
     for (const FrameFile& file : spread_sample(chosen)) {
         if (file.moving.empty()) continue;
         PreviewMoving moving;
-        add_moving(file, moving);
+        add_moving(read_moving_meshes(file), moving);
         for (const PreviewMesh& mesh : moving.meshes) {
             subject_.colliders.insert(subject_.colliders.end(), mesh.mesh.vertices.begin(), mesh.mesh.vertices.end());
         }
@@ -301,34 +194,20 @@ void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
 }
 
 // One mesh a collider, with the vertices of all of them.
-void RunPictures::add_moving(const FrameFile& file, PreviewMoving& moving) const {
-    if (file.moving.empty()) return;
-    for (auto& [collider, mesh] : read_moving_meshes(file)) {
+void RunPictures::add_moving(std::map<std::uint32_t, TriangleMesh> meshes, PreviewMoving& moving) const {
+    for (auto& [collider, mesh] : meshes) {
         const auto looks = moving_looks_.find(collider);
         if (looks == moving_looks_.end() || looks->second.hidden) continue;
-        moving.meshes.push_back({std::move(mesh), looks->second.color, {}, looks->second.glass});
+        moving.meshes.push_back(
+            {std::move(mesh), looks->second.color, {}, looks->second.glass, looks->second.roughness});
     }
 }
 
-void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
-    const Vec3 up = style_.up ? *style_.up : folder.info.up;
-    if (style_.camera) {
-        camera_ = *style_.camera;
-        camera_.up = up;
-    } else if (folder.info.camera) {
-        camera_ = {folder.info.camera->position, folder.info.camera->target, up,
-                   folder.info.camera->field_of_view_degrees};
-    } else {
-        camera_ = automatic_camera(subject_, up, aspect);
-    }
-    subject_ = {};
-}
-
-std::vector<double> RunPictures::shown_values(const VtkPolyData& frame, const FrameFile& file) const {
+std::vector<double> RunPictures::shown_values(const VtkPolyData& frame) const {
     const bool speed = style_.color_by == kSpeed;
     const VtkArray* array = find_array(frame.point_arrays, speed ? "velocity" : style_.color_by);
     if (array == nullptr) {
-        throw InputError(fmt::format("{}: no array named {}; known arrays: {}", file.path.string(), style_.color_by,
+        throw InputError(fmt::format("--color-by {}: the frames have no such array; known arrays: {}", style_.color_by,
                                      known_arrays(frame)));
     }
     return scalar_values(*array);
@@ -354,8 +233,9 @@ std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
 }
 
 // Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
-PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& file) const {
-    const std::vector<Vec3> shown = colors(frame, file);
+PreviewMoving RunPictures::moving(const Moment& moment) const {
+    const VtkPolyData& frame = moment.frame;
+    const std::vector<Vec3> shown = colors(frame);
     const std::vector<double> radii = shown_radii(frame);
     const VtkArray* own = find_array(frame.point_arrays, "radius");
     const std::vector<double> own_radii = own == nullptr ? std::vector<double>(radii.size(), 0.0) : scalar_values(*own);
@@ -377,43 +257,86 @@ PreviewMoving RunPictures::moving(const VtkPolyData& frame, const FrameFile& fil
     }
     moving.cloth.mesh = {frame.points, frame.triangles};
     moving.cloth.color = kClothColor;
+    std::vector<std::size_t> drawn;
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const bool is_thread = thread[i] > 0.0 && (own_radii[i] == 0.0 || radii[i] <= kBead * thread[i]);
         if (is_thread || is_cloth[i]) continue;
+        drawn.push_back(i);
         moving.spheres.centers.push_back(frame.points[i]);
         moving.spheres.radii.push_back(radii[i]);
         moving.spheres.colors.push_back(shown[i]);
     }
+    if (!moment.paths.empty()) set_ways(moment.paths, drawn, moving);
     return moving;
 }
 
-std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame, const FrameFile& file) const {
+// The spheres shown on their ways while the shutter is open; as streaks they become threads.
+void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
+                           PreviewMoving& moving) const {
+    PreviewSpheres& spheres = moving.spheres;
+    if (style_.drawing == ParticleDrawing::streaks) {
+        constexpr double kSagitta = 0.05;  // of a thread's radius
+        for (std::size_t k = 0; k < shown.size(); ++k) {
+            const std::vector<Vec3> points =
+                path_points(paths.nodes[shown[k]], paths.born[shown[k]], paths.close, kSagitta * spheres.radii[k]);
+            const auto first = static_cast<std::uint32_t>(moving.lines.points.size());
+            moving.lines.points.insert(moving.lines.points.end(), points.begin(), points.end());
+            for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
+                moving.lines.ends.push_back({first + i, first + i + 1});
+                moving.lines.radii.push_back(spheres.radii[k]);
+                moving.lines.colors.push_back(spheres.colors[k]);
+            }
+        }
+        spheres = {};
+        return;
+    }
+    // Bends of gravity need few steps; the corner of an impact is cut by at most a step.
+    constexpr std::size_t kSmoothSteps = 9;
+    constexpr std::size_t kSteps = 65;
+    const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
+        return std::any_of(nodes.begin(), nodes.end(),
+                           [](const PathNode& node) { return node.velocity_before != node.velocity_after; });
+    });
+    const std::size_t steps = bends ? kSteps : kSmoothSteps;
+    spheres.ways.resize(shown.size());
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        for (std::size_t step = 0; step < steps; ++step) {
+            const double part = static_cast<double>(step) / static_cast<double>(steps - 1);
+            const double time = (1.0 - part) * paths.born[shown[k]] + part * paths.close;
+            spheres.ways[k].push_back(position_on_path(paths.nodes[shown[k]], time));
+        }
+    }
+}
+
+std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame) const {
     const VtkArray* const own = own_colors_ ? find_array(frame.point_arrays, kColorAttribute) : nullptr;
     const auto* const vectors = own == nullptr ? nullptr : std::get_if<std::vector<Vec3>>(&own->values);
     if (vectors != nullptr) return *vectors;
     std::vector<Vec3> colors;
-    for (const double value : shown_values(frame, file)) {
+    for (const double value : shown_values(frame)) {
         colors.push_back(kParticleAlbedo * map_color(style_.map, (value - range_.low) / (range_.high - range_.low)));
     }
     return colors;
 }
 
-Image RunPictures::picture(const FrameFile& file, const PictureOptions& options) {
-    const VtkPolyData frame = read_vtp(file.path);
-    PreviewMoving shown = moving(frame, file);
-    add_moving(file, shown);
+Image RunPictures::picture(double time, const PictureOptions& options) {
+    Moment moment = timeline_.at(time, shutter());
+    const VtkPolyData& frame = moment.frame;
+    place_camera(frame);
+    PreviewMoving shown = moving(moment);
+    add_moving(std::move(moment.moving), shown);
     if (!draws_sprites()) {
-        preview_->set_moving(shown);
+        preview_->set_moving(std::move(shown));
         return render_picture(*preview_, camera_, options);
     }
     shown.spheres = {};
-    preview_->set_moving(shown);
+    preview_->set_moving(std::move(shown));
     const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
     std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     const bool glow = style_.drawing == ParticleDrawing::glow;
     return render_picture(*preview_, camera_, options,
-                          {frame.points, shown_radii(frame), colors(frame, file), std::move(opacities), glow});
+                          {frame.points, shown_radii(frame), colors(frame), std::move(opacities), glow});
 }
 
 }  // namespace ricochet::cli

@@ -1,18 +1,20 @@
 // Pictures and films of a run: its folder on one side, the renderer on the other.
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "ricochet/core/unfinished_file.h"
+#include "cli/collider_quantity.h"
+#include "cli/run_timeline.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/camera.h"
+#include "ricochet/render/color_bar.h"
 #include "ricochet/render/color_map.h"
 #include "ricochet/render/image.h"
 #include "ricochet/render/picture.h"
@@ -20,44 +22,37 @@
 
 namespace ricochet::cli {
 
-// A film from pictures, through the ffmpeg program.
-
-/// Feeds pictures to ffmpeg, which writes an H.264 film. The film appears under its name when finish() has been called;
-/// without it nothing is left behind.
-class Film {
-public:
-    /// What ffmpeg holds of pictures that it compares, bytes a pixel; measured.
-    static constexpr double kBytesPerPixel = 200.0;
-
-    /// Throws RunError when ffmpeg is not installed. width and height must be even.
-    Film(std::filesystem::path target, int width, int height, int frames_per_second);
-    ~Film();
-    Film(const Film&) = delete;
-    Film& operator=(const Film&) = delete;
-
-    /// Throws RunError with ffmpeg's own words when it has given up.
-    void add(const Image& image);
-    void finish();
-
-private:
-    void start(int width, int height, int frames_per_second);
-    int wait();
-    [[noreturn]] void fail();
-
-    std::filesystem::path target_;
-    std::filesystem::path temporary_;
-    UnfinishedFile unfinished_;
-    std::FILE* messages_ = nullptr;  // what ffmpeg says on stderr
-    int pipe_ = -1;
-    int process_ = -1;
-};
+inline constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
+inline constexpr double kParticleAlbedo = 0.8;  ///< of the colour map's colours, so that sunlit ones do not burn out
 
 /// What particles are drawn as.
 enum class ParticleDrawing {
     automatic,  ///< soft where the frames have an opacity, spheres otherwise
     spheres,
-    soft,  ///< discs that cover what is behind by their opacity
-    glow,  ///< discs of light that adds up
+    streaks,  ///< threads along the way that they went while the shutter was open
+    soft,     ///< discs that cover what is behind by their opacity
+    glow,     ///< discs of light that adds up
+};
+
+/// auto, spheres, streaks, soft or glow.
+[[nodiscard]] std::optional<ParticleDrawing> drawing_from_name(std::string_view name);
+
+/// The opening of a camera's lens.
+struct Lens {
+    double aperture = 0.0;        ///< m; 0: everything is sharp
+    double focus_distance = 0.0;  ///< m; 0: at the target
+};
+
+/// What is behind everything: the sky of the light unless there is a colour.
+struct Background {
+    std::optional<Vec3> color;  ///< linear light
+    bool transparent = false;
+};
+
+/// A level ground that the run did not have.
+struct Ground {
+    enum class Kind { none, automatic, at_height } kind = Kind::none;
+    double height = 0.0;  ///< m along the upward axis
 };
 
 /// How a run is shown.
@@ -68,11 +63,18 @@ struct PictureStyle {
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
     std::optional<double> particle_radius;  ///< m; nothing: the frames' own, or one that can be seen for points
-    bool collider_hits = false;             ///< colour colliders by hits
-    std::vector<std::string> hidden;        ///< colliders that are left out, by name
-    std::vector<std::string> glass;         ///< colliders that are seen through, by name
+    std::optional<ColliderQuantity> collider_quantity;  ///< that colours the colliders
+    std::optional<ValueRange> collider_range;
+    std::vector<std::string> hidden;  ///< colliders that are left out, by name
+    std::vector<std::string> glass;   ///< colliders that are seen through, by name
     std::optional<Camera> camera;
     std::optional<Vec3> up;
+    std::optional<Lens> lens;
+    // What is not set here is as the run's own picture settings say.
+    std::optional<Lighting> light;
+    std::optional<Background> background;
+    std::optional<Ground> ground;
+    std::optional<double> shutter;  ///< s
 };
 
 /// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
@@ -82,8 +84,16 @@ public:
     /// names that the run does not have.
     RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style, double aspect);
 
-    [[nodiscard]] Image picture(const FrameFile& frame, const PictureOptions& options);
+    /// The run at a time between its first and its last frame.
+    [[nodiscard]] Image picture(double time, const PictureOptions& options);
+    /// The frames and what lies between them.
+    [[nodiscard]] RunTimeline& timeline() { return timeline_; }
+    [[nodiscard]] double shutter() const { return style_.shutter.value_or(0.0); }
+    /// Light and background.
+    void set_scenery(PictureOptions& options) const;
     [[nodiscard]] const ValueRange& range() const { return range_; }
+    /// What the colours mean: of the particles, and of the colliders where a quantity colours them.
+    [[nodiscard]] std::vector<ColorBar> color_bars() const;
     /// Array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
     /// True when the frames themselves say the colours.
@@ -95,19 +105,35 @@ public:
     }
 
 private:
+    /// How a collider is shown.
+    struct Looks {
+        Vec3 color;
+        bool glass = false;
+        bool hidden = false;
+        bool has_color = false;  // of its own, from the scene
+        double roughness = 1.0;
+    };
+
     void survey(const std::vector<FrameFile>& chosen);
+    [[nodiscard]] Looks looks_of(const RunInfo& info, const std::filesystem::path& file) const;
     void load_colliders(const RunFolder& folder);
+    void color_colliders(const RunFolder& folder);
     void survey_moving(const std::vector<FrameFile>& chosen);
-    void add_moving(const FrameFile& file, PreviewMoving& moving) const;
+    void add_moving(std::map<std::uint32_t, TriangleMesh> meshes, PreviewMoving& moving) const;
+    void choose_scenery(const RunInfo& info);
+    void lay_ground(const RunFolder& folder);
     void choose_camera(const RunFolder& folder, double aspect);
-    [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame, const FrameFile& file) const;
+    [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame) const;
     void choose_looks(const VtkPolyData& frame);
-    [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame, const FrameFile& file) const;
+    [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame) const;
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
-    [[nodiscard]] PreviewMoving moving(const VtkPolyData& frame, const FrameFile& file) const;
+    [[nodiscard]] PreviewMoving moving(const Moment& moment) const;
+    void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewMoving& moving) const;
+    void place_camera(const VtkPolyData& frame);
 
     PictureStyle style_;
+    RunTimeline timeline_;
     ViewSubject subject_;
     std::size_t most_particles_ = 0;
     bool own_colors_ = false;  // colours are those of the frames
@@ -115,13 +141,9 @@ private:
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;
-    /// How a collider that moves is shown, by its number.
-    struct MovingLooks {
-        Vec3 color;
-        bool glass = false;
-        bool hidden = false;
-    };
-    std::map<std::uint32_t, MovingLooks> moving_looks_;
+    std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
+    ValueRange collider_range_;
+    std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
     std::vector<PreviewPlane> planes_;
     std::optional<Preview> preview_;
 };

@@ -2,8 +2,10 @@
 // those, until one comes to them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -66,6 +68,37 @@ TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
             return sum;
         };
         EXPECT_LT(length(given(asleep) - given(awake)), 1e-11 * length(given(awake)));
+    }
+}
+
+// A slanted face at 1 m/s that meets the upper half of a sphere on a floor: both answer at once, u . n = -e u_before .
+// n at the face and no more than that at the floor, so the sphere goes off along the floor at 1 + e. One after the
+// other they would throw it to and fro in almost no time, by ever smaller speeds, until it counted as squeezed.
+TEST(WhatRests, AndIsMetFromAboveAnswersWithWhatItRestsOn) {
+    for (const double friction : {0.0, 0.2}) {
+        SCOPED_TRACE(friction);
+        SimulationSetup setup = setup_of(0.01, 0.1, {"steel", 0.3, friction}, kGravity);
+        setup.frames = std::make_shared<const FrameTree>(
+            std::vector<FrameDescription>{frame_of("slide", {steady({1, 0, 0})}, {-0.095, 0, 0})});
+        const double half = 0.1 * std::sqrt(0.5);
+        setup.colliders = {
+            {"floor", PlaneShape{{}, {0, 0, 1}}, 0},
+            {"block", CuboidShape{{0.2, 2, 0.2}, {{-2.0 * half, 0, 0.1 + 2.0 * half}, {0, 1, 0}, 45.0}}, 0, "slide"}};
+        setup.particles.push_back(particle_of({0, 0, 0.1 + 1e-14}, {}, 0.1));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const SimulationStatistics& statistics = simulation.statistics();
+        EXPECT_EQ(statistics.squeezed, 0U);
+        EXPECT_EQ(statistics.budget_exhausted, 0U);
+        EXPECT_EQ(statistics.unsimulated_time, 0.0);
+        EXPECT_LE(statistics.bounces_per_step_max, 2U);
+        const Vec3 v = simulation.particles().at(0).velocity;
+        EXPECT_NEAR(v.z, 0.0, 1e-12);
+        if (friction == 0.0) {
+            EXPECT_NEAR(v.x, 1.3, 1e-9);
+        } else {
+            EXPECT_GT(v.x, 1.0);
+        }
     }
 }
 

@@ -67,6 +67,30 @@ TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
     EXPECT_EQ(summary["frames"].get<int>(), summary["steps"].get<int>() + 1);
 }
 
+// A sheet so stiff that what friction holds of one point decides what it holds of the next, down to the shortest step.
+TEST(RunCommand, SaysHowManyImplicitStepsWereNotSolved) {
+    const TemporaryFolder folder;
+    const std::string scene = folder
+                                  .write("stiff.json", R"({
+      "ricochet": 1,
+      "simulation": {"time_step": 0.02, "duration": 0.5, "integrator": "implicit_euler"},
+      "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+      "materials": {"wool": {"restitution": 0.2, "friction": 1}},
+      "colliders": [{"name": "ball", "type": "sphere", "radius": 0.3, "material": "wool"},
+                    {"name": "slope", "type": "plane", "point": [0, 0, -0.2], "normal": [0, 0.2, 1], "material": "wool"}],
+      "springs": [{"type": "sheet", "corner": [-0.5, -0.5, 0.32], "side_u": [1, 0, 0], "side_v": [0, 1, 0], "cells_u": 3,
+                   "cells_v": 3, "mass_per_area": 0.3, "stiffness": 1e8, "bending_stiffness": 10, "damping": 0.1}]
+    })")
+                                  .string();
+    const ProgramResult result = run_ricochet({"run", scene, "--output", folder.path("out").string()});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
+    const auto unsolved = summary["unsolved_steps"].get<int>();
+    EXPECT_GT(unsolved, 0);
+    const std::string note = "note: " + std::to_string(unsolved) + " steps were not solved to the tolerance";
+    EXPECT_NE(result.output.find(note), std::string::npos) << result.output;
+}
+
 TEST(RunCommand, SaysWhichImpulsesTheTotalsOfCollidersLeaveOut) {
     const TemporaryFolder folder;
     const std::string scene = folder

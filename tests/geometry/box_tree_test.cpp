@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "ricochet/core/random.h"
@@ -23,7 +25,7 @@ std::vector<Box3> random_boxes(RandomSequence& random, int count, double size) {
 TEST(BoxTree, FindsTheBoxesThatMeetABox) {
     RandomSequence random(3, 0, 0);
     BoxTree tree;
-    for (const int count : {1, 5, 300, 300, 300, 17, 0}) {
+    for (const int count : {1, 2, 4, 5, 6, 16, 17, 28, 300, 300, 300, 1025, 0}) {
         const std::vector<Box3> boxes = random_boxes(random, count, 0.2);
         tree.fit(boxes);
         for (const Box3& query : random_boxes(random, 50, 0.3)) {
@@ -35,6 +37,7 @@ TEST(BoxTree, FindsTheBoxesThatMeetABox) {
                 if (BoxTree::meet(boxes[k], query)) expected.push_back(k);
             }
             EXPECT_EQ(found, expected);
+            EXPECT_EQ(tree.has_near(query), !expected.empty());
         }
     }
     EXPECT_TRUE(tree.bounds().empty());
@@ -48,6 +51,30 @@ TEST(BoxTree, CountsACommonPointAsMeeting) {
     EXPECT_EQ(found, 1);
     tree.near({{1.0000001, 1, 1}, {2, 2, 2}}, [&](std::uint32_t) { ++found; });
     EXPECT_EQ(found, 1);
+}
+
+// Beyond what single precision holds, below it, and everywhere.
+TEST(BoxTree, FindsBoxesOfAnySize) {
+    constexpr double kLargest = 1e75;
+    constexpr double kSmallest = 1e-75;
+    const std::vector<Box3> boxes{{{-kLargest, 0, 0}, {-0.5 * kLargest, 1, 1}},
+                                  {{kSmallest, 0, 0}, {2 * kSmallest, 1, 1}},
+                                  {{0.5 * kLargest, 0, 0}, {kLargest, 1, 1}}};
+    BoxTree tree;
+    tree.fit(boxes);
+    const auto near = [&](double lower, double upper) {
+        std::vector<std::uint32_t> found;
+        tree.near({{lower, 0, 0}, {upper, 1, 1}}, [&](std::uint32_t k) { found.push_back(k); });
+        std::sort(found.begin(), found.end());
+        return found;
+    };
+    using Found = std::vector<std::uint32_t>;
+    EXPECT_EQ(near(-kLargest, -0.9 * kLargest), Found{0});
+    EXPECT_EQ(near(-0.4 * kLargest, 0.5 * kSmallest), Found{});
+    EXPECT_EQ(near(1.5 * kSmallest, 1e30), Found{1});
+    EXPECT_EQ(near(0.4 * kLargest, 0.5 * kLargest), Found{2});
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(near(-kInfinity, kInfinity), (Found{0, 1, 2}));
 }
 
 }  // namespace

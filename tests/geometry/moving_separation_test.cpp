@@ -47,6 +47,32 @@ TEST(MovingSeparation, ProvesWhatIsApartAndNothingElse) {
     EXPECT_GE(proved, apart - apart / 100);  // what passes at rounding's distance is not proved
 }
 
+// What passes by the cheap proof meets nothing, on lines and on curves; and most of what is apart does.
+TEST(MovingSeparation, PassesAlongADirectionOnlyWhatMeetsNothing) {
+    RandomSequence random(41, 0, 0);
+    int apart = 0;
+    int passed = 0;
+    for (int k = 0; k < test::scaled(4000); ++k) {
+        const MovingTriangle triangle = random_triangle(random, k % 2 == 0 ? 0.1 : 1.0);
+        const Vec3 from = in_cube(random);
+        const Vec3 to = in_cube(random);
+        const Path path = k % 3 == 0   ? line_path(from, to - from, 1.0)
+                          : k % 3 == 1 ? parabola_path(from, to - from, in_cube(random), 1.0)
+                                       : hermite_path(from, in_cube(random), to, in_cube(random), 1.0);
+        const double radius = k % 4 < 2 ? 0.0 : 0.2 * random.uniform();
+        const bool passes = pass_along_direction(path, radius, triangle);
+        const bool meets = first_meeting(path, radius, triangle, 0.0, [](const Meeting&) { return true; }).has_value();
+        EXPECT_FALSE(passes && meets) << k;
+        apart += meets ? 0 : 1;
+        passed += passes ? 1 : 0;
+    }
+    EXPECT_GT(passed, apart / 2);
+    // A corner that the path goes through at its end.
+    const Vec3 corner{0.3, -0.2, 0.5};
+    const MovingTriangle still{{{{corner, corner}, {{1, 0, 1}, {1, 0, 1}}, {{1, 1, 1}, {1, 1, 1}}}}};
+    EXPECT_FALSE(pass_along_direction(hermite_path({}, {0, 0, 1}, corner, {0, 0, 1}, 1.0), 0.0, still));
+}
+
 // A point, or a sphere, that rides on a triangle which turns and grows: no one direction separates them for longer than
 // the gap over the speed of the corners.
 TEST(MovingSeparation, ProvesWhatRidesOnATriangleThatTurns) {

@@ -6,6 +6,7 @@
 
 #include "io/scene_errors.h"
 #include "ricochet/io/scene.h"
+#include "support/temporary_folder.h"
 
 namespace ricochet {
 namespace {
@@ -109,6 +110,35 @@ TEST(BodyScene, WarnsOfCollidersThatOverlapWhereTheirVolumeCounts) {
     const std::string given = R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1])";
     const std::string ball = R"({"type": "sphere", "radius": 1, "frame": "wheel", "name": )";
     EXPECT_EQ(parse_scene(scene_of(given, ball + R"("a"}, )" + ball + R"("b"})"), "s.json").warnings, Lines{});
+}
+
+/// Two cubes of one mesh, the second moved along x.
+std::string two_cubes(double apart) {
+    const std::string faces =
+        "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
+    std::string text;
+    for (const double x : {0.0, apart}) {
+        for (int corner = 0; corner < 8; ++corner) {
+            text += "v " + std::to_string(x + corner % 2) + " " + std::to_string(corner / 2 % 2) + " " +
+                    std::to_string(corner / 4) + "\n";
+        }
+        text += faces;
+    }
+    return text;
+}
+
+TEST(BodyScene, WarnsOfAMeshThatCrossesItselfWhereItsVolumeCounts) {
+    const test::TemporaryFolder folder;
+    const auto warnings = [&](double apart) {
+        static_cast<void>(folder.write("cubes.obj", two_cubes(apart)));
+        const std::string mesh = R"({"name": "cubes", "type": "mesh", "file": "cubes.obj", "frame": "wheel"})";
+        return read_scene(folder.write("s.json", scene_of(R"("density": 1)", mesh))).warnings;
+    };
+    EXPECT_EQ(warnings(2.0), Lines{});
+    const Lines crossing = warnings(0.5);
+    ASSERT_EQ(crossing.size(), 1U);
+    EXPECT_NE(crossing[0].find("frames.wheel.body: the mesh \"cubes\" crosses itself: some 3"), std::string::npos)
+        << crossing[0];
 }
 
 TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {

@@ -180,7 +180,10 @@ TEST(RunInfo, ReadsBackWhatWasWritten) {
     info.version = "0.1.0";
     info.scene = "scenes/a \"b\".json";
     info.up = {0, 1, 0};
-    info.camera = CameraDescription{{1, 2, 3}, {0, 0, 0.1}, std::nullopt, 40.0};
+    info.camera.emplace();
+    info.camera->position = {1, 2, 3};
+    info.camera->target = {0, 0, 0.1};
+    info.camera->field_of_view_degrees = 40.0;
     info.colliders = {{"floor", "plane", "collider_00_floor.vtp", 3}};
     const RunInfo read = read_run_info(folder.write("run.json", run_info_text(info)));
     EXPECT_EQ(read.scene, info.scene);

@@ -275,7 +275,11 @@ TEST(RunInfo, UpIsAgainstGravityAlongTheNearestAxis) {
     scene.setup.forces.push_back(make_linear_drag(0.1));
     scene.setup.forces.push_back(make_gravity({0.5, -9.81, 0}));
     EXPECT_EQ(run_info_of(scene).up, Vec3(0, 1, 0));
-    scene.camera = CameraDescription{{1, 2, 3}, {0, 0, 0}, Vec3{0, 0, 4}, 40.0};
+    scene.camera.emplace();
+    scene.camera->position = {1, 2, 3};
+    scene.camera->target = {0, 0, 0};
+    scene.camera->up = Vec3{0, 0, 4};
+    scene.camera->field_of_view_degrees = 40.0;
     EXPECT_EQ(run_info_of(scene).up, Vec3(0, 0, 1));
     EXPECT_EQ(run_info_of(scene).camera->field_of_view_degrees, 40.0);
 }

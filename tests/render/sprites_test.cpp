@@ -70,7 +70,7 @@ TEST(Sprites, TheSameBytesForAnyNumberOfThreads) {
         PictureOptions options;
         options.width = options.height = kSize;
         options.samples = 1;
-        options.night = true;
+        options.lighting = Lighting::night;
         return render_picture(preview, front(), options, discs).rgb;
     };
     EXPECT_EQ(bytes(1, false), bytes(4, false));
@@ -81,7 +81,7 @@ TEST(Picture, TheNightIsDark) {
     PictureOptions options;
     options.width = options.height = kSize;
     options.samples = 1;
-    options.night = true;
+    options.lighting = Lighting::night;
     const Image image = render_picture(nothing(), front(), options);
     for (const int c : image.pixel(kSize / 2, kSize / 3)) EXPECT_LT(c, 70);
 }

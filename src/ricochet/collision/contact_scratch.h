@@ -12,6 +12,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/way_point.h"
 #include "ricochet/geometry/predicates/triangle_plane.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
 
@@ -111,6 +112,7 @@ struct ContactScratch {
         std::vector<double> tolerances;
         std::vector<double> fourth;  ///< of the bodies near: bounds of the fourth derivative in their frames, m/s^4
         std::vector<double> besides;
+        std::vector<Path> clear;  ///< in the frames of the bodies near: what a piece that meets nothing is the begin of
         std::vector<double> cuts;
         std::vector<double> keys;
     };

@@ -110,6 +110,8 @@ void DeformingColliders::sweep(Mesh& mesh) {
         moments.push_back(mesh.motion->at(key));
     }
     moments.push_back(mesh.motion->at(end_));
+    mesh.at_begin = moments.front();
+    mesh.at_end = moments.back();
     const bool stands = std::all_of(moments.begin(), moments.end(), [&](const MeshMoment& moment) {
         return moment.duration == 0.0 && moment.from.data() == moments[0].from.data();
     });
@@ -152,8 +154,15 @@ void DeformingColliders::near(const Box3& box, std::vector<SurfaceId>& out) cons
 }
 
 bool DeformingColliders::stay_out(const Box3& box) const {
-    return std::none_of(meshes_.begin(), meshes_.end(),
-                        [&](const Mesh& mesh) { return BoxTree::meet(mesh.tree.bounds(), box); });
+    return std::none_of(meshes_.begin(), meshes_.end(), [&](const Mesh& mesh) { return mesh.tree.has_near(box); });
+}
+
+double DeformingColliders::offset_in(const Box3& box) const {
+    double offset = 0.0;
+    for (const Mesh& mesh : meshes_) {
+        if (BoxTree::meet(mesh.tree.bounds(), box)) offset = std::max(offset, mesh.offset);
+    }
+    return offset;
 }
 
 double DeformingColliders::next_key(double time) const {
@@ -162,17 +171,23 @@ double DeformingColliders::next_key(double time) const {
     return first;
 }
 
+MeshMoment DeformingColliders::moment_of(const Mesh& mesh, double time) const {
+    if (begin_ < end_ && time == begin_) return mesh.at_begin;
+    if (begin_ < end_ && time == end_) return mesh.at_end;
+    return mesh.motion->at(time);
+}
+
 std::array<Vec3, 3> DeformingColliders::corners_at(SurfaceId surface, double time) const {
     const Mesh& mesh = mesh_with(surface);
     const Triangle& triangle = mesh.triangles[surface - mesh.first_surface];
-    const MeshMoment moment = mesh.motion->at(time);
+    const MeshMoment moment = moment_of(mesh, time);
     return {moment.position(triangle[0]), moment.position(triangle[1]), moment.position(triangle[2])};
 }
 
 std::array<Vec3, 3> DeformingColliders::corner_velocities(SurfaceId surface, double time) const {
     const Mesh& mesh = mesh_with(surface);
     const Triangle& triangle = mesh.triangles[surface - mesh.first_surface];
-    const MeshMoment moment = mesh.motion->at(time);
+    const MeshMoment moment = moment_of(mesh, time);
     return {moment.velocity(triangle[0]), moment.velocity(triangle[1]), moment.velocity(triangle[2])};
 }
 

@@ -51,6 +51,8 @@ public:
     void near(const Box3& box, std::vector<SurfaceId>& out) const;
     /// True where all of them stay out of the box during the step.
     [[nodiscard]] bool stay_out(const Box3& box) const;
+    /// m, the largest offset_of() of those that may come into the box; 0 where all stay out.
+    [[nodiscard]] double offset_in(const Box3& box) const;
     /// m, the contact offset where one of these is touched: by the largest of its vertices' coordinates in the step.
     [[nodiscard]] double offset_of(SurfaceId surface) const { return mesh_with(surface).offset; }
     [[nodiscard]] double offset_of_mesh(std::size_t mesh) const { return meshes_[mesh].offset; }
@@ -96,6 +98,8 @@ private:
         /// Those with three corners. What names a vertex twice never has an area, and takes no part in collisions.
         std::vector<std::uint32_t> solid;
         std::shared_ptr<const MeshMotion> motion;
+        MeshMoment at_begin;  ///< of the step
+        MeshMoment at_end;
         BoxTree tree;         ///< of where each solid triangle comes in the step
         double offset = 0.0;  ///< m, see offset_of()
         /// The positions at which it stands in the step that `tree` is of: before its first key or after its last one.
@@ -103,6 +107,7 @@ private:
     };
 
     void add(std::size_t number);
+    [[nodiscard]] MeshMoment moment_of(const Mesh& mesh, double time) const;
     [[nodiscard]] const Mesh& mesh(std::size_t collider) const { return meshes_[mesh_of_[collider]]; }
     [[nodiscard]] const Mesh& mesh_with(SurfaceId surface) const { return mesh(colliders_->collider_of(surface)); }
     void sweep(Mesh& mesh);

@@ -90,7 +90,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
 }
 
 std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const MovingTriangle& triangle) const {
-    if (!(path_.duration > 0.0)) return std::nullopt;
+    if (!(path_.duration > 0.0) || pass_along_direction(path_, radius_, triangle)) return std::nullopt;
     double radius = radius_;
     double from = 0.0;
     const double distance = distance_at_start(path_, triangle);

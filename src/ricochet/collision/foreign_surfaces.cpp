@@ -5,6 +5,16 @@
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
+namespace {
+
+/// Times that a position is carried before it has come to a surface.
+constexpr double kCarries = 8.0;
+
+}  // namespace
+
+double offset_for_carrying(const MovingPose& pose, const Vec3& image) {
+    return kCarries * max_abs(pose.image(pose.point(image)) - image);
+}
 
 bool ForeignSurfaces::are_free(const WayPoint& p, const WayPoint& q) const {
     return std::all_of(bodies_.begin(), bodies_.end(),
@@ -67,7 +77,9 @@ double ForeignSurfaces::offset_at(const WayPoint& p) const {
         offset = std::max(offset, contact_offset(image(body, p)));
         if (body.id == kAtRest) continue;
         const double time = view_.clock().at(p.time);
-        offset = std::max(offset, contact_offset(view_.bodies().pose(body.id, time).world_from_frame.translation));
+        const MovingPose pose = view_.bodies().pose(body.id, time);
+        offset = std::max(offset, contact_offset(pose.world_from_frame.translation));
+        if (view_.bodies().yields(body.id)) offset = std::max(offset, offset_for_carrying(pose, image(body, p)));
     }
     for (const Deforming& triangle : deforming_) offset = std::max(offset, deforming().offset_of(triangle.surface));
     return offset;

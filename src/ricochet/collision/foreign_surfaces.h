@@ -14,6 +14,11 @@
 
 namespace ricochet {
 
+/// m, by which a position in a frame has to keep off surfaces so that being carried along does not lead it into them:
+/// the rotation of a body that is pushed about has the roundings of all its turns so far, and there and back leads
+/// elsewhere. 0 where that is within what contact_offset() is for.
+[[nodiscard]] double offset_for_carrying(const MovingPose& pose, const Vec3& image);
+
 /// What queries in the frames of other bodies have found near one path, or near a piece of it. Each body sees the path
 /// as a cubic of its own; stored positions are what MovingPose::image() says.
 class ForeignSurfaces {

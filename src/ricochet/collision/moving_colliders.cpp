@@ -128,14 +128,14 @@ void MovingColliders::set_culling(bool culls) {
     for (Body& body : bodies_) body.world->set_culling(culls);
 }
 
-MovingPose MovingColliders::pose(BodyId body, double time) const {
-    if (body == kAtRest || is_deforming(body)) return {};
+/// Of a body with a frame. Valid until this thread asks again.
+const MovingPose& MovingColliders::pose_of(BodyId body, double time) const {
     const Body& moving = bodies_[body];
     if (time == begin_ && begin_ < end_) return moving.at_begin;
     if (time == end_ && begin_ < end_) return moving.at_end;
-    if (moving.is_driven) return frames_->at(moving.frame, time);  // its path changes
     RememberedPose& slot = slot_of(body, time);
-    if (slot.step != step_ || slot.body != body || slot.time != time) {
+    // The path of a driven one changes.
+    if (moving.is_driven || slot.step != step_ || slot.body != body || slot.time != time) {
         slot = {step_, body, time, frames_->at(moving.frame, time)};
     }
     return slot.pose;
@@ -195,10 +195,9 @@ void MovingColliders::near_at(const Box3& box, double time, std::vector<BodyId>&
 }
 
 bool MovingColliders::all_stay_out(const Box3& box) const {
-    bool meets =
-        std::any_of(unbounded_.begin(), unbounded_.end(), [&](BodyId body) { return meet(bodies_[body].swept, box); });
-    if (!meets && BoxTree::meet(swept_.bounds(), box)) swept_.near(box, [&](std::uint32_t) { meets = true; });
-    return !meets && (deforming_.empty() || deforming_.stay_out(box));
+    const auto meets = [&](BodyId body) { return meet(bodies_[body].swept, box); };
+    return std::none_of(unbounded_.begin(), unbounded_.end(), meets) && !swept_.has_near(box) &&
+           deforming_.stay_out(box);
 }
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {

@@ -54,7 +54,13 @@ public:
     /// The frame that a body stands in.
     [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
     /// Where a body is at a time, s, and how it moves.
-    [[nodiscard]] MovingPose pose(BodyId body, double time) const;
+    [[nodiscard]] MovingPose pose(BodyId body, double time) const {
+        return body == kAtRest || is_deforming(body) ? MovingPose{} : pose_of(body, time);
+    }
+    /// Where a position of the world, m, is in a body's coordinates at a time, s.
+    [[nodiscard]] Vec3 image(BodyId body, const Vec3& world, double time) const {
+        return body == kAtRest || is_deforming(body) ? world : pose_of(body, time).image(world);
+    }
     /// As CollisionWorld::prepare_radius().
     void prepare_radius(double radius);
     void set_culling(bool culls);
@@ -114,6 +120,7 @@ private:
     };
 
     void sweep(Body& body) const;
+    [[nodiscard]] const MovingPose& pose_of(BodyId body, double time) const;
 
     const CollisionWorld& at_rest_;
     std::shared_ptr<ColliderList> colliders_;

@@ -132,9 +132,10 @@ double MovingSweep::clear_until(const WayPoint& start, double fine) {
     set_piece(std::min(lists_.cuts[next_], begin_ + longest), start);
     const MovingView view(view_.bodies(), view_.home(), clock_);
     double clear = piece_.duration;
+    lists_.clear.clear();
     for (std::size_t k = 0; k < lists_.near.size() && clear > 0.0; ++k) {
         const CollisionWorld& world = view.bodies().world(lists_.near[k]);
-        const Path path = path_in(lists_.near[k], view, {start.position, 0.0, start.world});
+        const Path& path = lists_.clear.emplace_back(path_in(lists_.near[k], view, {start.position, 0.0, start.world}));
         const QueryMargins margins(world, path, query_.radius, besides[k]);
         clear = std::min(clear, time_clear_of(world, margins, path, fine));
     }

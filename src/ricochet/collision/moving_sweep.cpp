@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "ricochet/collision/deforming_sweep.h"
+#include "ricochet/collision/look_ahead.h"
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
@@ -26,11 +27,11 @@ Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     return piece;
 }
 
-Box3 box_of(const Path& path, double margin) {
-    Box3 box;
+Box3 box_of(const Path& path) {
+    Box3 box{min(path.c[0], path.end), max(path.c[0], path.end)};
+    if (path.degree == 1) return box;
     for (const Vec3& point : path.control_points()) box.include(point);
-    box.include(path.end);
-    return grown(box, margin);
+    return box;
 }
 
 /// Bounds of the derivatives of a path.
@@ -48,6 +49,11 @@ DerivativeBounds bounds_of(const Path& path) {
 
 }  // namespace
 
+Box3 reach_of(const Path& path, double radius) {
+    const Box3 box = box_of(path);
+    return grown(box, radius + kCandidateSlack * (std::max(max_abs(box.lower), max_abs(box.upper)) + radius));
+}
+
 MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
                          const WayPoint& start, ContactScratch& scratch)
     : view_(view),
@@ -57,16 +63,16 @@ MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry
       scratch_(scratch),
       lists_(std::exchange(scratch.sweep, {})) {
     find_near();
+    beside_path_ = beside_path();
     cut();
 }
 
 /// By the box of the path in the world; seen from a body everything may be near.
 void MovingSweep::find_near() {
     const MovingColliders& bodies = view_.bodies();
-    const double largest = largest_coordinate(query_.path);
-    Box3 box = box_of(query_.path, query_.radius + kCandidateSlack * (largest + query_.radius));
+    Box3 box = reach_of(query_.path, query_.radius);
     if (view_.home() != kAtRest) {
-        const double from_origin = largest + query_.radius;
+        const double from_origin = largest_coordinate(query_.path) + query_.radius;
         box = {};
         // Between the ends the frame moves by no more than its speed allows.
         const MotionBounds& bounds = bodies.bounds(view_.home());
@@ -87,12 +93,12 @@ void MovingSweep::find_near() {
 /// With those within reach of all positions that are tried beside the path.
 void MovingSweep::find_deforming(const Box3& box) {
     const DeformingColliders& deforming = view_.bodies().deforming();
-    if (deforming.stay_out(box)) return;
-    deforming.near(box, deforming_);
+    deforming_offset_ = deforming.offset_in(box);
+    if (deforming_offset_ == 0.0) return;
     double by = rounding() + query_.beside;
     for (const BodyId body : lists_.near) by += 8.0 * tolerance_of(body);
-    deforming_.clear();
     deforming.near(grown(box, 8.0 * by), deforming_);
+    if (deforming_.empty()) deforming_offset_ = 0.0;
 }
 
 DerivativeBounds MovingSweep::world_bounds() const {
@@ -145,11 +151,7 @@ double MovingSweep::rounding() const {
     };
     include(view_.home());
     for (const BodyId body : lists_.near) include(body);
-    double offset = contact_offset(largest);
-    for (const SurfaceId surface : deforming_) {
-        offset = std::max(offset, view_.bodies().deforming().offset_of(surface));
-    }
-    return kLargestContactOffsetUlps / kContactOffsetUlps * offset;
+    return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
 }
 
 /// The piece as a body sees it.
@@ -164,10 +166,11 @@ Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& s
 }
 
 /// Makes a contact with a body, whose path it was found on, the first one where it is, or a part of it.
-void MovingSweep::take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const {
+void MovingSweep::take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
+                       std::optional<Contact>& first) const {
     Contact contact = found;
     if (body != view.home()) {
-        find_true_time(contact, body, view);
+        find_true_time(contact, body, geometry, view);
         for (int k = 0; k < contact.count; ++k) {
             Vec3& normal = contact.surfaces[static_cast<std::size_t>(k)].normal;
             normal = view.direction_from(body, normal, contact.time);
@@ -191,10 +194,12 @@ void MovingSweep::merge(Contact contact, std::optional<Contact>& first) const {
     std::sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
 }
 
-/// By Newton's method on the distance along the true way, from the time on the cubic.
-void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView& view) const {
-    const CollisionWorld& world = view.bodies().world(body);
+/// By Newton's method on the distance along the true way, from the time on the cubic, until that is less than its
+/// coordinates tell.
+void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeometry& geometry,
+                                 const MovingView& view) const {
     const SurfaceId surface = contact.first().surface;
+    const bool is_sphere = query_.radius > 0.0;
     const double most = 4.0 * tolerance_of(body);
     double time = contact.time;
     for (int k = 0; k < kNewtonSteps; ++k) {
@@ -203,15 +208,16 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView
         const Vec3 velocity = view.velocity_in(body, at, piece_.velocity(time));
         double height = 0.0;
         double rate = 0.0;
-        if (query_.radius > 0.0) {
-            const CollisionWorld::Nearest nearest = world.nearest(surface, image);
+        if (is_sphere) {
+            const CollisionWorld::Nearest nearest = geometry.nearest(surface, image);
             height = nearest.distance - query_.radius;
             rate = dot(velocity, nearest.normal);
         } else {
-            height = world.signed_distance_from(surface, image);
-            rate = dot(velocity, world.unit_normal_of(surface, image));
+            height = geometry.signed_distance_from(surface, image);
+            rate = dot(velocity, geometry.unit_normal_of(surface, image));
         }
         if (rate == 0.0 || std::fabs(height) > most) return;
+        if (std::fabs(height) <= ulp(std::max(max_abs(image), query_.radius))) break;
         const double next = std::clamp(time - height / rate, 0.0, piece_.duration);
         if (std::fabs(next - contact.time) * std::fabs(rate) > most) return;
         const bool is_there = std::fabs(next - time) <= ulp(time);
@@ -222,14 +228,11 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const MovingView
     const Vec3 image = view.image(body, view.point_at(piece_.position(time), time).world, time);
     for (int k = 0; k < contact.count; ++k) {
         ContactSurface& touched = contact.surfaces[static_cast<std::size_t>(k)];
-        const Vec3 normal = query_.radius > 0.0 ? world.nearest(touched.surface, image).normal
-                                                : world.unit_normal_of(touched.surface, image);
+        const Vec3 normal = is_sphere ? geometry.nearest(touched.surface, image).normal
+                                      : geometry.unit_normal_of(touched.surface, image);
         touched.normal = dot(normal, touched.normal) < 0.0 ? -normal : normal;
     }
 }
-
-/// m, as far as positions beside the path here may lie beside the cubics that bodies see.
-double MovingSweep::beside_in_bodies() const { return 2.0 * (query_.beside + beside_path()); }
 
 /// m, by which what is asked about lies beside the path here: what a body sees beside its cubic.
 double MovingSweep::beside_path() const {
@@ -258,7 +261,7 @@ ContactQueryResult MovingSweep::sweep(const WayPoint& start) {
     } else {
         foreign_.emplace(view, first_point);
     }
-    const double beside = query_.beside + beside_path();
+    const double beside = query_.beside + beside_path_;
     ContactQueryResult own =
         find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
     meet_bodies(view, first_point, own.contact);
@@ -273,16 +276,17 @@ void MovingSweep::meet_bodies(const MovingView& view, const WayPoint& start, std
     for (std::size_t k = 0; k < lists_.near.size(); ++k) {
         ContactScratch& scratch = *scratch_.foreign[k];
         const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
-        const Path path = path_in(lists_.near[k], view, start);
         if (is_clear_ && geometry.world().culls()) {
             scratch.clear();
-            const QueryMargins margins(geometry.world(), path, query_.radius, beside);
+            const Path path = shortened(lists_.clear[k], piece_.duration);
+            const QueryMargins margins(geometry.world(), path, query_.radius, lists_.besides[k]);
             foreign_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
             continue;
         }
+        const Path path = path_in(lists_.near[k], view, start);
         const ContactQueryResult found =
             find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside}, scratch);
-        if (found.contact) take(*found.contact, lists_.near[k], view, first);
+        if (found.contact) take(*found.contact, lists_.near[k], geometry, view, first);
         foreign_->add({lists_.near[k], path, found.near});
     }
 }

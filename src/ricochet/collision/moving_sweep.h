@@ -22,8 +22,13 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/foreign_surfaces.h"
 #include "ricochet/collision/way_point.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/geometry/sweep/path.h"
 
 namespace ricochet {
+
+/// Where bodies may touch what moves along a path in the world.
+[[nodiscard]] Box3 reach_of(const Path& path, double radius);
 
 /// The pieces of one path. What it is given must outlive it; scratch memory of one thread.
 class MovingSweep {
@@ -61,7 +66,7 @@ private:
     void meet_bodies(const MovingView& view, const WayPoint& start, std::optional<Contact>& first);
     [[nodiscard]] double pieces_within(double span) const;
     [[nodiscard]] double beside_path() const;
-    [[nodiscard]] double beside_in_bodies() const;
+    [[nodiscard]] double beside_in_bodies() const { return 2.0 * (query_.beside + beside_path_); }
     void set_times();
     [[nodiscard]] std::vector<double> deforming_keys() const;
     [[nodiscard]] double path_time_of(double key) const;
@@ -71,10 +76,11 @@ private:
     [[nodiscard]] double rounding() const;
     [[nodiscard]] DerivativeBounds world_bounds() const;
     [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const WayPoint& start) const;
-    void take(const Contact& found, BodyId body, const MovingView& view, std::optional<Contact>& first) const;
+    void take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
+              std::optional<Contact>& first) const;
     void merge(Contact contact, std::optional<Contact>& first) const;
     void meet_deforming(const MovingView& view, const WayPoint& start, double beside, std::optional<Contact>& first);
-    void find_true_time(Contact& contact, BodyId body, const MovingView& view) const;
+    void find_true_time(Contact& contact, BodyId body, const SurfaceGeometry& geometry, const MovingView& view) const;
 
     MovingView view_;
     const SurfaceGeometry& geometry_;
@@ -85,6 +91,8 @@ private:
     std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
     std::vector<double> times_;         // s, simulation times of the cuts; only where something that deforms is near
     double rate_ = 0.0;                 // pieces a second
+    double beside_path_ = 0.0;          // m, of beside_path()
+    double deforming_offset_ = 0.0;     // m, the largest contact offset of meshes that deform and may be near
     std::size_t next_ = 1;              // the cut at which the next piece ends, or after it
     double begin_ = 0.0;                // s, of the next piece
     bool is_clear_ = false;             // nothing of other frames comes near the piece

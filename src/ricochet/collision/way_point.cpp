@@ -22,7 +22,11 @@ Vec3 MovingView::direction_from(BodyId body, const Vec3& d, double s) const {
 
 Vec3 MovingView::velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity, Limit limit) const {
     double time = clock_.at(at.time);
-    if (limit == Limit::before) time = std::nextafter(time, -std::numeric_limits<double>::infinity());
+    if (limit == Limit::before) {
+        const double before = std::nextafter(time, -std::numeric_limits<double>::infinity());
+        const bool is_key = bodies_->next_key(home_, before) <= time || bodies_->next_key(body, before) <= time;
+        if (is_key) time = before;
+    }
     Vec3 world = velocity;
     if (home_ != kAtRest) {
         const MovingPose pose = bodies_->pose(home_, time);

@@ -56,12 +56,12 @@ public:
     [[nodiscard]] WayPoint stored(const Vec3& world, double s) const { return {image(home_, world, s), s, world}; }
     /// Where a stored position is in a body's coordinates.
     [[nodiscard]] Vec3 image(BodyId body, const Vec3& world, double s) const {
-        return body == kAtRest ? world : bodies_->pose(body, clock_.at(s)).image(world);
+        return body == kAtRest ? world : bodies_->image(body, world, clock_.at(s));
     }
     /// A direction of a body in the axes of this frame.
     [[nodiscard]] Vec3 direction_from(BodyId body, const Vec3& d, double s) const;
     /// Velocity, in a body's coordinates, of what is at a point of the world and moves with a velocity in this frame.
-    /// At a key, where that may jump: `before` it or after.
+    /// At a key of either frame, where that may jump: `before` it or after.
     enum class Limit { before, after };
     [[nodiscard]] Vec3 velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity,
                                    Limit limit = Limit::after) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -31,6 +32,60 @@ bool is_inertia(const SymmetricMatrix& a) {
     const SymmetricMatrix spread = diagonal_matrix(0.5 * a.trace()) + (-1.0) * a;
     return std::isfinite(a.determinant()) && std::isnormal(a.determinant()) && is_definite(a, 0.0) &&
            a.determinant() > 0.0 && is_definite(spread, -kRounding);
+}
+
+/// A coordinate, from where the spring is at rest, and its rate.
+struct JointState {
+    double coordinate;
+    double rate;
+};
+
+/// By how much x'' = n - stiffness x - damping x' leads beside where the rate would lead in h, s, and how much of the
+/// rate comes to it, with n from n[0] to n[1] in equal steps; 1/s^2, 1/s. By the power series in time, which ends by
+/// itself, in parts in which it does so soon.
+JointState oscillated(const JointState& start, double stiffness, double damping, const std::array<double, 2>& n,
+                      double h) {
+    constexpr int kMostTerms = 40;
+    const int parts = 1 + static_cast<int>(std::min(1e4, h * (std::sqrt(stiffness) + damping)));
+    const double s = h / parts;
+    const double slope = h > 0.0 ? (n[1] - n[0]) / h : 0.0;
+    JointState gained{0.0, 0.0};
+    for (int part = 0; part < parts; ++part) {
+        double forcing = n[0] + part * s * slope;
+        // Terms of the series of the coordinate: derivatives times s^k / k!.
+        double x = start.coordinate + part * s * start.rate + gained.coordinate;
+        double v = s * (start.rate + gained.rate);
+        gained.coordinate += s * gained.rate;
+        for (int k = 2; k <= kMostTerms && (x != 0.0 || v != 0.0 || forcing != 0.0); ++k) {
+            const double a = (s * s / (k * (k - 1.0))) * (forcing - stiffness * x) - (s / k) * damping * v;
+            forcing = k == 2 ? s * slope : 0.0;
+            x = std::exchange(v, a);
+            gained.coordinate += a;
+            gained.rate += k * a / s;
+        }
+    }
+    return gained;
+}
+
+// Dry friction and a motor hold a rate, which has to be hit by what is planned.
+bool is_oscillator(const JointSettings& joint) {
+    const bool is_steady = joint.friction == 0.0 && joint.motor_most == 0.0;
+    return is_steady && (joint.spring > 0.0 || joint.damping > 0.0);
+}
+
+/// The cubic through where spring and damper lead in h, s: the factors of t, t^2 and t^3. now, predicted: at the begin,
+/// and as far as is known at the end, with the acceleration by all that acts there.
+std::array<double, 3> oscillation(const JointSettings& joint, double inertia, const JointState& now,
+                                  const JointState& predicted, const std::array<double, 2>& accelerations, double h) {
+    const double stiffness = joint.spring / inertia;
+    const double damping = joint.damping / inertia;
+    const auto without = [&](const JointState& state, double acceleration) {
+        return acceleration + stiffness * (state.coordinate - joint.spring_rest) + damping * state.rate;
+    };
+    const std::array<double, 2> others{without(now, accelerations[0]), without(predicted, accelerations[1])};
+    const JointState gained = oscillated({now.coordinate - joint.spring_rest, now.rate}, stiffness, damping, others, h);
+    const double by_rate = h * gained.rate;
+    return {now.rate, (3.0 * gained.coordinate - by_rate) / (h * h), (by_rate - 2.0 * gained.coordinate) / (h * h * h)};
 }
 
 void check(const BodyDescription& body) {
@@ -101,7 +156,7 @@ BodyPath DrivenBody::plan_free(const ForceField& forces, const Wrench& load, dou
     const auto turned = [&](const Vec3& spin, double duration) {
         BodyPath turning{0.0, duration, map_, {}};
         if (spin == Vec3{}) return turning;
-        turning.axis = map_.direction_back(spin / length(spin));
+        turning.axis = normalized(map_.direction_back(spin));
         turning.turns[0] = length(spin) * kDegrees;
         return turning;
     };
@@ -123,7 +178,11 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, do
     const double reached = coordinate_ + h * (rate_ + 0.5 * h * predicted);
     const double last = joint_acceleration(forces, reached, rate_ + h * predicted, end) + by_load;
     const double held = held_at(rate_ + 0.5 * h * (first + last));
-    const std::array<double, 3> way{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
+    std::array<double, 3> way{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
+    if (is_oscillator(description_.settings) && h > 0.0) {
+        way = oscillation(description_.settings, inertia_, {coordinate_, rate_}, {reached, rate_ + h * predicted},
+                          {first, last}, h);
+    }
     BodyPath path{begin, end, map_, {}};
     path.axis = description_.axis;
     if (description_.joint == JointKind::slider) {
@@ -199,8 +258,9 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& 
     center_ = map_.point(description_.center);
     if (description_.joint == JointKind::free) {
         velocity_ = rate(path.way);
-        // Moments were taken about where the centre was, and the load's impulse is in the velocity, not in them.
-        angular_momentum_ += h * load.moment - cross(center_ - before, h * load.impulse);
+        // Moments were taken about where the centre was. The load has acted all the way, the rest acts at its end.
+        const Vec3 mean = h * (path.way[0] / 2.0 + h * (path.way[1] / 3.0 + (0.25 * h) * path.way[2]));
+        angular_momentum_ += h * load.moment - cross(mean, h * load.impulse);
         take({rest.impulse, rest.moment - cross(center_ - before, rest.impulse)});
         return;
     }

@@ -1,8 +1,8 @@
 /// \file
 /// A rigid body that forces and impulses move: free, or on an axis or a straight guide that is fixed in the world.
 ///
-/// On a joint the step is that of a linear acceleration between the step's ends, with the end's predicted (N. M.
-/// Newmark, "A method of computation for structural dynamics", J. Eng. Mech. Div. ASCE 85, 1959, beta = 1/6): of second
+/// On a joint a spring and a damper are followed in closed form, all else with a linear acceleration between the ends
+/// (N. M. Newmark, "A method of computation for structural dynamics", J. Eng. Mech. Div. ASCE 85, 1959): of second
 /// order. A free body keeps its angular momentum to rounding, and turns by the angular velocity of the step's middle
 /// (S. R. Buss, "Accurate and efficient simulation of rigid-body rotations", J. Comput. Phys. 164, 2000).
 #pragma once

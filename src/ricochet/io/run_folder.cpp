@@ -251,6 +251,7 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
          !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         if (const auto step = step_of_frame_file(name)) folder.frames.push_back({*step, entry->path()});
+        if (const auto step = step_of_contact_file(name)) folder.contacts.push_back({*step, entry->path()});
         if (const auto step = step_of_moving_file(name)) moving.emplace(*step, entry->path());
         if (const auto index = index_of_collider_file(name)) colliders.emplace(*index, entry->path());
         if (name == kRunInfoFile) folder.info = read_run_info(entry->path());
@@ -260,8 +261,9 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: holds no frames (particles_NNNNNN.vtp); give the --output folder of a run",
                                      path.string()));
     }
-    std::sort(folder.frames.begin(), folder.frames.end(),
-              [](const FrameFile& a, const FrameFile& b) { return a.step < b.step; });
+    for (std::vector<FrameFile>* files : {&folder.frames, &folder.contacts}) {
+        std::sort(files->begin(), files->end(), [](const FrameFile& a, const FrameFile& b) { return a.step < b.step; });
+    }
     for (FrameFile& frame : folder.frames) {
         if (const auto found = moving.find(frame.step); found != moving.end()) frame.moving = found->second;
     }

@@ -108,6 +108,7 @@ struct RunFolder {
     RunInfo info;                                  ///< defaults where the folder has no run.json
     std::vector<FrameFile> frames;                 ///< by step
     std::vector<std::filesystem::path> colliders;  ///< by index
+    std::vector<FrameFile> contacts{};             ///< of the contact log, by step
 };
 
 /// Lists a run's folder; the run may still be writing, or have been interrupted. Throws InputError when there is no

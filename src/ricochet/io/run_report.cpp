@@ -33,19 +33,69 @@ Vec3 vec3_of(const Json& json) {
     return v;
 }
 
+PictureDescription picture_of(const Json& json) {
+    PictureDescription picture;
+    picture.light = json.value("light", "");
+    if (json.contains("background")) picture.background = vec3_of(json.at("background"));
+    picture.transparent = json.value("transparent", false);
+    picture.particles = json.value("particles", "");
+    picture.shutter = json.value("shutter", 0.0);
+    if (json.contains("ground")) picture.ground = json.at("ground").get<double>();
+    return picture;
+}
+
+Json json_of(const PictureDescription& picture) {
+    Json json = Json::object();
+    if (!picture.light.empty()) json["light"] = picture.light;
+    if (picture.background) json["background"] = json_of(*picture.background);
+    if (picture.transparent) json["transparent"] = true;
+    if (picture.ground) json["ground"] = *picture.ground;
+    if (!picture.particles.empty()) json["particles"] = picture.particles;
+    if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
+    return json;
+}
+
+ColliderLooks looks_of(const Json& json) {
+    ColliderLooks looks;
+    if (json.contains("color")) looks.color = vec3_of(json.at("color"));
+    looks.roughness = json.value("roughness", looks.roughness);
+    looks.glass = json.value("glass", false);
+    looks.hidden = json.value("hidden", false);
+    return looks;
+}
+
+Json json_of(const ColliderLooks& looks) {
+    Json json = Json::object();
+    if (looks.color) json["color"] = json_of(*looks.color);
+    if (looks.roughness < 1.0) json["roughness"] = looks.roughness;
+    if (looks.glass) json["glass"] = true;
+    if (looks.hidden) json["hidden"] = true;
+    return json;
+}
+
 RunInfo run_info_of(const Json& json) {
     RunInfo info;
     info.version = json.at("version").get<std::string>();
     info.scene = json.at("scene").get<std::string>();
     info.up = vec3_of(json.at("up"));
     if (const Json& camera = json.at("camera"); !camera.is_null()) {
-        info.camera = {vec3_of(camera.at("position")), vec3_of(camera.at("target")), info.up,
-                       camera.at("fov").get<double>()};
+        info.camera.emplace();
+        info.camera->position = vec3_of(camera.at("position"));
+        info.camera->target = vec3_of(camera.at("target"));
+        info.camera->up = info.up;
+        info.camera->field_of_view_degrees = camera.at("fov").get<double>();
+        info.camera->aperture = camera.value("aperture", 0.0);
+        info.camera->focus_distance = camera.value("focus_distance", 0.0);
     }
+    if (json.contains("picture")) info.picture = picture_of(json.at("picture"));
     for (const Json& collider : json.at("colliders")) {
-        info.colliders.push_back({collider.at("name").get<std::string>(), collider.at("type").get<std::string>(),
-                                  collider.at("file").get<std::string>(), collider.at("material").get<std::uint32_t>(),
-                                  collider.value("moves", false)});
+        info.colliders.push_back({collider.at("name").get<std::string>(),
+                                  collider.at("type").get<std::string>(),
+                                  collider.at("file").get<std::string>(),
+                                  collider.at("material").get<std::uint32_t>(),
+                                  collider.value("moves", false),
+                                  {}});
+        if (collider.contains("looks")) info.colliders.back().looks = looks_of(collider.at("looks"));
     }
     return info;
 }
@@ -69,6 +119,8 @@ RunInfo run_info_of(const SceneDescription& scene) {
     info.scene = scene.file;
     info.up = upward_axis(scene.setup);
     info.camera = scene.camera;
+    info.picture = scene.picture;
+    info.looks = scene.looks;
     if (scene.camera && scene.camera->up) info.up = normalized(*scene.camera->up);
     return info;
 }
@@ -83,7 +135,12 @@ std::string run_info_text(const RunInfo& info) {
         json["camera"] = {{"position", json_of(info.camera->position)},
                           {"target", json_of(info.camera->target)},
                           {"fov", info.camera->field_of_view_degrees}};
+        if (info.camera->aperture > 0.0) {
+            json["camera"]["aperture"] = info.camera->aperture;
+            json["camera"]["focus_distance"] = info.camera->focus_distance;
+        }
     }
+    if (info.picture) json["picture"] = json_of(*info.picture);
     json["colliders"] = Json::array();
     for (const ColliderInfo& collider : info.colliders) {
         json["colliders"].push_back({{"name", collider.name},
@@ -91,6 +148,7 @@ std::string run_info_text(const RunInfo& info) {
                                      {"file", collider.file},
                                      {"material", collider.material}});
         if (collider.moves) json["colliders"].back()["moves"] = true;
+        if (collider.looks != ColliderLooks{}) json["colliders"].back()["looks"] = json_of(collider.looks);
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

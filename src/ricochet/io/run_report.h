@@ -25,6 +25,7 @@ struct ColliderInfo {
     std::string file;            ///< its file in the run's folder
     std::uint32_t material = 0;  ///< index of its material
     bool moves = false;          ///< its file is in the coordinates of its frame
+    ColliderLooks looks{};       ///< how pictures show it
 };
 
 /// Everything that run.json says.
@@ -39,7 +40,9 @@ struct RunInfo {
     std::string scene;                        ///< the scene file as it was named
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis
     std::optional<CameraDescription> camera;  ///< its `up` is the one above
+    std::optional<PictureDescription> picture;
     std::vector<ColliderInfo> colliders;
+    std::vector<ColliderLooks> looks{};  ///< of all colliders, before they are described
 };
 
 /// What a scene says about its own picture: camera and the upward axis. Version and colliders are left empty.

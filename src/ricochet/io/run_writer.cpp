@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/io/camera_frames.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
@@ -47,8 +48,12 @@ Box3 mesh_region(const Simulation& simulation) {
 std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
     std::vector<ColliderInfo> infos;
     for (const ColliderDescription& collider : simulation.colliders()) {
-        infos.push_back({collider.name, type_name(collider.shape), collider_file_name(infos.size(), collider.name),
-                         collider.material, is_moving(collider)});
+        infos.push_back({collider.name,
+                         type_name(collider.shape),
+                         collider_file_name(infos.size(), collider.name),
+                         collider.material,
+                         is_moving(collider),
+                         {}});
     }
     return infos;
 }
@@ -87,6 +92,9 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
     }
     region_.include(mesh_region(simulation));
     info_.colliders = describe_colliders(simulation);
+    for (std::size_t i = 0; i < std::min(info_.looks.size(), info_.colliders.size()); ++i) {
+        info_.colliders[i].looks = info_.looks[i];
+    }
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
     write_colliders(simulation);
     std::vector<PvdEntry> series;
@@ -110,6 +118,9 @@ void RunWriter::write_frame(const Simulation& simulation) {
     fill_particle_frame(frame, simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
     if (!simulation.springs().empty()) {
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
+    }
+    if (info_.camera && info_.camera->moves()) {
+        add_camera(frame, camera_place(*info_.camera, info_.up, info_.camera->frames.get(), simulation));
     }
     frames_.submit(simulation.step_index(), std::move(frame));
     if (moving_) moving_->submit(simulation.step_index(), moving_collider_frame(simulation, region_));

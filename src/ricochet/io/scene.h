@@ -5,12 +5,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/frame_tree.h"
+#include "ricochet/core/keyed_curve.h"
+#include "ricochet/core/vec3.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {
@@ -24,10 +28,40 @@ struct OutputOptions {
 
 /// Where a picture is taken from.
 struct CameraDescription {
-    Vec3 position;                        ///< m
-    Vec3 target;                          ///< m, the middle of the picture
-    std::optional<Vec3> up;               ///< of any length; nothing: against gravity
-    double field_of_view_degrees = 35.0;  ///< from the lower to the upper edge
+    Vec3 position;                                  ///< m
+    Vec3 target;                                    ///< m, the middle of the picture
+    std::optional<Vec3> up;                         ///< of any length; nothing: against gravity
+    double field_of_view_degrees = 35.0;            ///< from the lower to the upper edge
+    std::optional<double> focal_length{};           ///< mm, of a film 24 mm high; sets the field of view
+    double aperture = 0.0;                          ///< m, diameter of the lens; 0: everything is sharp
+    double focus_distance = 0.0;                    ///< m along the view to what is sharp; 0: at the target
+    std::optional<KeyedCurve<Vec3>> path{};         ///< m, instead of position
+    std::optional<KeyedCurve<Vec3>> target_path{};  ///< m, instead of target
+    std::string frame{};                            ///< in which all of this stands; empty: the world
+    std::shared_ptr<const FrameTree> frames{};      ///< of the scene, for a camera in a frame
+
+    /// True where it is not the same at all times.
+    [[nodiscard]] bool moves() const { return path || target_path || !frame.empty(); }
+};
+
+/// How a collider is shown.
+struct ColliderLooks {
+    std::optional<Vec3> color;  ///< linear light; nothing: one of the renderer's own
+    double roughness = 1.0;     ///< 0 (a mirror's gloss) .. 1 (matt)
+    bool glass = false;         ///< seen through
+    bool hidden = false;
+
+    friend bool operator==(const ColliderLooks&, const ColliderLooks&) = default;
+};
+
+/// Light and surroundings of pictures, and what particles are drawn as.
+struct PictureDescription {
+    std::string light;               ///< by name; empty: the renderer's own
+    std::optional<Vec3> background;  ///< linear light; nothing: the light's sky
+    bool transparent = false;        ///< nothing behind everything
+    std::optional<double> ground;    ///< m along the upward axis: a level ground; nothing: none
+    std::string particles;           ///< what they are drawn as, by name; empty: the renderer's own
+    double shutter = 0.0;            ///< s of the run that a picture shows, up to its own time
 };
 
 /// A scene, read and checked.
@@ -35,6 +69,8 @@ struct SceneDescription {
     SimulationSetup setup;
     OutputOptions output;
     std::optional<CameraDescription> camera;
+    std::optional<PictureDescription> picture;
+    std::vector<ColliderLooks> looks;          ///< of the setup's colliders, one each
     std::string file;                          ///< as it was named
     std::vector<std::string> warnings;         ///< one line each, with file and source location
     std::vector<std::filesystem::path> files;  ///< every file that it names and reads, each once

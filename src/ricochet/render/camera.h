@@ -8,12 +8,14 @@
 
 namespace ricochet {
 
-/// A pinhole camera.
+/// A camera, a pinhole unless its lens has an opening.
 struct Camera {
-    Vec3 position;              ///< m
-    Vec3 target;                ///< m, different from position
-    Vec3 up{0, 0, 1};           ///< of unit length
-    double fov_degrees = 35.0;  ///< vertical field of view, between 1 and 170
+    Vec3 position;                ///< m
+    Vec3 target;                  ///< m, different from position
+    Vec3 up{0, 0, 1};             ///< of unit length
+    double fov_degrees = 35.0;    ///< vertical field of view, between 1 and 170
+    double aperture = 0.0;        ///< m, diameter of the lens; 0: everything is sharp
+    double focus_distance = 0.0;  ///< m along the view to what is sharp; 0: at the target
 };
 
 /// Unit vectors of a camera: right, up in the picture, and forward.

@@ -9,11 +9,13 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kKnots = 9;
-constexpr std::array<std::string_view, 3> kNames = {"viridis", "plasma", "turbo"};
-constexpr std::array<std::array<std::uint32_t, kKnots>, 3> kMaps = {{
+constexpr std::array<std::string_view, 5> kNames = {"viridis", "plasma", "turbo", "inferno", "magma"};
+constexpr std::array<std::array<std::uint32_t, kKnots>, 5> kMaps = {{
     {0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725},
     {0x0d0887, 0x4c02a1, 0x7e03a8, 0xaa2395, 0xcc4778, 0xe66c5c, 0xf89540, 0xfdc527, 0xf0f921},
     {0x30123b, 0x466be3, 0x28bbec, 0x31f299, 0xa2fc3c, 0xedd03a, 0xfb8022, 0xd23105, 0x7a0403},
+    {0x000004, 0x210c4a, 0x57106e, 0x8a226a, 0xbc3754, 0xe45a31, 0xf98e09, 0xf9cb35, 0xfcffa4},
+    {0x000004, 0x1d1147, 0x51127c, 0x822681, 0xb73779, 0xe75263, 0xfc8961, 0xfec488, 0xfcfdbf},
 }};
 
 Vec3 srgb(std::uint32_t code) {

@@ -11,10 +11,10 @@
 
 namespace ricochet {
 
-/// Colour maps by name.
-/// Sources: viridis and plasma by S. van der Walt and N. Smith (2015, CC0), turbo by A. Mikhailov (2019), each read off
-/// at nine knots.
-enum class ColorMap { viridis, plasma, turbo };
+/// Colour maps by name; all but turbo are even to the eye.
+/// Sources: viridis, plasma, inferno and magma by S. van der Walt and N. Smith (2015, CC0), turbo by A. Mikhailov
+/// (2019), each read off at nine knots.
+enum class ColorMap { viridis, plasma, turbo, inferno, magma };
 
 [[nodiscard]] std::optional<ColorMap> color_map_from_name(std::string_view name);
 /// All names, in the order of the enumeration.

@@ -10,11 +10,12 @@
 
 namespace ricochet {
 
-/// An RGB picture, 8 bits a channel, sRGB, rows from the top.
+/// An RGB picture, 8 bits a channel, sRGB, rows from the top, with an alpha channel where it has one.
 struct Image {
     int width = 0;
     int height = 0;
-    std::vector<std::uint8_t> rgb;  ///< 3 * width * height bytes
+    std::vector<std::uint8_t> rgb;      ///< 3 * width * height bytes
+    std::vector<std::uint8_t> alpha{};  ///< width * height bytes, 255 for opaque; or empty: all of it is
 
     /// Red, green and blue of a pixel; x to the right, y down.
     [[nodiscard]] std::array<int, 3> pixel(int x, int y) const;

@@ -4,42 +4,16 @@
 #pragma once
 
 #include <functional>
-#include <vector>
+#include <optional>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/render/camera.h"
 #include "ricochet/render/image.h"
+#include "ricochet/render/light.h"
 #include "ricochet/render/preview.h"
+#include "ricochet/render/sprites.h"
 
 namespace ricochet {
-
-// Particles as soft discs that face the camera: light that adds up (sparks), or a haze that covers what is behind
-// (spray, smoke). The same bytes for any thread count: discs are laid over each other from far to near, ties in the
-// order given.
-// Method: W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.5 (particles as points of light that add
-// up); T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984 (the operator "over").
-
-/// Soft discs; the four vectors have the same length.
-struct Sprites {
-    std::vector<Vec3> centers;
-    std::vector<double> radii;      ///< m; discs smaller than a pixel are widened and dimmed alike
-    std::vector<Vec3> colors;       ///< linear light
-    std::vector<double> opacities;  ///< 0..1, at the disc's middle
-    bool glow = false;              ///< true: light that adds up; false: cover from far to near
-
-    [[nodiscard]] bool empty() const { return centers.empty(); }
-};
-
-/// What sprites do to each pixel, rows from the top.
-struct SpriteLayer {
-    std::vector<Vec3> light;            ///< linear light added
-    std::vector<double> transmittance;  ///< part of what is behind that is still seen, 0..1
-};
-
-/// Sprites in front of a picture of the given size. A disc whose middle is behind a solid mesh, plane or sphere is left
-/// out.
-[[nodiscard]] SpriteLayer draw_sprites(const Sprites& sprites, const Preview& preview, const Camera& camera, int width,
-                                       int height);
 
 /// How a picture is made.
 struct PictureOptions {
@@ -47,7 +21,10 @@ struct PictureOptions {
     int height = 720;  ///< pixels, 1..16384
     int samples = 16;  ///< rays a pixel, 1..4096
     double exposure = 1.0;
-    bool night = false;  ///< dark, with a little moonlight, instead of sun and sky
+    Lighting lighting = Lighting::day;
+    std::optional<Vec3> background;  ///< linear light behind everything, instead of the light's own
+    bool transparent = false;        ///< nothing behind everything: the picture has an alpha channel
+    bool filter = true;              ///< take the noise out, see filter_noise()
     /// Called now and then, from any thread, with the part that is done, 0..1. May be empty.
     std::function<void(double)> progress;
 };

@@ -1,80 +1,15 @@
 #include "ricochet/render/preview.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <utility>
 
-#include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/embree.h"
 
 namespace ricochet {
-
-namespace {
-
-constexpr std::size_t kBlock = 4096;
-
-// Twice the area times the unit normal.
-Vec3 area_vector(const TriangleMesh& mesh, const Triangle& triangle) {
-    const Vec3& a = mesh.vertices[triangle[0]];
-    return cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a);
-}
-
-Vec3 unit_or_zero(const Vec3& v) {
-    const double norm = length(v);
-    return norm > 0.0 && std::isfinite(norm) ? v / norm : Vec3{};
-}
-
-// For every vertex the triangles around it: triangles[offsets[v]] .. triangles[offsets[v + 1]].
-struct VertexTriangles {
-    std::vector<std::uint32_t> offsets, triangles;
-};
-
-VertexTriangles triangles_around_vertices(const TriangleMesh& mesh) {
-    VertexTriangles around;
-    around.offsets.assign(mesh.vertices.size() + 1, 0);
-    for (const Triangle& triangle : mesh.triangles) {
-        for (const std::uint32_t v : triangle) ++around.offsets[v + 1];
-    }
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) around.offsets[v + 1] += around.offsets[v];
-    around.triangles.resize(3 * mesh.triangles.size());
-    std::vector<std::uint32_t> next(around.offsets.begin(), around.offsets.end() - 1);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const std::uint32_t v : mesh.triangles[t]) around.triangles[next[v]++] = t;
-    }
-    return around;
-}
-
-}  // namespace
-
-std::vector<std::array<Vec3, 3>> corner_normals(const TriangleMesh& mesh, double crease_degrees) {
-    const double least_cosine = std::cos(crease_degrees * std::numbers::pi / 180.0);
-    const VertexTriangles around = triangles_around_vertices(mesh);
-    std::vector<Vec3> areas(mesh.triangles.size());
-    std::vector<Vec3> units(mesh.triangles.size());
-    for (std::size_t t = 0; t < areas.size(); ++t) {
-        areas[t] = area_vector(mesh, mesh.triangles[t]);
-        units[t] = unit_or_zero(areas[t]);
-    }
-    std::vector<std::array<Vec3, 3>> normals(mesh.triangles.size());
-    parallel_for_blocks(normals.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                const std::uint32_t v = mesh.triangles[t][corner];
-                Vec3 sum;
-                for (std::uint32_t k = around.offsets[v]; k < around.offsets[v + 1]; ++k) {
-                    const std::uint32_t other = around.triangles[k];
-                    if (dot(units[other], units[t]) >= least_cosine) sum += areas[other];
-                }
-                const Vec3 smooth = unit_or_zero(sum);
-                normals[t][corner] = smooth == Vec3{} ? units[t] : smooth;
-            }
-        }
-    });
-    return normals;
-}
 
 namespace {
 
@@ -117,7 +52,8 @@ RTCRay embree_ray(const PreviewRay& ray, const Vec3& origin) {
     out.dir_x = static_cast<float>(ray.direction.x);
     out.dir_y = static_cast<float>(ray.direction.y);
     out.dir_z = static_cast<float>(ray.direction.z);
-    out.tfar = std::numeric_limits<float>::infinity();
+    out.tfar = static_cast<float>(ray.reach);
+    out.time = static_cast<float>(ray.time);
     out.mask = 0xffffffffU;
     return out;
 }
@@ -149,6 +85,25 @@ void make_drawable(TriangleMesh& mesh) {
     }
 }
 
+// From a point of a triangle to the smooth surface that its corners' normals stand for, along which shadows fall: rays
+// that begin on the flat triangle would draw the edge of its own shadow. Zero where the surface is hollow.
+// Method: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
+Vec3 lift_to_smooth(const DrawnMesh& mesh, unsigned triangle, const std::array<double, 3>& weights,
+                    const Vec3& seen_normal) {
+    const auto& normals = mesh.normals[triangle];
+    const Triangle& corners = mesh.source.mesh.triangles[triangle];
+    if (normals[0] == normals[1] && normals[1] == normals[2]) return {};
+    Vec3 point;
+    for (std::size_t k = 0; k < 3; ++k) point += weights[k] * mesh.source.mesh.vertices[corners[k]];
+    Vec3 lift;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 normal = towards(normals[k], -seen_normal);
+        const double below = dot(point - mesh.source.mesh.vertices[corners[k]], normal);
+        if (below < 0.0) lift -= weights[k] * below * normal;
+    }
+    return lift;
+}
+
 // Meshes that are traced together; geometry k of the scene is mesh k.
 struct MeshGroup {
     embree::Scene scene;
@@ -165,8 +120,9 @@ struct Preview::Impl {
     MeshGroup moving_solid, moving_glass;
     embree::Scene moving_scene;
     std::vector<PreviewPlane> planes;
-    std::vector<Vec3> sphere_colors;  // in the order of the drawn spheres
-    std::vector<Vec3> line_colors;    // in the order of the drawn lines
+    std::vector<Vec3> sphere_colors;     // in the order of the drawn spheres
+    std::vector<Vec3> sphere_emissions;  // the same, or empty
+    std::vector<Vec3> line_colors;       // in the order of the drawn lines
     DrawnMesh cloth;
     bool has_moving = false;
     Vec3 origin;
@@ -236,6 +192,9 @@ PreviewHit Preview::Impl::mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, 
     const Vec3 smooth = (1.0 - u - v) * corner[0] + u * corner[1] + v * corner[2];
     out.normal = length(smooth) > 1e-6 ? normalized(smooth) : out.face;
     if (dot(out.normal, out.face) < 0.0) out.normal = -out.normal;
+    out.lift = lift_to_smooth(mesh, hit.hit.primID, {1.0 - u - v, u, v}, out.normal);
+    out.roughness = mesh.source.roughness;
+    out.time = ray.time;
     out.color = mesh.source.triangle_colors.empty() ? mesh.source.color : mesh.source.triangle_colors[hit.hit.primID];
     return out;
 }
@@ -253,7 +212,10 @@ PreviewHit Preview::Impl::moving_hit(const RTCRayHit& hit, const PreviewRay& ray
     out.point = ray.origin + out.distance * ray.direction;
     out.face = towards(normalized(Vec3{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}), ray.direction);
     out.normal = out.face;
+    out.time = ray.time;
+    out.roughness = is_line ? 1.0 : kSphereRoughness;
     out.color = is_line ? line_colors[hit.hit.primID] : sphere_colors[hit.hit.primID];
+    if (!is_line && !sphere_emissions.empty()) out.emission = sphere_emissions[hit.hit.primID];
     return out;
 }
 
@@ -266,6 +228,8 @@ void Preview::Impl::trace_planes(const PreviewRay& ray, std::optional<PreviewHit
         nearest = PreviewHit{distance,     ray.origin + distance * ray.direction,
                              plane.normal, plane.normal,
                              plane.color,  PreviewHit::Kind::plane};
+        nearest->roughness = plane.roughness;
+        nearest->time = ray.time;
     }
 }
 
@@ -283,20 +247,32 @@ Preview& Preview::operator=(Preview&&) noexcept = default;
 void Preview::Impl::add_spheres(const PreviewSpheres& spheres) {
     std::vector<std::size_t> drawn;
     for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
-        if (drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 && spheres.radii[i] < kLargestCoordinate)
+        const bool on_the_way =
+            spheres.ways.empty() || std::all_of(spheres.ways[i].begin(), spheres.ways[i].end(), drawable);
+        if (on_the_way && drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 &&
+            spheres.radii[i] < kLargestCoordinate)
             drawn.push_back(i);
     }
     sphere_colors.clear();
+    sphere_emissions.clear();
     if (drawn.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* buffer = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                                                               4 * sizeof(float), drawn.size()));
-    embree::check_device(device.get(), "storing the particles for the picture");
-    for (std::size_t k = 0; k < drawn.size(); ++k) {
-        const Vec3& center = spheres.centers[drawn[k]];
-        store(buffer + 4 * k, center - origin);
-        buffer[4 * k + 3] = static_cast<float>(spheres.radii[drawn[k]]);
-        sphere_colors.push_back(spheres.colors[drawn[k]]);
+    const std::size_t steps = spheres.ways.empty() ? 1 : spheres.ways[drawn[0]].size();
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps));
+    for (std::size_t step = 0; step < steps; ++step) {
+        auto* buffer =
+            static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(step),
+                                                        RTC_FORMAT_FLOAT4, 4 * sizeof(float), drawn.size()));
+        embree::check_device(device.get(), "storing the particles for the picture");
+        for (std::size_t k = 0; k < drawn.size(); ++k) {
+            const std::size_t i = drawn[k];
+            store(buffer + 4 * k, (spheres.ways.empty() ? spheres.centers[i] : spheres.ways[i][step]) - origin);
+            buffer[4 * k + 3] = static_cast<float>(spheres.radii[i]);
+        }
+    }
+    for (const std::size_t i : drawn) {
+        sphere_colors.push_back(spheres.colors[i]);
+        if (!spheres.emissions.empty()) sphere_emissions.push_back(spheres.emissions[i]);
     }
     attach(moving_scene.get(), geometry, kSpheres);
     has_moving = true;

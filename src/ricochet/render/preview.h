@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,7 @@ struct PreviewMesh {
     Vec3 color{0.5, 0.5, 0.5};
     std::vector<Vec3> triangle_colors;  ///< one a triangle, or empty
     bool glass = false;                 ///< seen through: light and rays pass, only trace_glass() finds it
+    double roughness = 1.0;             ///< 0 (a mirror's gloss) .. 1 (matt)
 };
 
 /// An infinite plane, seen from the side that its normal points to; from behind it is not there.
@@ -26,13 +28,18 @@ struct PreviewPlane {
     Vec3 point;
     Vec3 normal{0, 0, 1};  ///< of unit length
     Vec3 color{0.5, 0.5, 0.5};
+    double roughness = 1.0;  ///< 0 (a mirror's gloss) .. 1 (matt)
 };
 
-/// Spheres; the three vectors have the same length.
+/// Spheres; the vectors have the same length, the last one may be empty.
 struct PreviewSpheres {
-    std::vector<Vec3> centers;
+    std::vector<Vec3> centers;  ///< m, when the shutter closes
     std::vector<double> radii;
     std::vector<Vec3> colors;
+    /// Where each is at evenly spaced times from the shutter's opening to its closing, as many for each, 2 to 129;
+    /// empty for spheres at rest.
+    std::vector<std::vector<Vec3>> ways{};
+    std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
 };
 
 /// Straight threads with round ends; all vectors but points have the same length.
@@ -55,6 +62,8 @@ struct PreviewMoving {
 struct PreviewRay {
     Vec3 origin;
     Vec3 direction;
+    double time = 0.0;                                       ///< within the time that the shutter is open, 0..1
+    double reach = std::numeric_limits<double>::infinity();  ///< m: what is farther away does not count
 };
 
 /// Where a ray hits something.
@@ -65,7 +74,14 @@ struct PreviewHit {
     Vec3 face;    ///< of the surface itself, of unit length, towards the ray's origin
     Vec3 color;
     enum class Kind { mesh, plane, sphere, line, cloth } kind = Kind::mesh;
+    Vec3 emission{};         ///< light of its own
+    Vec3 lift{};             ///< m, to where rays for shadows begin, on the smooth surface that a mesh stands for
+    double roughness = 1.0;  ///< 0 (a mirror's gloss) .. 1 (matt)
+    double time = 0.0;       ///< the ray's
 };
+
+/// Of particles.
+inline constexpr double kSphereRoughness = 0.42;
 
 /// Colliders and particles behind Embree. Coordinates are single precision about the given origin: good for pictures.
 /// Points that are not finite, or absurdly far away, are left out.

@@ -40,6 +40,8 @@ public:
     [[nodiscard]] Stop advance(const Pull& pull, double duration);
     /// The interval that it would be if all that is touched were flat. It loads the manifold.
     [[nodiscard]] ContactInterval plan(const Pull& pull, double duration);
+    /// What holds it takes part in an impact on something else.
+    void take_part_in(Contact& contact) const { held_.take_part_in(contact); }
 
 private:
     /// What a particle follows in one contact interval on flat surfaces.

@@ -292,7 +292,8 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     step_.log().note_impact();
     const double left = step_.remaining();
     lift();
-    const auto contact = step_.wait(duration, std::span(kept.surfaces).first(kept.count));
+    auto contact = step_.wait(duration, std::span(kept.surfaces).first(kept.count));
+    if (contact) follower_.take_part_in(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
     if (rules_.frame != nullptr) {

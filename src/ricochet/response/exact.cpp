@@ -317,7 +317,14 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
     if (is_fast && step_.impact().waits_for(contact.all())) return wait_for_body(contact);
-    return begin_contact(flight, contact, arriving);
+    const double before = step_.remaining();
+    auto next = begin_contact(flight, contact, arriving);
+    const bool has_begun = next || particle_.contact.count > 0 || step_.remaining() < before;
+    if (rides_ == nullptr || has_begun) return next;
+    // It goes on into a body that leaves it, but is where its path has it until the move's end.
+    if (step_.impact().approach_of_paths(contact.all()) > rules_.settings.resting_speed) return wait_for_body(contact);
+    step_.impact().go_with_paths(contact.all());
+    return next;
 }
 
 /// The body that it has hit goes away from the next move on. Until then it goes along with where that still is.

@@ -55,7 +55,10 @@ void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool imp
     pushed_ += change;
     scratch_.hits.push_back({surface, -particle_.state.mass * change, impact});
     scratch_.driven = scratch_.driven || material_of(surface).drives() || home_.is_moving() || is_carried(surface);
-    if (scratch_.record_loads) book_.add(scratch_.hits.back(), spin_change);
+    if (!scratch_.record_loads) return;
+    const Vec3 place = home_.in_world({particle_.state.position, {}, {}}, particle_.state.time).position;
+    pushed_moment_ += cross(place - moment_center_, change);
+    book_.add(scratch_.hits.back(), spin_change);
 }
 
 /// Of the point of a body that is touched, and of its material there.
@@ -274,6 +277,30 @@ Vec3 ImpactAnswer::velocity_beside_path(BodyId body, const Vec3& where) const {
         velocity += home_.bodies().mobility(body, time).change_at(where, given.wrench);
     }
     return velocity;
+}
+
+/// m/s, towards a surface whose body goes on along its path, whatever it has been given.
+double ImpactAnswer::approach_of_path(const ContactSurface& surface) const {
+    if (!yields(surface.surface)) return 0.0;
+    const Vec3 where = particle_.state.position - particle_.state.radius * surface.normal;
+    const Vec3 beside = velocity_beside_path(home_.bodies().body_of(surface.surface), where);
+    return -departure_from(surface) - dot(beside, surface.normal);
+}
+
+double ImpactAnswer::approach_of_paths(std::span<const ContactSurface> surfaces) const {
+    double largest = 0.0;
+    for (const ContactSurface& surface : surfaces) largest = std::max(largest, approach_of_path(surface));
+    return largest;
+}
+
+void ImpactAnswer::go_with_paths(std::span<const ContactSurface> surfaces) {
+    for (const ContactSurface& surface : surfaces) {
+        const double approach = approach_of_path(surface);
+        if (!(approach > 0.0)) continue;
+        const Vec3 change = approach * surface.normal;
+        particle_.state.velocity += change;
+        push(surface.surface, change, false, Vec3{});
+    }
 }
 
 bool ImpactAnswer::waits_for(std::span<const ContactSurface> surfaces) const {

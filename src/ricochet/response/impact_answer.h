@@ -29,7 +29,8 @@ public:
           scratch_(scratch),
           outcome_(outcome),
           home_(home),
-          book_(rules, particle, scratch, home) {}
+          book_(rules, particle, scratch, home),
+          moment_center_(particle.state.position) {}
 
     /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
     /// Bodies that yield move, for the particle, with what it has given to them in this move; where they are does not
@@ -44,6 +45,14 @@ public:
               const std::optional<Vec3>& spin_change = std::nullopt);
     /// m/s, the sum of all changes of velocity so far that are recorded as impulses, in the world.
     [[nodiscard]] const Vec3& pushed() const { return pushed_; }
+    /// m^2/s, the sum of their moments about moment_center(), each at the place of the particle's centre, where loads
+    /// are recorded.
+    [[nodiscard]] const Vec3& pushed_moment() const { return pushed_moment_; }
+    /// m, in the world: where the move began.
+    [[nodiscard]] const Vec3& moment_center() const { return moment_center_; }
+    /// Records a moment, as the change of the angular momentum that it made over the mass, m^2/s, beside those of all
+    /// impulses.
+    void turn(SurfaceId surface, const Vec3& change) { book_.add_couple(surface, -particle_.state.mass * change); }
     /// At the end of the move.
     void close_book() { book_.close(); }
     /// What is recorded next has surfaces that move in it.
@@ -87,6 +96,11 @@ public:
 
     /// The largest speed towards one of the surfaces, m/s.
     [[nodiscard]] double approach(std::span<const ContactSurface> surfaces) const;
+    /// The largest speed, m/s, towards surfaces of bodies that yield, as they move along their paths until the move's
+    /// end, whatever they have been given.
+    [[nodiscard]] double approach_of_paths(std::span<const ContactSurface> surfaces) const;
+    /// Takes that away where it is slow: it would meet the surface, that leaves it but is still there, again and again.
+    void go_with_paths(std::span<const ContactSurface> surfaces);
     /// True where it goes on towards a surface whose body has been pushed away, but is still there.
     [[nodiscard]] bool waits_for(std::span<const ContactSurface> surfaces) const;
 
@@ -97,6 +111,7 @@ private:
     [[nodiscard]] bool is_carried(SurfaceId surface) const {
         return rules_.bodies != nullptr && rules_.bodies->body_of(surface) != home_.body();
     }
+    [[nodiscard]] double approach_of_path(const ContactSurface& surface) const;
     [[nodiscard]] Vec3 velocity_beside_path(BodyId body, const Vec3& where) const;
     [[nodiscard]] Vec3 carried_velocity_of(const ContactSurface& surface, const Vec3& center) const;
     [[nodiscard]] Vec3 carried_angular_velocity_of(SurfaceId surface) const;
@@ -125,7 +140,9 @@ private:
     MoveOutcome& outcome_;
     const HomeFrame& home_;
     LoadBook book_;
+    Vec3 moment_center_;
     Vec3 pushed_;
+    Vec3 pushed_moment_;
     struct Given {
         BodyId body;
         Wrench wrench;  // about the center of its mobility

@@ -20,6 +20,10 @@ void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change
     if (is_entered(hit.surface)) enter(hit, couple);
 }
 
+void LoadBook::add_couple(SurfaceId surface, const Vec3& couple) {
+    if (scratch_.record_loads && is_entered(surface)) enter({surface, Vec3{}, false}, couple);
+}
+
 void LoadBook::begin_impact(double approach) {
     if (!scratch_.record_loads) return;
     approach_ = approach;
@@ -34,10 +38,10 @@ void LoadBook::end_impact() {
 }
 
 void LoadBook::close() {
-    if (!scratch_.record_loads) return;
+    if (!scratch_.record_loads || scratch_.loads.size() == first_) return;
     const Vec3 spin = motion_in_world().spin;
     const Vec3 couple = couple_of(spin - std::exchange(spin_, spin));
-    if (couple == Vec3{} || scratch_.loads.size() == first_) return;
+    if (couple == Vec3{}) return;
     ColliderLoad& last = scratch_.loads.back();
     last.couple += couple;
     last.moment += couple;

@@ -29,6 +29,8 @@ public:
     /// The entries between these two belong to one impact. approach: its largest speed, m/s.
     void begin_impact(double approach);
     void end_impact();
+    /// Enters a couple on a surface, N m s: what its impulses in contact that lasts lack of the moment they have had.
+    void add_couple(SurfaceId surface, const Vec3& couple);
     /// Enters what has changed the spin since, with the last surface.
     void close();
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/foreign_surfaces.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
@@ -19,11 +20,11 @@ constexpr int kCarryDepth = 16;
 
 }  // namespace
 
-MovingView ParticleStep::view_of(const Path& path) const {
+PathClock ParticleStep::clock_of(const Path& path) const {
     const double now = particle_.state.time;
     const double end =
         path.duration >= remaining_ ? particle_.step_end : std::min(now + path.duration, particle_.step_end);
-    return {*rules_->bodies, home_.body(), {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration}};
+    return {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration};
 }
 
 std::optional<Contact> ParticleStep::first_contact_among_bodies(const ContactQuery& query) {
@@ -48,7 +49,7 @@ ParticleStep::Travel ParticleStep::travel_among_bodies(const ContactQuery& query
     while (!sweep.is_done() && !travel.contact) {
         const double begin = sweep.begin();
         ContactQueryResult found = sweep.sweep(view.stored(stored_.position, begin));
-        const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found);
+        const double elapsed = go_along({sweep.path(), query.radius, nullptr, {}, query.held}, found, sweep.clock());
         if (found.contact) travel.contact = found.contact;
         const bool has_gone = elapsed >= sweep.path().duration;
         travel.elapsed = has_gone ? sweep.begin() : begin + elapsed;
@@ -71,9 +72,13 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     // The world's coordinates are what is stored: contact is felt as they are rounded, and a carried place stays off.
     const MotionBounds& bounds = home_.bodies().bounds(body);
     const double way = remaining_ * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
-    const double reach =
-        max_abs(stored_.position) + way + max_abs(home_.bodies().pose(body, stored_.time).world_from_frame.translation);
-    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, contact_offset({reach, 0.0, 0.0}));
+    const MovingPose pose = home_.bodies().pose(body, stored_.time);
+    const double reach = max_abs(stored_.position) + way + max_abs(pose.world_from_frame.translation);
+    double least_offset = contact_offset({reach, 0.0, 0.0});
+    if (home_.bodies().yields(body)) {
+        least_offset = std::max(least_offset, offset_for_carrying(pose, state().position));
+    }
+    geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, least_offset);
     start_ = state().position;
     first_segment_ = scratch_.segments.size();
     turn_contact(contact, before, home_);

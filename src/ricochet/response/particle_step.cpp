@@ -12,7 +12,7 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const Integrat
                                             const LookAhead* look_ahead, const ContactCandidates& candidates) {
     const Path& path = flight.path;
     if (!can_follow(path)) return std::nullopt;
-    if (rules_->bodies != nullptr) return follow_among_bodies(flight, integrator);
+    if (is_among_bodies(path)) return follow_among_bodies(flight, integrator);
     const Vec3 departure = state().velocity;
     const ContactQuery query{path, state().radius, look_ahead, candidates};
     ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
@@ -46,15 +46,21 @@ bool ParticleStep::can_follow(const Path& path) {
     return false;
 }
 
+/// False where all that moves stays away from the path: it is followed as where nothing moves.
+bool ParticleStep::is_among_bodies(const Path& path) const {
+    if (rules_->bodies == nullptr) return false;
+    return home_.is_moving() || !rules_->bodies->all_stay_out(reach_of(path, particle_.state.radius));
+}
+
 /// To the contact found, or to the end of the path; what is met on the way is the contact then. s, that it has taken.
 double ParticleStep::go(const ContactQuery& query, ContactQueryResult& found) {
-    const double elapsed = go_along(query, found);
+    const double elapsed = go_along(query, found, rules_->bodies == nullptr ? PathClock{} : clock_of(query.path));
     pass(elapsed);
     return elapsed;
 }
 
-/// The same without its time.
-double ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& found) {
+/// The same without its time. clock: of the path; matters where something moves.
+double ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& found, const PathClock& clock) {
     const Path& path = query.path;
     const NearSurfaces& near = found.near;
     std::optional<Contact>& contact = found.contact;
@@ -72,7 +78,7 @@ double ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& fou
         state().position = followed.reached.position;
         if (followed.blocker) contact = contact_with_blocker(near, path, followed);
     }
-    record_chain(near);
+    record_chain(clock);
     return contact ? contact->time : path.duration;
 }
 
@@ -153,7 +159,7 @@ void ParticleStep::return_to_start() {
 }
 
 void ParticleStep::leave_surface(const NearSurfaces& near) {
-    if (!(near.foreign() == nullptr ? step_off_surface(near, state(), scratch_) : step_off_in_frame(near))) {
+    if (!(rules_->bodies == nullptr ? step_off_surface(near, state(), scratch_) : step_off_in_frame(near))) {
         stop();
         return;
     }
@@ -166,7 +172,8 @@ bool ParticleStep::step_off_in_frame(const NearSurfaces& near) {
     const auto position = step_off(near, state().position);
     if (!position) return false;
     const WayPoint to = near.point_at(*position, 0.0);
-    if (!near.is_free_after(state().position, to.position) || !near.foreign()->are_free(near.start(), to)) return false;
+    if (!near.is_free_after(state().position, to.position)) return false;
+    if (near.foreign() != nullptr && !near.foreign()->are_free(near.start(), to)) return false;
     if (scratch_.record_segments) {
         scratch_.segments.push_back({stored_.position, to.world, state().time, stored_.time, stored_.time});
     }
@@ -175,13 +182,11 @@ bool ParticleStep::step_off_in_frame(const NearSurfaces& near) {
     return true;
 }
 
-void ParticleStep::record_chain(const NearSurfaces& near) {
+void ParticleStep::record_chain(const PathClock& clock) {
     const std::vector<WayPoint>& chain = scratch_.contacts.chain;
-    const ForeignSurfaces* const foreign = near.foreign();
-    const auto time_of = [&](const WayPoint& p) {
-        return foreign == nullptr ? 0.0 : foreign->view().clock().at(p.time);
-    };
-    if (foreign != nullptr) stored_ = {chain.back().world, time_of(chain.back())};
+    const bool is_timed = rules_->bodies != nullptr;
+    const auto time_of = [&](const WayPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
+    if (is_timed) stored_ = {chain.back().world, time_of(chain.back())};
     if (!scratch_.record_segments) return;
     for (std::size_t k = 1; k < chain.size(); ++k) {
         scratch_.segments.push_back(

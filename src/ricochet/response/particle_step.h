@@ -104,12 +104,14 @@ private:
     };
 
     [[nodiscard]] bool can_follow(const Path& path);
+    [[nodiscard]] bool is_among_bodies(const Path& path) const;
     [[nodiscard]] double go(const ContactQuery& query, ContactQueryResult& found);
-    [[nodiscard]] double go_along(const ContactQuery& query, ContactQueryResult& found);
+    [[nodiscard]] double go_along(const ContactQuery& query, ContactQueryResult& found, const PathClock& clock);
     [[nodiscard]] std::optional<Contact> follow_among_bodies(const Flight& flight, const Integrator& integrator);
     [[nodiscard]] Travel travel_among_bodies(const ContactQuery& query);
     [[nodiscard]] std::optional<Contact> first_contact_among_bodies(const ContactQuery& query);
-    [[nodiscard]] MovingView view_of(const Path& path) const;
+    [[nodiscard]] PathClock clock_of(const Path& path) const;
+    [[nodiscard]] MovingView view_of(const Path& path) const { return {*rules_->bodies, home_.body(), clock_of(path)}; }
     void record_flown_in_world(const Path& path, double duration, const Vec3& departure);
     [[nodiscard]] WayPoint here(const MovingView& view) const { return view.stored(stored_.position, 0.0); }
     void turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const;
@@ -129,7 +131,7 @@ private:
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
     [[nodiscard]] bool step_off_in_frame(const NearSurfaces& near);
-    void record_chain(const NearSurfaces& near);
+    void record_chain(const PathClock& clock);
     void pass(double duration);
     /// Of a piece of what the particle has flown, after it.
     void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
@@ -170,7 +172,7 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
         if (next) followed = *next;
         return next.has_value();
     };
-    if (rules_->bodies != nullptr) {
+    if (is_among_bodies(followed)) {
         while (takes_shorter(first_contact_among_bodies(query))) {
         }
         const Travel travelled = travel_among_bodies(query);

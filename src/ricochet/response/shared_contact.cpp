@@ -19,10 +19,6 @@ constexpr int kCorrections = 3;
 
 }  // namespace
 
-MovingView SharedContact::view_at(double time) const {
-    return {*step_.rules().bodies, kAtRest, {time, time, time, 0.0, 0.0}};
-}
-
 bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
     const ImpactAnswer& impact = step_.impact();
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
@@ -32,57 +28,6 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
         return !material.is_random() &&
                material.restitution_at(approach) * approach < step_.rules().settings.resting_speed;
     });
-}
-
-/// All that is touched, of all frames, but what is left.
-void SharedContact::gather() {
-    const double margin = state_.radius + kEdgeOffsets * contact_offset(state_.position);
-    const Vec3 by{margin, margin, margin};
-    std::vector<BodyId> near{kAtRest};
-    step_.rules().bodies->near({state_.position - by, state_.position + by}, kAtRest, near);
-    count_ = 0;
-    for (const BodyId body : near) gather_in(body);
-    gather_deforming();
-}
-
-void SharedContact::gather_deforming() {
-    const MovingColliders& bodies = *step_.rules().bodies;
-    const double departure = step_.rules().settings.resting_speed;
-    for (const DeformedContact& contact : touched_surfaces(deforming(), state_, departure)) {
-        if (count_ == kMostHolding) return;
-        Touched& touched = touched_[count_++];
-        const ContactSurface& surface = contact.surface;
-        touched.surface = surface;
-        touched.all = contact.all;
-        touched.body = bodies.body_of(surface.surface);
-        touched.velocity = step_.impact().velocity_of(surface);
-        touched.turning = deforming().motion_at(surface.surface, state_.position, state_.time).turning;
-    }
-}
-
-void SharedContact::gather_in(BodyId body) {
-    const MovingView view = view_at(state_.time);
-    const CollisionWorld& world = view.bodies().world(body);
-    if (world.empty()) return;
-    ForceInput seen = state_;
-    seen.position = view.image(body, state_.position, 0.0);
-    seen.velocity = view.velocity_in(body, {state_.position, 0.0, state_.position}, state_.velocity);
-    TrianglePlaneCache planes;
-    const SurfaceGeometry geometry(world, planes);
-    ContactManifold manifold(geometry, seen);
-    const double offset = std::max(contact_offset(seen.position), contact_offset(state_.position));
-    const double reach = kTouchingOffsets * offset;
-    const TouchRule rule{reach, reach, reach, step_.rules().settings.resting_speed};
-    step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
-    for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
-        Touched& touched = touched_[count_++];
-        touched.surface = manifold[k];
-        touched.all.clear();
-        touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
-        touched.body = body;
-        touched.velocity = step_.impact().velocity_of(touched.surface);
-        touched.turning = view.bodies().pose(body, state_.time).angular_velocity;
-    }
 }
 
 /// Loses what leads into the surfaces; false where they leave it no way out.
@@ -107,10 +52,6 @@ bool SharedContact::land() {
     return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
         return impact.departure_from(one.surface) >= -kSlowSlip * (scale + length(one.velocity));
     });
-}
-
-double SharedContact::departure_from(const Touched& touched) const {
-    return dot(state_.velocity - touched.velocity, touched.surface.normal);
 }
 
 /// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What
@@ -145,70 +86,6 @@ SharedContact::Hold SharedContact::settle(double duration) {
     }
 }
 
-/// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
-/// (omega x n) . (v - w), and by what its curvature adds; a_s: of its own point there.
-HoldingSurface SharedContact::holding(const Touched& touched, const Vec3& shift) const {
-    const ImpactAnswer& impact = step_.impact();
-    const Material& material = impact.material_of(touched.surface.surface);
-    const Vec3& n = touched.surface.normal;
-    const Vec3 relative = touched.velocity - shift;
-    HoldingSurface held{n,
-                        material.friction,
-                        material.rolling_friction,
-                        material.spinning_friction,
-                        relative - dot(relative, n) * n,
-                        impact.angular_velocity_of(touched.surface.surface)};
-    if (deforms(touched)) {
-        const SurfaceBend bent = bend_of(deforming(), state_, touched.surface);
-        held.bend = bent.bend;
-        held.slip_bend = bent.slip_bend;
-        return held;
-    }
-    const MovingView view = view_at(state_.time);
-    const MovingPose pose = view.bodies().pose(touched.body, state_.time);
-    const Vec3 arm = state_.position - pose.world_from_frame.translation;
-    const Vec3& turning = pose.angular_velocity;
-    const Vec3 carried = cross(turning, arm);
-    const Vec3 of_surface = pose.acceleration + cross(pose.angular_acceleration, arm) + cross(turning, carried);
-    const Vec3 slip = state_.velocity - pose.velocity - carried;
-    held.bend = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
-    const Vec3 change = of_surface + cross(turning, slip);
-    held.slip_bend = dot(change, n) * n - change;
-    if (touched.surface.flat) return held;
-    ForceInput seen = state_;
-    seen.position = view.image(touched.body, state_.position, 0.0);
-    TrianglePlaneCache planes;
-    const SurfaceGeometry geometry(view.bodies().world(touched.body), planes);
-    const ContactSurface in_frame{touched.surface.surface, pose.direction_image(n), false};
-    held.bend += ContactArc::bend_of(geometry, seen, in_frame, pose.direction_image(slip));
-    return held;
-}
-
-/// s, in which surfaces turn little, and bend little under the particle.
-double SharedContact::longest() const {
-    double rate = 0.0;
-    for (const Touched& one : touched()) {
-        rate = std::max(rate, length(one.turning));
-        if (one.surface.flat) continue;
-        const SurfaceId surface = one.surface.surface;
-        // A sphere turns about an edge, however large the triangle.
-        const double own = deforms(one) ? 0.0 : step_.rules().bodies->world(one.body).size_of(surface);
-        const double size = std::max(state_.radius, own);
-        rate = std::max(rate, length(state_.velocity - one.velocity) / size);
-    }
-    return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
-}
-
-/// s, when one of the bodies goes on with another velocity, in this step.
-std::optional<double> SharedContact::next_jump() const {
-    std::optional<double> first;
-    for (const Touched& one : touched()) {
-        const auto jump = step_.rules().bodies->next_jump(one.body, state_.time, particle_.step_end);
-        if (jump && (!first || *jump < *first)) first = jump;
-    }
-    return first;
-}
-
 /// Plans the next interval in the frame in which none of the surfaces advances.
 SharedContact::Hold SharedContact::plan(double duration) {
     std::array<Vec3, kMostHolding> normals;
@@ -241,28 +118,6 @@ SharedContact::Hold SharedContact::plan(double duration) {
     }
     count_ = kept;
     return Hold::single;
-}
-
-SharedContact::Height SharedContact::height_above(const Touched& touched, const Vec3& position, double time) const {
-    if (deforms(touched)) {
-        const auto [normal, above] =
-            ricochet::height_above(deforming(), {touched.surface, touched.all}, position, time);
-        return {normal, above, 2.0 * deforming().offset_of(touched.surface.surface)};
-    }
-    const MovingView view = view_at(time);
-    const CollisionWorld& world = view.bodies().world(touched.body);
-    const SurfaceId surface = touched.surface.surface;
-    const Vec3 image = view.image(touched.body, position, 0.0);
-    Vec3 normal = world.unit_normal_of(surface, image);
-    double height = world.signed_distance_from(surface, image);
-    if (!touched.surface.flat && !world.is_shape(surface)) {
-        const CollisionWorld::Nearest nearest = world.nearest(surface, image);
-        normal = nearest.normal;
-        height = nearest.distance;
-    }
-    normal = view.direction_from(touched.body, normal, 0.0);
-    const double side = dot(normal, touched.surface.normal) < 0.0 ? -1.0 : 1.0;
-    return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(image))};
 }
 
 /// A position at a time put at the contact offset from the surfaces that hold it.
@@ -315,17 +170,6 @@ Path SharedContact::way(double duration) const {
     return path;
 }
 
-/// s, in which it is over the faces of meshes that deform that hold it.
-double SharedContact::until_rim(const Path& path) const {
-    double most = path.duration;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const Touched& one = touched_[k];
-        if (interval_.push[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
-        most = std::min(most, time_over(deforming(), {one.surface, one.all}, path, state_.time));
-    }
-    return most;
-}
-
 /// m/s, what a surface has changed the velocity by in an interval: about an edge as much in its direction at the end as
 /// in that at the start.
 Vec3 SharedContact::push_of(std::size_t k, double elapsed, bool has_arrived) const {
@@ -334,33 +178,6 @@ Vec3 SharedContact::push_of(std::size_t k, double elapsed, bool has_arrived) con
     if (push == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return push;
     const Vec3& n = one.surface.normal;
     return push + 0.5 * dot(push, n) * (height_above(one, state_.position, state_.time).normal - n);
-}
-
-std::vector<SurfaceId> SharedContact::held() const {
-    std::vector<SurfaceId> list;
-    for (const Touched& one : touched()) {
-        if (!deforms(one)) list.push_back(one.surface.surface);
-        list.insert(list.end(), one.all.begin(), one.all.end());
-    }
-    std::sort(list.begin(), list.end());
-    return list;
-}
-
-/// What holds it takes part in its impact on something else.
-void SharedContact::take_part_in(Contact& contact) const {
-    for (const Touched& one : touched()) {
-        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
-            return other.surface == one.surface.surface;
-        });
-        if (is_there || contact.count == Contact::kMostSurfaces) continue;
-        contact.surfaces[static_cast<std::size_t>(contact.count++)] = one.surface;
-    }
-}
-
-KeptContact SharedContact::kept() const {
-    KeptContact kept;
-    for (const Touched& one : touched()) kept.surfaces[kept.count++] = one.surface.surface;
-    return kept;
 }
 
 /// Relative to all that presses on it.

@@ -125,7 +125,15 @@ void DrivenMotion::plan(double begin, double end, double oldest) {
 }
 
 void DrivenMotion::end_at(double time) {
-    for (auto& paths : paths_) paths.back().end = time;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        BodyPath& path = paths_[k].back();
+        const bool is_cut = time < path.end;
+        path.end = time;
+        // What a spring does is known at the ends of a part.
+        const JointSettings& joint = bodies_[k].description().settings;
+        const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
+        if (is_cut && is_sprung) path = bodies_[k].plan(forces_, loads_[k], path.begin, time);
+    }
     show();
 }
 

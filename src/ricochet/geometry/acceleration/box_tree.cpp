@@ -1,67 +1,133 @@
 #include "ricochet/geometry/acceleration/box_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace ricochet {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+/// Relative: more than the rounding to single precision and that of the margin itself.
+constexpr float kOutward = 0x1p-22F;
+
+/// In single precision, and by how much it may be off.
+struct Rounded {
+    explicit Rounded(double x)
+        : value(static_cast<float>(std::clamp(x, -double{kLargest}, double{kLargest}))),
+          error(kOutward * std::fabs(value) + std::numeric_limits<float>::min()) {}
+    static constexpr float kLargest = std::numeric_limits<float>::max();
+    float value;
+    float error;
+};
 
 /// What a query pays for a node, relative to others: the sum of its edges, which flat boxes have too.
-double cost(const Box3& box) {
-    const Vec3 size = box.size();
-    return size.x + size.y + size.z;
+double cost(const std::array<float, 3>& lower, const std::array<float, 3>& upper) {
+    double sum = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) sum += double{upper[axis]} - double{lower[axis]};
+    return sum;
+}
+
+/// Boxes that a child of a node over so many holds when it is full: a power of four, so that nodes far down are full.
+std::uint32_t full_child_of(std::uint32_t count) {
+    std::uint32_t full = 1;
+    while (full < (count + 3) / 4) full *= 4;
+    return full;
+}
+
+/// Half of so many boxes, in full children.
+std::uint32_t half_of(std::uint32_t count, std::uint32_t full) {
+    return std::min(count, std::max(full, (count / 2 + full / 2) / full * full));
 }
 
 }  // namespace
 
+BoxTree::Bounds BoxTree::outward(const Box3& box) {
+    Bounds bounds{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const Rounded lower(box.lower[axis]);
+        const Rounded upper(box.upper[axis]);
+        bounds.lower[static_cast<std::size_t>(axis)] = lower.value - lower.error;
+        bounds.upper[static_cast<std::size_t>(axis)] = upper.value + upper.error;
+    }
+    return bounds;
+}
+
 void BoxTree::build(std::span<const Box3> boxes) {
     nodes_.clear();
+    bounds_ = {};
     order_.resize(boxes.size());
     boxes_.resize(boxes.size());
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
     if (boxes.empty()) return;
-    split(0, static_cast<std::uint32_t>(boxes.size()), boxes);
-    place_leaves([&](std::uint32_t i) { return boxes[i]; });
+    static_cast<void>(add_node(0, static_cast<std::uint32_t>(boxes.size()), boxes));
+    place_boxes([&](std::uint32_t i) { return boxes[i]; });
     cost_when_built_ = place_branches();
 }
 
-/// At the median along the longest side of the box of the centres.
-void BoxTree::split(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes) {
-    const std::size_t index = nodes_.size();
-    nodes_.emplace_back();
-    if (end - begin <= kLeaf) {
-        nodes_[index] = {{}, begin, end - begin};
-        return;
-    }
+/// So that those before the middle have their centres before those of the others, along the longest side of the box of
+/// the centres.
+void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end, std::span<const Box3> boxes) {
+    if (middle <= begin || middle >= end) return;
     Box3 centers;
     for (std::uint32_t k = begin; k < end; ++k) centers.include(boxes[order_[k]].center());
     const Vec3 size = centers.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const std::uint32_t middle = begin + (end - begin) / 2;
     const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
         const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis];
         const double at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
         return at_a != at_b ? at_a < at_b : a < b;
     };
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, is_before);
-    split(begin, middle, boxes);
-    nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());
-    split(middle, end, boxes);
 }
 
-/// Children stand behind their parents. Returns the cost of all branches.
+/// A node over these in the order, and the nodes below it. Returns its number.
+std::uint32_t BoxTree::add_node(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    const Quad none{kNone, kNone, kNone, kNone};
+    nodes_.push_back({none, none, none, none, none, none, {kNoChild, kNoChild, kNoChild, kNoChild}});
+    const std::uint32_t full = full_child_of(end - begin);
+    const std::uint32_t middle = begin + half_of(end - begin, full);
+    const std::array<std::uint32_t, kLanes + 1> cuts{begin, begin + half_of(middle - begin, full), middle,
+                                                     middle + half_of(end - middle, full), end};
+    halve(begin, middle, end, boxes);
+    halve(begin, cuts[1], middle, boxes);
+    halve(middle, cuts[3], end, boxes);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t count = cuts[lane + 1] - cuts[lane];
+        if (count == 0) continue;
+        const std::uint32_t child = count == 1 ? (kBox | cuts[lane]) : add_node(cuts[lane], cuts[lane + 1], boxes);
+        nodes_[index].child[lane] = child;
+    }
+    return index;
+}
+
+BoxTree::Bounds BoxTree::bounds_of(const Node& node) {
+    const auto least = [](const Quad& of) {  // not of what is no number
+        float smallest = std::numeric_limits<float>::infinity();
+        for (std::size_t lane = 0; lane < kLanes; ++lane) smallest = std::min(smallest, of[lane]);
+        return smallest;
+    };
+    return {{least(node.lower_x), least(node.lower_y), least(node.lower_z)},
+            {-least(-node.upper_x), -least(-node.upper_y), -least(-node.upper_z)}};
+}
+
+/// Children stand behind their parents. Returns the cost of all nodes.
 double BoxTree::place_branches() {
     double sum = 0.0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
-        Node& node = nodes_[i];
-        if (node.count > 0) continue;
-        Box3 box = nodes_[i + 1].box;
-        box.include(nodes_[node.first].box);
-        node.box = box;
-        sum += cost(box);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::uint32_t child = nodes_[i].child[lane];
+            if ((child & kBox) != 0) continue;
+            const Bounds bounds = bounds_of(nodes_[child]);
+            place(nodes_[i], lane, bounds);
+            sum += cost(bounds.lower, bounds.upper);
+        }
     }
+    const auto [lower, upper] = bounds_of(nodes_.front());
+    bounds_ = {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}};
     return sum;
 }
 

@@ -1,9 +1,14 @@
 /// \file
-/// Which boxes meet a box: a hierarchy over boxes that change their places from step to step, in doubles. It is fitted
-/// anew to them, and built anew where that has made it poor; what it finds does not depend on that.
+/// Which boxes meet a box: a hierarchy over boxes that change their places from step to step. It is fitted anew to
+/// them, and built anew where that has made it poor; what it finds does not depend on that.
+///
+/// A node has four children side by side, in single precision and rounded outward, so that one comparison tests all of
+/// them (H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of
+/// incoherent rays", EGSR 2008). The boxes themselves decide, in doubles.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,7 +33,7 @@ public:
             build(all_boxes(count, box_of));
             return;
         }
-        place_leaves(box_of);
+        place_boxes(box_of);
         if (place_branches() <= kPoor * cost_when_built_) return;
         build(all_boxes(count, box_of));
     }
@@ -36,26 +41,41 @@ public:
     /// Calls visit(i) for every box that has a point in common with `box`, in no particular order.
     template <class Visit>
     void near(const Box3& box, const Visit& visit) const {
-        if (nodes_.empty()) return;
-        std::array<std::uint32_t, kMostDepth> open{};
+        static_cast<void>(any_near(box, [&](std::uint32_t i) {
+            visit(i);
+            return false;
+        }));
+    }
+    /// The same until is_it(i) is true of one. True when there is one.
+    template <class IsIt>
+    [[nodiscard]] bool any_near(const Box3& box, const IsIt& is_it) const {
+        if (nodes_.empty()) return false;
+        const Bounds sought = outward(box);
+        std::array<std::uint32_t, kMostOpen> open;
         std::size_t count = 0;
         open[count++] = 0;
         while (count > 0) {
-            const std::uint32_t index = open[--count];
-            const Node& node = nodes_[index];
-            if (!meet(node.box, box)) continue;
-            if (node.count == 0) {
-                open[count++] = node.first;
-                open[count++] = index + 1;
-                continue;
-            }
-            for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-                if (meet(boxes_[k], box)) visit(order_[k]);
+            const Node& node = nodes_[open[--count]];
+            const Mask meeting = lanes_meeting(node, sought);
+            if (std::bit_cast<std::array<std::uint64_t, 2>>(meeting) == std::array<std::uint64_t, 2>{}) continue;
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                if (meeting[lane] == 0) continue;
+                const std::uint32_t child = node.child[lane];
+                if ((child & kBox) == 0) {
+                    open[count++] = child;
+                } else if (const std::uint32_t k = child & ~kBox; meet(boxes_[k], box) && is_it(order_[k])) {
+                    return true;
+                }
             }
         }
+        return false;
     }
-    /// Of all of them; empty where there are none.
-    [[nodiscard]] Box3 bounds() const { return nodes_.empty() ? Box3{} : nodes_.front().box; }
+    /// True when a box has a point in common with `box`.
+    [[nodiscard]] bool has_near(const Box3& box) const {
+        return any_near(box, [](std::uint32_t) { return true; });
+    }
+    /// Holds all of them; empty where there are none.
+    [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
     /// True when two boxes have a point in common.
     [[nodiscard]] static bool meet(const Box3& a, const Box3& b) {
@@ -66,11 +86,40 @@ public:
     }
 
 private:
-    struct Node {
-        Box3 box;
-        std::uint32_t first = 0;  ///< a leaf's first box; else the second child (the first one is the next node)
-        std::uint32_t count = 0;  ///< boxes of a leaf; 0 for others
+    using Quad = float __attribute__((vector_size(16)));
+    using Mask = int __attribute__((vector_size(16)));
+    static constexpr std::size_t kLanes = 4;
+    /// Of a child that is a box: the rest is its place in the order of the leaves.
+    static constexpr std::uint32_t kBox = 0x80000000U;
+    static constexpr std::uint32_t kNoChild = 0xFFFFFFFFU;
+
+    struct Bounds {
+        std::array<float, 3> lower;
+        std::array<float, 3> upper;
     };
+    /// Bounds of all children; not a number where there is none.
+    struct alignas(64) Node {
+        Quad lower_x, lower_y, lower_z;
+        Quad upper_x, upper_y, upper_z;
+        std::array<std::uint32_t, kLanes> child;  ///< the number of a node, or a box
+    };
+
+    [[nodiscard]] static Bounds outward(const Box3& box);
+    [[nodiscard]] static Bounds bounds_of(const Node& node);
+    static void place(Node& node, std::size_t lane, const Bounds& bounds) {
+        node.lower_x[lane] = bounds.lower[0];
+        node.lower_y[lane] = bounds.lower[1];
+        node.lower_z[lane] = bounds.lower[2];
+        node.upper_x[lane] = bounds.upper[0];
+        node.upper_y[lane] = bounds.upper[1];
+        node.upper_z[lane] = bounds.upper[2];
+    }
+    [[nodiscard]] static Mask lanes_meeting(const Node& node, const Bounds& box) {
+        const Mask x = (node.lower_x <= box.upper[0]) & (node.upper_x >= box.lower[0]);
+        const Mask y = (node.lower_y <= box.upper[1]) & (node.upper_y >= box.lower[1]);
+        const Mask z = (node.lower_z <= box.upper[2]) & (node.upper_z >= box.lower[2]);
+        return x & y & z;
+    }
 
     template <class BoxOf>
     [[nodiscard]] static std::vector<Box3> all_boxes(std::size_t count, const BoxOf& box_of) {
@@ -82,34 +131,35 @@ private:
     }
     /// In the order of the leaves, so that what lies together is asked for together.
     template <class BoxOf>
-    void place_leaves(const BoxOf& box_of) {
+    void place_boxes(const BoxOf& box_of) {
         parallel_for_blocks(nodes_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 Node& node = nodes_[i];
-                if (node.count == 0) continue;
-                Box3 box;
-                for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    if (node.child[lane] == kNoChild || (node.child[lane] & kBox) == 0) continue;
+                    const std::uint32_t k = node.child[lane] & ~kBox;
                     boxes_[k] = box_of(order_[k]);
-                    box.include(boxes_[k]);
+                    place(node, lane, outward(boxes_[k]));
                 }
-                node.box = box;
             }
         });
     }
     [[nodiscard]] double place_branches();
     void build(std::span<const Box3> boxes);
-    void split(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes);
+    [[nodiscard]] std::uint32_t add_node(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes);
+    void halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end, std::span<const Box3> boxes);
 
     /// Boxes or nodes per unit of parallel work.
     static constexpr std::size_t kBlock = 1 << 13;
     /// Fitted boxes that are larger by this factor, all branches together, are worth a new hierarchy.
     static constexpr double kPoor = 2.0;
-    /// Halving 2^32 boxes leaves no more levels than this.
-    static constexpr std::size_t kMostDepth = 48;
+    /// Quartering 2^31 boxes leaves no more than 17 levels; of each but the last one three children wait.
+    static constexpr std::size_t kMostOpen = 64;
 
     std::vector<Node> nodes_;           ///< depth first
     std::vector<std::uint32_t> order_;  ///< numbers of the boxes, in the order of the leaves
     std::vector<Box3> boxes_;           ///< in the same order
+    Box3 bounds_;                       ///< of all, at least
     double cost_when_built_ = 0.0;
 };
 

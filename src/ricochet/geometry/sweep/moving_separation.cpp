@@ -230,6 +230,28 @@ ClosestPointOnTriangle nearest_at(const Vec3& p, const MovingTriangle& triangle,
     return closest_point_on_triangle(p, a.at(s), b.at(s), c.at(s));
 }
 
+/// n . (p - a) > radius |n| for all control points p of a path and the corners a where they are then: so it is between.
+/// rounding: of the points, relative to their coordinates; those of a line may be exact.
+template <class Points>
+bool are_beyond(const Points& control, double rounding, double radius, const MovingTriangle& triangle) {
+    const auto& [a, b, c] = triangle.corners;
+    const auto count = static_cast<std::size_t>(control.end() - control.begin());
+    const Vec3 middle = 0.5 * (*control.begin() + *(control.begin() + (count - 1)));
+    const Vec3 n = separating_direction(middle, a.at(0.5), b.at(0.5), c.at(0.5));
+    const Vec3 size = abs(n);
+    const double least = radius > 0.0 ? radius * length(n) * (1.0 + kError<double>) : 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double part = static_cast<double>(k) / static_cast<double>(count - 1);
+        for (const MovingPoint& corner : triangle.corners) {
+            const Vec3 p = *(control.begin() + k);
+            const Vec3 offset = p - corner.at(part);
+            const double error = kError<double> * (dot(size, abs(offset)) + least) + rounding * dot(size, abs(p));
+            if (!(error > kError<double> * kSmallestSize && dot(n, offset) - least > error)) return false;
+        }
+    }
+    return true;
+}
+
 /// The proof for a point that moves along a line.
 class Proof {
 public:
@@ -416,7 +438,12 @@ private:
 }  // namespace
 
 bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle) {
-    return Proof(point, radius, triangle).holds(0.0, 1.0, kDeepestProof);
+    return are_beyond(std::array{point.from, point.to}, 0.0, radius, triangle) ||
+           Proof(point, radius, triangle).holds(0.0, 1.0, kDeepestProof);
+}
+
+bool pass_along_direction(const Path& path, double radius, const MovingTriangle& triangle) {
+    return are_beyond(path.control_points(), kError<double>, radius, triangle);
 }
 
 std::optional<Meeting> first_meeting(const Path& path, double radius, const MovingTriangle& triangle, double from,

@@ -23,6 +23,11 @@ namespace ricochet {
 /// 1e75.
 [[nodiscard]] bool stay_apart(const MovingPoint& point, double radius, const MovingTriangle& triangle);
 
+/// True only when something on the path stays so clear of the triangle, which moves meanwhile: by one direction, that
+/// from the triangle to the path in the middle, in doubles alone. False says nothing; most that pass beside a triangle
+/// are proved to, at a tenth of what the others here cost.
+[[nodiscard]] bool pass_along_direction(const Path& path, double radius, const MovingTriangle& triangle);
+
 /// Where something on a path may touch a triangle: to rounding where it does.
 struct Meeting {
     double part = 0.0;  ///< time, as a part of the path's duration

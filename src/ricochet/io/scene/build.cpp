@@ -205,9 +205,6 @@ void build_particle_contacts(const SceneContext& context, SimulationSetup& setup
     }
 }
 
-constexpr Range kFieldOfView = between(1.0, 170.0);
-constexpr std::string_view kFieldOfViewMeaning = "Angle from the lower to the upper edge.";
-
 const ObjectSpec& reference_camera_spec() {
     using C = ReferenceCamera;
     static const ObjectSpec spec = object<C>(
@@ -216,17 +213,6 @@ const ObjectSpec& reference_camera_spec() {
          {"target", &C::target, kCoordinate, "m", "The point in the middle of its picture.", kRequired},
          {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
          {"image_height", &C::image_height, between(1.0, 1e6), "", "Pixels from the lower to the upper edge."}});
-    return spec;
-}
-
-const ObjectSpec& camera_spec() {
-    using C = CameraDescription;
-    static const ObjectSpec spec =
-        object<C>("camera", "Where `ricochet render` looks from, unless it is told otherwise.",
-                  {{"position", &C::position, kCoordinate, "m", "Where it stands.", kRequired},
-                   {"target", &C::target, kCoordinate, "m", "The point in the middle of the picture.", kRequired},
-                   {"up", &C::up, kCoordinate, "", "What is up in the picture.", kNotZero, Without{"against gravity"}},
-                   {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning}});
     return spec;
 }
 
@@ -247,29 +233,31 @@ const ObjectSpec& output_spec() {
 
 Fields<Unbound> scene_fields() {
     constexpr std::string_view kDefaults = "all its defaults";
-    return {{"ricochet", ValueType::integer, between(kSceneVersion, kSceneVersion), "", "Version of the scene format.",
-             kRequired},
-            {"$schema", ValueType::text, "For editors; not used here.", Without{"no help from the editor"}},
-            {"simulation", ValueType::object, "Time and impacts.", &simulation_spec(), Without{kDefaults}},
-            {"forces", ValueType::list, "Forces on the particles.", &force_spec()},
-            {"particle_forces", ValueType::list, "Forces between the particles.", &particle_force_spec()},
-            {"flows", ValueType::table, "Flows by name, for several forces to share.", &flow_spec()},
-            {"materials", ValueType::table, "Materials by name.", &material_spec()},
-            {"colliders", ValueType::list, "What particles bounce off.", &collider_spec()},
-            {"frames", ValueType::table, "Moving frames of reference by name.", &frame_spec()},
-            {"emitters", ValueType::list, "Where particles are born.", &emitter_spec()},
-            {"particles", ValueType::list_or_file,
-             "Particles that are there from the start, one by one or from a table.", &particle_spec()},
-            {"springs", ValueType::list,
-             "Springs between particles; ropes, chains and cloth with particles of their own.", &springs_spec()},
-            {"particle_contacts", ValueType::object, "Spheres meet each other.", &particle_contacts_spec(),
-             Without{"they pass through each other"}},
-            {"attributes", ValueType::table, "Values of your own that particles carry, by name.", &attribute_spec()},
-            {"reference_camera", ValueType::object, "For emitters' rates per screen area.", &reference_camera_spec(),
-             Without{"no such rates"}},
-            {"bounds", ValueType::object, "Where particles are retired.", &bounds_spec(), Without{"nowhere"}},
-            {"output", ValueType::object, "What is written.", &output_spec(), Without{kDefaults}},
-            {"camera", ValueType::object, "For pictures.", &camera_spec(), Without{"a camera that sees everything"}}};
+    return {
+        {"ricochet", ValueType::integer, between(kSceneVersion, kSceneVersion), "", "Version of the scene format.",
+         kRequired},
+        {"$schema", ValueType::text, "For editors; not used here.", Without{"no help from the editor"}},
+        {"simulation", ValueType::object, "Time and impacts.", &simulation_spec(), Without{kDefaults}},
+        {"forces", ValueType::list, "Forces on the particles.", &force_spec()},
+        {"particle_forces", ValueType::list, "Forces between the particles.", &particle_force_spec()},
+        {"flows", ValueType::table, "Flows by name, for several forces to share.", &flow_spec()},
+        {"materials", ValueType::table, "Materials by name.", &material_spec()},
+        {"colliders", ValueType::list, "What particles bounce off.", &collider_spec()},
+        {"frames", ValueType::table, "Moving frames of reference by name.", &frame_spec()},
+        {"emitters", ValueType::list, "Where particles are born.", &emitter_spec()},
+        {"particles", ValueType::list_or_file, "Particles that are there from the start, one by one or from a table.",
+         &particle_spec()},
+        {"springs", ValueType::list, "Springs between particles; ropes, chains and cloth with particles of their own.",
+         &springs_spec()},
+        {"particle_contacts", ValueType::object, "Spheres meet each other.", &particle_contacts_spec(),
+         Without{"they pass through each other"}},
+        {"attributes", ValueType::table, "Values of your own that particles carry, by name.", &attribute_spec()},
+        {"reference_camera", ValueType::object, "For emitters' rates per screen area.", &reference_camera_spec(),
+         Without{"no such rates"}},
+        {"bounds", ValueType::object, "Where particles are retired.", &bounds_spec(), Without{"nowhere"}},
+        {"output", ValueType::object, "What is written.", &output_spec(), Without{kDefaults}},
+        {"camera", ValueType::object, "For pictures.", &camera_spec(), Without{"a camera that sees everything"}},
+        {"picture", ValueType::object, "Light and surroundings of pictures.", &picture_spec(), Without{"a clear day"}}};
 }
 
 void build_simulation(const SceneContext& context, SimulationOptions& options) {
@@ -329,28 +317,11 @@ void build_bounds(const SceneContext& context, SimulationSetup& setup) {
     setup.bounds = box;
 }
 
-void refuse_camera_on_target(const SceneContext& context, const ObjectView& view) {
-    context.error(view, "target", "the camera stands on its target, expected another point");
-}
-
 void build_reference_camera(const SceneContext& context, SimulationSetup& setup) {
     const ObjectView view = context.root().object("reference_camera");
     if (!view.has("position") || !view.has("target")) return;
     setup.reference_camera = view.read<ReferenceCamera>();
     if (setup.reference_camera->position == setup.reference_camera->target) refuse_camera_on_target(context, view);
-}
-
-CameraDescription camera_of(const SceneContext& context, const ObjectView& view) {
-    constexpr double kSmallestSine = 1e-6;  // of the angle between the view and up
-    const auto camera = view.read<CameraDescription>();
-    if (!view.has("position") || !view.has("target")) return camera;
-    const Vec3 ahead = camera.target - camera.position;
-    if (ahead == Vec3{}) {
-        refuse_camera_on_target(context, view);
-    } else if (camera.up && length(cross(normalized(*camera.up), normalized(ahead))) < kSmallestSine) {
-        context.error(view, "up", "the camera looks along its up direction, expected another one");
-    }
-    return camera;
 }
 
 }  // namespace
@@ -388,7 +359,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     const auto output = context.root().object("output").read<OutputKeys>();
     scene.output = output;
     scene.setup.options.record_contacts = output.contacts;
-    if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"));
+    build_pictures(context, scene);
     if (scene.setup.particles.empty() && scene.setup.emitters.empty() && scene.setup.bodies.empty()) {
         diagnostics.warning({}, "", "the scene has neither emitters nor particles, nothing will move");
     }

@@ -306,6 +306,8 @@ const ObjectSpec& collider_spec() {
         {{"name", ValueType::text, "For messages, reports and emitters; no two colliders share one.",
           Without{"made from type and index in the list"}},
          {"material", ValueType::text, "One of the names in `materials`.", Without{"restitution 1, no friction"}},
+         {"looks", ValueType::object, "How pictures show it.", Without{"in the renderer's own colours"},
+          &collider_looks_spec()},
          {"frame", ValueType::text,
           "One of the names in `frames`: the collider stands in it and moves with it. Only with the response "
           "\"exact\".",

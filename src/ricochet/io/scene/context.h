@@ -101,10 +101,18 @@ private:
 /// {"file": ...} instead of a particle list.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 [[nodiscard]] const ObjectSpec& springs_spec();
+[[nodiscard]] const ObjectSpec& camera_spec();
+[[nodiscard]] const ObjectSpec& picture_spec();
+[[nodiscard]] const ObjectSpec& collider_looks_spec();
 /// A declared attribute: `{"components": ..., "default": ...}`.
 [[nodiscard]] const ObjectSpec& attribute_spec();
 /// {"lower": ..., "upper": ...}, which sets a Box3.
 [[nodiscard]] Fields<Box3> box_fields(std::string_view upper_meaning);
+
+inline constexpr Range kFieldOfView = between(1.0, 170.0);
+inline constexpr std::string_view kFieldOfViewMeaning = "Angle from the lower to the upper edge.";
+/// Reports a camera, whose keys the view has, that stands on its own target.
+void refuse_camera_on_target(const SceneContext& context, const ObjectView& view);
 
 /// The members of a placement or a frame that a turn about an axis sets.
 struct RotationTarget {
@@ -209,6 +217,8 @@ void build_springs(SceneContext& context, SimulationSetup& setup);
 /// Sets what a run needs, and reports the part that asks for most where it is more than this process may have, and
 /// bursts that are larger than the population may be.
 void check_memory(const SceneContext& context, SceneDescription& scene);
+/// The camera and the picture's settings; after the frames.
+void build_pictures(const SceneContext& context, SceneDescription& scene);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 

@@ -206,7 +206,7 @@ void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kLeftOut{"output", "camera", "title", "description"};
+constexpr std::array<std::string_view, 5> kLeftOut{"output", "camera", "picture", "title", "description"};
 
 /// Adds a value with a number for its type, so that no two different scenes read alike.
 class ValueHasher {

@@ -77,7 +77,7 @@ inline constexpr std::size_t kMostValues = 4000000;
 void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics);
 
 /// A hash of the scene's values, without source locations and comments, and without what only says what is written and
-/// how it is shown ("output", "camera", "title", "description"). Keys count in the order of the file.
+/// how it is shown ("output", "camera", "picture", "title", "description"). Keys count in the order of the file.
 [[nodiscard]] std::uint64_t scene_fingerprint(const JsonNode& root);
 
 }  // namespace ricochet::detail

@@ -1,0 +1,51 @@
+// The options of `ricochet render`: as they stand on the command line, and what they mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/run_pictures.h"
+
+namespace ricochet::cli {
+
+/// The arguments as they stand on the command line.
+struct RenderArguments {
+    std::string folder;
+    std::string output;
+    std::string frame = "last";
+    std::string size = "1280x720";
+    std::string camera;
+    std::string up;
+    std::string lens;
+    std::string color_by;
+    std::string drawing = "auto";
+    std::string color_map = "plasma";
+    std::string range;
+    std::string collider_color = "plain";
+    std::string collider_range;
+    bool color_bar = false;
+    std::vector<std::string> hidden;
+    std::vector<std::string> glass;
+    double particle_radius = 0.0;
+    int samples = 16;
+    int frames_per_second = 30;
+    double exposure = 1.0;
+    double speed = 1.0;
+    double shutter = -1.0;  // below 0: the scene's
+    std::string light;
+    std::string background;
+    std::string ground;
+    bool no_filter = false;
+    std::string threads;
+    std::string progress = "auto";
+    bool quiet = false;
+};
+
+void add_render_options(cli::Command command, RenderArguments& arguments);
+
+/// How the run is shown. Throws InputError on arguments that make no sense, as the others do.
+[[nodiscard]] PictureStyle picture_style(const RenderArguments& arguments);
+void check_numbers(const RenderArguments& arguments);
+
+}  // namespace ricochet::cli

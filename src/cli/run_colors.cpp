@@ -1,0 +1,71 @@
+// What the colours of a run's pictures mean: quantities of colliders, and the bars that explain them.
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/run_pictures.h"
+#include "ricochet/io/vtk_reader.h"
+
+namespace ricochet::cli {
+namespace {
+
+// Of arrays that every frame has; those of the user's own are known to the user.
+std::string unit_of(const std::string& array) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits = {{{"speed", "m/s"},
+                                                                                      {"velocity", "m/s"},
+                                                                                      {"mass", "kg"},
+                                                                                      {"radius", "m"},
+                                                                                      {"size", "m"},
+                                                                                      {"age", "s"},
+                                                                                      {"unsimulated_time", "s"},
+                                                                                      {"spin", "rad/s"},
+                                                                                      {"temperature", "K"}}};
+    for (const auto& [name, unit] : kUnits) {
+        if (name == array) return std::string(unit);
+    }
+    return "";
+}
+
+}  // namespace
+
+// One range for all of them.
+void RunPictures::color_colliders(const RunFolder& folder) {
+    const ColliderQuantity& quantity = *style_.collider_quantity;
+    TriangleEnergies energies;
+    if (quantity.kind == ColliderQuantity::Kind::energy) energies = triangle_energies(folder);
+    std::vector<std::vector<double>> values;
+    std::vector<std::pair<double, double>> all;
+    for (const std::filesystem::path& file : mesh_files_) {
+        const VtkPolyData data = read_vtp(file);
+        ColliderInfo info;
+        for (const ColliderInfo& one : folder.info.colliders) {
+            if (one.file == file.filename().string()) info = one;
+        }
+        const auto index = static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0));
+        values.push_back(quantity_values(quantity, data, info, index, energies, data.time));
+        const std::vector<double> areas = triangle_areas(data, info);
+        for (std::size_t t = 0; t < areas.size(); ++t) all.emplace_back(values.back()[t], areas[t]);
+    }
+    collider_range_ = style_.collider_range ? *style_.collider_range : ValueRange{0.0, upper_value(std::move(all))};
+    const double scale = 1.0 / (collider_range_.high - collider_range_.low);
+    for (std::size_t m = 0; m < meshes_.size(); ++m) {
+        for (const double value : values[m]) {
+            meshes_[m].triangle_colors.push_back(kParticleAlbedo *
+                                                 map_color(ColorMap::viridis, (value - collider_range_.low) * scale));
+        }
+    }
+}
+
+std::vector<ColorBar> RunPictures::color_bars() const {
+    std::vector<ColorBar> bars;
+    if (!own_colors_) bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
+    if (style_.collider_quantity) {
+        bars.push_back(
+            {style_.collider_quantity->name(), style_.collider_quantity->unit(), collider_range_, ColorMap::viridis});
+    }
+    return bars;
+}
+
+}  // namespace ricochet::cli

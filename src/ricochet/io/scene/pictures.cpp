@@ -1,0 +1,155 @@
+// How a scene is shown: the camera of its pictures, their light and surroundings.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+constexpr double kSmallestSine = 1e-6;  // of the angle between the view and up
+
+// True for a frame that a body moves, or that stands on one: where it is cannot be told before the run.
+bool stands_on_body(const FrameTree& frames, std::size_t frame) {
+    std::optional<std::size_t> k = frame;
+    while (k) {
+        if (frames.description(*k).is_driven) return true;
+        const std::string& parent = frames.description(*k).parent;
+        k = parent.empty() ? std::nullopt : frames.find(parent);
+    }
+    return false;
+}
+
+void check_frame(const SceneContext& context, const ObjectView& view, const FrameTree& frames) {
+    if (!view.has("frame") || !is_frame_named(context, view, frames)) return;
+    const std::size_t frame = frames.find(view.text("frame")).value_or(0);
+    if (stands_on_body(frames, frame) && !frames.description(frame).is_driven) {
+        context.error(view, "frame", "the frame stands on a body, expected the body's own frame or one without bodies");
+    }
+}
+
+// A camera needs exactly one of a point and a path.
+bool has_one_of(const SceneContext& context, const ObjectView& view, const char* point, const char* path) {
+    if (view.has(point) && view.has(path)) {
+        context.error(view, path, fmt::format("\"{}\" says the same, expected one of the two", point));
+    } else if (!view.has(point) && !view.has(path)) {
+        context.error(view, point, fmt::format("missing, expected this key or \"{}\"", path));
+    }
+    return view.has(point) != view.has(path);
+}
+
+void read_paths(const SceneContext& context, const ObjectView& view, CameraDescription& camera) {
+    if (view.has("path")) {
+        camera.path = vector_curve_of(view.object("path"), context.diagnostics());
+        camera.position = camera.path->value(0.0);
+    }
+    if (view.has("target_path")) {
+        camera.target_path = vector_curve_of(view.object("target_path"), context.diagnostics());
+        camera.target = camera.target_path->value(0.0);
+    }
+}
+
+CameraDescription camera_of(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup) {
+    auto camera = view.read<CameraDescription>();
+    const bool has_place = has_one_of(context, view, "position", "path");
+    const bool has_target = has_one_of(context, view, "target", "target_path");
+    if (setup.frames) check_frame(context, view, *setup.frames);
+    if (!camera.frame.empty()) camera.frames = setup.frames;
+    if (view.has("focal_length") && view.has("field_of_view")) {
+        context.error(view, "focal_length", "\"field_of_view\" says the same, expected one of the two");
+    }
+    constexpr double kFilmHeight = 24.0;  // mm
+    if (camera.focal_length) {
+        camera.field_of_view_degrees = std::atan(0.5 * kFilmHeight / *camera.focal_length) * 360.0 / std::numbers::pi;
+    }
+    if (!has_place || !has_target) return camera;
+    read_paths(context, view, camera);
+    const Vec3 ahead = camera.target - camera.position;
+    if (ahead == Vec3{}) {
+        refuse_camera_on_target(context, view);
+    } else if (camera.up && length(cross(normalized(*camera.up), normalized(ahead))) < kSmallestSine) {
+        context.error(view, "up", "the camera looks along its up direction, expected another one");
+    }
+    return camera;
+}
+
+}  // namespace
+
+void refuse_camera_on_target(const SceneContext& context, const ObjectView& view) {
+    context.error(view, view.has("target_path") ? "target_path" : "target",
+                  "the camera stands on its target, expected another point");
+}
+
+const ObjectSpec& camera_spec() {
+    using C = CameraDescription;
+    static const ObjectSpec spec = object<C>(
+        "camera", "Where `ricochet render` looks from, unless it is told otherwise.",
+        {{"position", &C::position, kCoordinate, "m", "Where it stands.", Without{"`path` says it"}},
+         {"target", &C::target, kCoordinate, "m", "The point in the middle of the picture.",
+          Without{"`target_path` says it"}},
+         {"path", ValueType::object, "Instead of `position`: where it goes, a curve of [x, y, z].", Unit{"m"},
+          Without{"it stands at `position`"}, &vector_curve_spec()},
+         {"target_path", ValueType::object, "Instead of `target`: a curve of [x, y, z].", Unit{"m"},
+          Without{"it looks at `target`"}, &vector_curve_spec()},
+         {"frame", &C::frame, "One of the names in `frames`, in whose coordinates the camera stands, looks and is up.",
+          Without{"the world"}},
+         {"up", &C::up, kCoordinate, "", "What is up in the picture.", kNotZero, Without{"against gravity"}},
+         {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
+         {"focal_length", &C::focal_length, between(1.0, 1400.0), "mm",
+          "Instead of `field_of_view`: of a lens before a film 24 mm high.", Without{"`field_of_view` says it"}},
+         {"aperture", &C::aperture, kLengthOrZero, "m",
+          "Diameter of the lens: what is nearer or farther than `focus_distance` blurs. 0: everything is sharp."},
+         {"focus_distance", &C::focus_distance, kLengthOrZero, "m",
+          "Along the view to what is sharp; 0: as far as the target."}});
+    return spec;
+}
+
+const ObjectSpec& picture_spec() {
+    using P = PictureDescription;
+    static const ObjectSpec spec = object<P>(
+        "picture", "Light and surroundings of `ricochet render`, unless it is told otherwise.",
+        {{"light", &P::light, "What lights it.",
+          Choices{{"day", "a sun at middling height behind the camera's left shoulder"},
+                  {"noon", "a high, white, hard sun"},
+                  {"overcast", "a bright grey sky without a sun"},
+                  {"night", "a little moonlight"},
+                  {"studio", "one large lamp, and a grey backdrop"}},
+          Without{"`day`"}},
+         {"background", &P::background, kFraction, "", "Red, green and blue behind everything, linear light.",
+          Without{"the light's sky"}},
+         {"transparent", &P::transparent, "Nothing behind everything: an alpha channel in PNG files."},
+         {"particles", &P::particles, "What particles are drawn as.",
+          Choices{{"spheres", "solid spheres"},
+                  {"streaks", "threads along the way that they went while the shutter was open, bent where they hit"},
+                  {"soft", "soft discs that cover what is behind by their opacity"},
+                  {"glow", "discs of light that adds up"}},
+          Without{"soft discs where they have an opacity, spheres otherwise"}},
+         {"shutter", &P::shutter, kNotNegative, "s",
+          "How long it is open, up to the picture's time: moving particles blur. 0: not at all."},
+         {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
+          Without{"none"}}});
+    return spec;
+}
+
+const ObjectSpec& collider_looks_spec() {
+    using L = ColliderLooks;
+    static const ObjectSpec spec = object<L>(
+        "collider looks", "How pictures show a collider; it does nothing to the run.",
+        {{"color", &L::color, kFraction, "", "Red, green and blue, linear light.", Without{"one for each material"}},
+         {"roughness", &L::roughness, kFraction, "", "From 0, which mirrors what is around, to 1, which is matt."},
+         {"glass", &L::glass, "It is seen through."},
+         {"hidden", &L::hidden, "It is not shown."}});
+    return spec;
+}
+
+void build_pictures(const SceneContext& context, SceneDescription& scene) {
+    for (const ObjectView& view : context.root().objects("colliders")) {
+        scene.looks.push_back(view.object("looks").read<ColliderLooks>());
+    }
+    if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"), scene.setup);
+    if (context.root().has("picture")) scene.picture = context.root().object("picture").read<PictureDescription>();
+}
+
+}  // namespace ricochet::detail

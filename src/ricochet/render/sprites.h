@@ -1,0 +1,39 @@
+/// \file
+/// Particles as soft discs that face the camera: light that adds up (sparks), or a haze that covers what is behind
+/// (spray, smoke). The same bytes for any thread count: discs are laid over each other from far to near, ties in the
+/// order given.
+/// Method: W. T. Reeves, "Particle Systems", ACM TOG 2(2), 1983, section 2.5 (particles as points of light that add
+/// up); T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984 (the operator "over").
+#pragma once
+
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/render/camera.h"
+#include "ricochet/render/preview.h"
+
+namespace ricochet {
+
+/// Soft discs; the four vectors have the same length.
+struct Sprites {
+    std::vector<Vec3> centers;
+    std::vector<double> radii;      ///< m; discs smaller than a pixel are widened and dimmed alike
+    std::vector<Vec3> colors;       ///< linear light
+    std::vector<double> opacities;  ///< 0..1, at the disc's middle
+    bool glow = false;              ///< true: light that adds up; false: cover from far to near
+
+    [[nodiscard]] bool empty() const { return centers.empty(); }
+};
+
+/// What sprites do to each pixel, rows from the top.
+struct SpriteLayer {
+    std::vector<Vec3> light;            ///< linear light added
+    std::vector<double> transmittance;  ///< part of what is behind that is still seen, 0..1
+};
+
+/// Sprites in front of a picture of the given size. A disc whose middle is behind a solid mesh, plane or sphere is left
+/// out.
+[[nodiscard]] SpriteLayer draw_sprites(const Sprites& sprites, const Preview& preview, const Camera& camera, int width,
+                                       int height);
+
+}  // namespace ricochet

@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "ricochet/io/camera_frames.h"
+#include "ricochet/io/run_report.h"
+#include "ricochet/io/scene.h"
+#include "support/temporary_folder.h"
+
+namespace ricochet {
+namespace {
+
+std::string scene_with(const std::string& keys) {
+    return R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
+        "frames": {"f": {"motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 90}]}},
+        "particles": [{"position": [0, 0, 1]}], )" +
+           keys + "}";
+}
+
+SceneDescription parsed(const std::string& keys) { return parse_scene(scene_with(keys), "s.json"); }
+
+std::string error_of(const std::string& keys) {
+    try {
+        (void)parsed(keys);
+    } catch (const SceneError& error) {
+        EXPECT_EQ(error.messages().size(), 1U);
+        return error.messages()[0].substr(error.messages()[0].find(' ') + 1);
+    }
+    return "";
+}
+
+TEST(PictureScene, AFocalLengthSetsTheFieldOfViewOfAFilm24MillimetresHigh) {
+    const auto scene = parsed(R"("camera": {"position": [0, -9, 0], "target": [0, 0, 0], "focal_length": 50,
+                                            "aperture": 0.1, "focus_distance": 4})");
+    EXPECT_NEAR(scene.camera->field_of_view_degrees, 2.0 * std::atan(12.0 / 50.0) * 180.0 / 3.14159265358979, 1e-9);
+    EXPECT_EQ(scene.camera->aperture, 0.1);
+    EXPECT_EQ(scene.camera->focus_distance, 4.0);
+    EXPECT_FALSE(scene.camera->moves());
+}
+
+// After 1 s the frame has turned by 90 degrees about z.
+TEST(PictureScene, ACameraGoesAlongItsPathInItsFrame) {
+    auto scene = parsed(R"("camera": {"path": {"keys": [{"time": 0, "value": [4, 0, 0]},
+        {"time": 2, "value": [8, 0, 2]}]}, "target": [1, 0, 0], "frame": "f"})");
+    ASSERT_TRUE(scene.camera && scene.camera->moves());
+    Simulation simulation(std::move(scene.setup));
+    const Vec3 up{0, 0, 1};
+    CameraPlace place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
+    EXPECT_LT(length(place.position - Vec3(4, 0, 0)), 1e-12);
+    simulation.advance(simulation.step_count());
+    place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
+    EXPECT_LT(length(place.position - Vec3(0, 6, 1)), 1e-9);
+    EXPECT_LT(length(place.target - Vec3(0, 1, 0)), 1e-9);
+    VtkPolyData frame;
+    EXPECT_FALSE(camera_of_frame(frame));
+    add_camera(frame, place);
+    EXPECT_EQ(camera_of_frame(frame)->position, place.position);
+    EXPECT_EQ(camera_of_frame(frame)->target, place.target);
+}
+
+TEST(PictureScene, RefusesCamerasThatContradictThemselves) {
+    EXPECT_EQ(error_of(R"("camera": {"target": [0, 0, 0]})"),
+              R"(camera.position: missing, expected this key or "path")");
+    EXPECT_EQ(error_of(R"("camera": {"position": [1, 0, 0], "target": [0, 0, 0], "target_path":
+                       {"keys": [{"time": 0, "value": [0, 0, 0]}]}})"),
+              R"(camera.target_path: "target" says the same, expected one of the two)");
+    EXPECT_EQ(error_of(R"("camera": {"position": [1, 0, 0], "target": [0, 0, 0], "focal_length": 50,
+                                     "field_of_view": 40})"),
+              R"(camera.focal_length: "field_of_view" says the same, expected one of the two)");
+    EXPECT_NE(error_of(R"("camera": {"position": [1, 0, 0], "target": [0, 0, 0], "frame": "g"})").find("camera.frame"),
+              std::string::npos);
+}
+
+TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
+    const auto scene = parsed(R"("colliders": [{"name": "a", "type": "plane", "normal": [0, 0, 1],
+            "looks": {"color": [0.1, 0.2, 0.3], "roughness": 0.25, "glass": true}},
+            {"name": "b", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true}}],
+        "picture": {"light": "studio", "background": [0, 0, 0.5], "transparent": true, "ground": -2,
+                    "particles": "streaks", "shutter": 0.02})");
+    ASSERT_EQ(scene.looks.size(), 2U);
+    RunInfo info = run_info_of(scene);
+    info.colliders = {{"a", "plane", "collider_00_a.vtp", 0, false, info.looks[0]},
+                      {"b", "plane", "collider_01_b.vtp", 0, false, info.looks[1]}};
+    const test::TemporaryFolder folder;
+    const RunInfo read = read_run_info(folder.write("run.json", run_info_text(info)));
+    ASSERT_TRUE(read.picture);
+    EXPECT_EQ(read.picture->light, "studio");
+    EXPECT_EQ(read.picture->background, Vec3(0, 0, 0.5));
+    EXPECT_TRUE(read.picture->transparent);
+    EXPECT_EQ(read.picture->ground, -2.0);
+    EXPECT_EQ(read.picture->particles, "streaks");
+    EXPECT_EQ(read.picture->shutter, 0.02);
+    EXPECT_EQ(read.colliders[0].looks.color, Vec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(read.colliders[0].looks.roughness, 0.25);
+    EXPECT_TRUE(read.colliders[0].looks.glass && !read.colliders[0].looks.hidden);
+    EXPECT_TRUE(read.colliders[1].looks.hidden);
+}
+
+// What only says how it is shown changes neither the run nor whether it may be resumed.
+TEST(PictureScene, ThePictureIsNoPartOfTheFingerprint) {
+    EXPECT_EQ(parsed(R"("picture": {"light": "night"})").fingerprint,
+              parsed(R"("picture": {"light": "noon"})").fingerprint);
+    EXPECT_EQ(error_of(R"("picture": {"light": "dawn"})").substr(0, 14), "picture.light:");
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,93 @@
+#include "ricochet/render/painter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace ricochet {
+namespace {
+
+// A sphere of 12 x 8 flat faces whose normals are smoothed (its edges lean less than the crease).
+PreviewMesh coarse_ball() {
+    constexpr int kAround = 12;
+    constexpr int kUp = 8;
+    PreviewMesh ball;
+    for (int j = 0; j <= kUp; ++j) {
+        for (int i = 0; i < kAround; ++i) {
+            const double a = 2.0 * std::numbers::pi * i / kAround;
+            const double b = std::numbers::pi * j / kUp;
+            ball.mesh.vertices.push_back({std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b)});
+        }
+    }
+    for (std::uint32_t j = 0; j < kUp; ++j) {
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const std::uint32_t a = j * kAround + i;
+            const std::uint32_t b = j * kAround + (i + 1) % kAround;
+            if (j > 0) ball.mesh.triangles.push_back({a, a + kAround, b});
+            if (j + 1 < kUp) ball.mesh.triangles.push_back({b, a + kAround, b + kAround});
+        }
+    }
+    return ball;
+}
+
+// Along a line across the terminator of a smooth ball the sun's light falls steadily; shadows that the flat faces cast
+// on themselves make it jump to zero while the smooth normal still faces the sun.
+TEST(Painter, TheShadowOfACoarseBallOnItselfFollowsTheSmoothSurface) {
+    const Preview preview({coarse_ball()}, {}, {});
+    int facing = 0;
+    int shaded = 0;
+    for (int k = 0; k < 400; ++k) {
+        const double a = 0.5 * std::numbers::pi * (0.6 + 0.4 * k / 400.0);  // from the sun's direction, +x
+        for (int turn = 0; turn < 16; ++turn) {
+            const double b = 2.0 * std::numbers::pi * (turn + 0.37) / 16;
+            const Vec3 out{std::cos(a), std::sin(a) * std::cos(b), std::sin(a) * std::sin(b)};
+            const auto hit = preview.trace({3.0 * out, -out});
+            ASSERT_TRUE(hit);
+            if (dot(hit->normal, Vec3{1, 0, 0}) < 0.05) continue;
+            ++facing;
+            const Vec3 start = hit->point + hit->lift + 1e-5 * hit->face;
+            if (preview.occluded({start, {1, 0, 0}})) ++shaded;
+        }
+    }
+    EXPECT_GT(facing, 1000);
+    EXPECT_LT(shaded, facing / 50);
+}
+
+TEST(Painter, TheLiftIsZeroOnFlatMeshes) {
+    const PreviewMesh square{{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, false};
+    const Preview preview({square}, {}, {});
+    EXPECT_EQ(preview.trace({{0.3, 0.2, 1}, {0, 0, -1}})->lift, Vec3{});
+}
+
+// Two small balls in front of and behind the sharp plane are seen through a wide lens as discs of the lens's size times
+// the distance from the plane over the distance from the camera.
+TEST(Painter, ALensBlursWhatIsOutOfFocusByTheThinLensRule) {
+    constexpr int kSize = 128;
+    const auto lit_pixels = [](double depth, double aperture) {
+        Preview preview({}, {}, {});
+        preview.set_spheres({{{0, depth, 0}}, {0.02 * (10.0 + depth) / 10.0}, {{1, 1, 1}}});
+        PictureOptions options;
+        options.width = options.height = kSize;
+        options.samples = 256;
+        options.filter = false;
+        options.background = Vec3{};
+        Camera camera{{0, -10, 0}, {0, 0, 0}, {0, 0, 1}, 20.0};
+        camera.aperture = aperture;
+        const Painter painter(preview, camera, options);
+        int count = 0;
+        for (int x = 0; x < kSize; ++x) count += painter.pixel(x, kSize / 2).light.x > 0.0 ? 1 : 0;
+        return count;
+    };
+    const double scale = 0.5 * kSize / std::tan(10.0 * std::numbers::pi / 180.0);  // pixels per unit slope
+    const double ball = 2.0 * scale * 0.02 / 10.0;
+    EXPECT_NEAR(lit_pixels(0.0, 0.5), ball, 2.0);
+    EXPECT_NEAR(lit_pixels(10.0, 0.0), ball, 2.0);
+    for (const double depth : {-5.0, 10.0}) {
+        const double blur = scale * 0.5 * std::fabs(depth) / (10.0 * (10.0 + depth));
+        EXPECT_NEAR(lit_pixels(depth, 0.5), ball + blur, 3.0) << depth;
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

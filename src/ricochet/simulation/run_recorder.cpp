@@ -161,6 +161,10 @@ void RunRecorder::put_in_order(std::vector<ContactRecord>& records) {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
     });
+}
+
+void RunRecorder::end_step() {
+    put_in_order(contacts_);
     std::stable_sort(pair_records_.begin(), pair_records_.end(),
                      [](const PairImpactRecord& a, const PairImpactRecord& b) {
                          return a.time != b.time ? a.time < b.time : a.first < b.first;

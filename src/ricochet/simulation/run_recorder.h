@@ -150,7 +150,7 @@ public:
     /// particles: how many were moved.
     void end_batch(std::size_t particles);
     /// Puts the contact records in the order of (time, particle, order of events).
-    void end_step() { put_in_order(contacts_); }
+    void end_step();
     static void put_in_order(std::vector<ContactRecord>& records);
 
     [[nodiscard]] bool collects_contacts() const { return shows_contacts_ || collects_contacts_; }

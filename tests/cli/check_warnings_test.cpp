@@ -153,9 +153,9 @@ TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
 }
 
 TEST_F(CheckWarnings, TellsOfSpheresThatStandInOthersWhereTheyMeet) {
-    const std::string contacts = R"(, "particle_contacts": {"restitution": 0.5})";
+    const std::string contacts = R"("particle_contacts": {"restitution": 0.5},)";
     const auto particles = [](const std::string& x) {
-        return R"(, "particles": [{"position": [9, 0, 5], "radius": 0.5}, {"position": [0, 0, 5], "radius": 0.5}, )"
+        return R"("particles": [{"position": [9, 0, 5], "radius": 0.5}, {"position": [0, 0, 5], "radius": 0.5}, )"
                R"({"position": [)" +
                x + R"(, 0, 5], "radius": 0.25}])";
     };

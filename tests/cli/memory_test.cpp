@@ -64,7 +64,7 @@ TEST(MemoryOfPrograms, PicturesAndFilmsThatDoNotFitAreRefusedByTheirSize) {
     // The layer of soft discs takes more than the picture.
     const std::string target = folder.path("picture.png").string();
     expect_refused(run_ricochet({"render", output, "--output", target, "--size", "6000x6000", "--draw", "glow"}),
-                   "ricochet: --size 6000x6000: asks for about 1.69 GB");
+                   "ricochet: --size 6000x6000: asks for about 4.32 GB");
 }
 
 TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {

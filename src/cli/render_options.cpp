@@ -120,7 +120,8 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     style.camera = parse_camera(arguments.camera);
     style.up = parse_up(arguments.up);
     style.lens = parse_lens(arguments.lens);
-    style.light = parse_light(arguments.light);
+    if (arguments.night && !arguments.light.empty()) refuse("--night: found beside --light, expected one of them");
+    style.light = parse_light(arguments.night ? "night" : arguments.light);
     style.background = parse_background(arguments.background);
     style.ground = parse_ground(arguments.ground);
     if (arguments.shutter >= 0.0) style.shutter = arguments.shutter;
@@ -155,6 +156,7 @@ void add_render_options(cli::Command command, RenderArguments& a) {
                     "soft with an opacity)")
         .show_default();
     command.add_option("--light", a.light, "day, noon, overcast, night or studio (default: the scene's, or day)");
+    command.add_flag("--night", a.night, "The same as --light night");
     command.add_option("--background", a.background, "sky, transparent (.png), or red,green,blue from 0 to 1");
     command.add_option("--ground", a.ground, "none, auto (below everything), or the height of a ground, m");
     command.add_option("--color-map", a.color_map, "viridis, plasma, inferno, magma or turbo").show_default();

@@ -34,6 +34,7 @@ struct RenderArguments {
     double speed = 1.0;
     double shutter = -1.0;  // below 0: the scene's
     std::string light;
+    bool night = false;
     std::string background;
     std::string ground;
     bool no_filter = false;

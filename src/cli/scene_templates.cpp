@@ -133,7 +133,7 @@ Part sparks(const Fit& fit) {
     const Vec3 aim = Vec3{fit.center.x, fit.center.y, fit.center.z + 0.2 * fit.size.z} - place;
     const std::string size = about(0.003 * fit.length);
     return {.title = "Sparks: a grinding wheel's spray hits the mesh, bounces off and cools from white to red.",
-            .picture = "--night --draw glow",
+            .picture = "--light night --draw glow",
             .emitters = fmt::format(
                 R"(    // A nozzle beside the mesh, aimed at it. "cone" is the half angle of the spray in degrees.
     {{"name": "wheel", "type": "point", "center": {}, "direction": {}, "cone": 24, "rate": {}, "speed": [{}, {}],
@@ -278,7 +278,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
 // Metres, seconds and kilograms; z points up. docs/scene-format.md tells every key.
 {{
   "ricochet": 1,
-  // 300 steps, every second of which is a frame: 5 s of film at 30 pictures a second.
+  // 300 steps, of which every second one is a frame: 5 s of film at 30 pictures a second.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
   "forces": [{}],
   "materials": {{

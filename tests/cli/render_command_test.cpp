@@ -124,6 +124,16 @@ TEST(RenderCommand, EveryOptionChangesThePicture) {
     }
 }
 
+TEST(RenderCommand, NightIsShortForItsLight) {
+    const RunFolderFiles files;
+    EXPECT_EQ(files.render("short.png", {"--night"}).exit_code, 0);
+    EXPECT_EQ(files.render("long.png", {"--light", "night"}).exit_code, 0);
+    EXPECT_TRUE(files.folder.read("short.png") == files.folder.read("long.png"));
+    const ProgramResult both = files.render("both.png", {"--night", "--light", "noon"});
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_EQ(both.errors, "ricochet: --night: found beside --light, expected one of them\n");
+}
+
 TEST(RenderCommand, ThePictureDoesNotDependOnThreads) {
     const RunFolderFiles files;
     EXPECT_EQ(files.render("one.png", {"--threads", "1"}).exit_code, 0);

@@ -101,4 +101,13 @@ std::optional<int> CommandLine::parse(int argc, char** argv, const std::string& 
     return std::nullopt;
 }
 
+void add_progress_options(Command command, std::string& progress, bool& quiet) {
+    command
+        .add_option("--progress", progress,
+                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
+        .type_name("auto|always|never")
+        .show_default();
+    command.add_flag("--quiet", quiet, "No report, and no progress unless --progress always");
+}
+
 }  // namespace ricochet::cli

@@ -57,6 +57,9 @@ private:
     CLI::App* app_;
 };
 
+/// --progress and --quiet, as all commands that take long have them.
+void add_progress_options(Command command, std::string& progress, bool& quiet);
+
 /// The whole command line: a program that needs a command.
 class CommandLine {
 public:

@@ -177,12 +177,7 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_option("--fps", a.frames_per_second, "Pictures a second of a film").show_default();
     command.add_option("--speed", a.speed, "Seconds of the run in a second of a film").show_default();
     command.add_option("--threads", a.threads, "Worker threads (default: all)");
-    command
-        .add_option("--progress", a.progress,
-                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
-        .type_name("auto|always|never")
-        .show_default();
-    command.add_flag("--quiet", a.quiet, "No report, and no progress unless --progress always");
+    add_progress_options(command, a.progress, a.quiet);
 }
 
 }  // namespace ricochet::cli

@@ -314,12 +314,7 @@ void add_options(cli::Command command, RunArguments& a) {
     command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
     command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
         .type_name("exact|rollback|project|penalty");
-    command
-        .add_option("--progress", a.progress,
-                    "Show progress: auto on a terminal, always in a pipe too (a line every 10 s), never")
-        .type_name("auto|always|never")
-        .show_default();
-    command.add_flag("--quiet", a.quiet, "No report, and no progress unless --progress always");
+    cli::add_progress_options(command, a.progress, a.quiet);
     command.add_flag(
         "--verify", a.verify,
         "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "

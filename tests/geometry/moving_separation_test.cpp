@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -111,6 +112,51 @@ TEST(MovingSeparation, FindsTheTimeOfAMeetingInClosedForm) {
     }
     const Path aside = parabola_path({9.0, 0.2, 2.0}, {}, {0, 0, -kG}, 1.0);
     EXPECT_FALSE(first_meeting(aside, 0.0, plate, 0.0, [](const Meeting&) { return true; }).has_value());
+}
+
+/// Where a sphere touches a triangle.
+struct Touched {
+    Vec3 place;      ///< m, on the triangle
+    Vec3 direction;  ///< unit, from there to the centre of a sphere that touches there
+};
+
+/// part: 0 within the face, 1 on an edge, 2 at a corner.
+Touched touched_place(const Vec3& a, const Vec3& b, const Vec3& c, int part, RandomSequence& random) {
+    const Vec3 normal = unit_normal(a, b, c);
+    const double along = 0.2 + 0.6 * random.uniform();
+    if (part == 0) return {a + 0.5 * along * (b - a) + 0.4 * (c - a), normal};
+    const Vec3 beside = normalized(cross(b - a, normal));  // away from c
+    if (part == 1) return {a + along * (b - a), normalized(beside + random.uniform_around(0, 2) * normal)};
+    const Vec3 away = -normalized(normalized(b - a) + normalized(c - a));
+    return {a, normalized(away + random.uniform_around(0, 1) * normal)};
+}
+
+// A ball enters what a triangle is thickened to by its radius once, since that is convex: where it touches it on its
+// way in is the first contact, however often the ball would pass through between two samples.
+TEST(MovingSeparation, FindsWhereASmallFastBallMeetsATriangle) {
+    RandomSequence random(57, 0, 0);
+    for (int k = 0; k < test::scaled(1200); ++k) {
+        const std::array<Vec3, 3> corners{in_cube(random), in_cube(random), in_cube(random)};
+        const auto& [a, b, c] = corners;
+        if (length(cross(b - a, c - a)) < 0.3) continue;
+        const Touched touched = touched_place(a, b, c, k % 3, random);
+        const double radius = std::exp2(-6.0 - 20.0 * random.uniform());
+        const Vec3 carried = 3.0 * in_cube(random);
+        Vec3 relative = normalized(in_cube(random));
+        if (dot(relative, touched.direction) > 0.0) relative = -relative;
+        if (dot(relative, touched.direction) > -0.3) continue;
+        relative *= 1.0 + 20.0 * random.uniform();
+        const double part = 0.1 + 0.8 * random.uniform();
+        MovingTriangle triangle;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            triangle.corners[corner] = {corners[corner] - part * carried, corners[corner] + (1.0 - part) * carried};
+        }
+        const Vec3 center = touched.place + radius * touched.direction;
+        const Path path = line_path(center - part * (carried + relative), carried + relative, 1.0);
+        const auto meeting = first_meeting(path, radius, triangle, 0.0, [](const Meeting&) { return true; });
+        ASSERT_TRUE(meeting.has_value()) << k;
+        EXPECT_NEAR(meeting->part, part, 1e-13) << k << " radius " << radius;
+    }
 }
 
 // What does not count is passed over, and the next one is found.

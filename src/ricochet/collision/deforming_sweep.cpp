@@ -59,8 +59,8 @@ bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
 /// What is overlapped from the start, or held, blocks only what intersects it.
 double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
     if (radius_ == 0.0 || is_held(surface)) return 0.0;
-    const double least = radius_ - tolerance_;
-    return distance_at_start(path_, triangle) < least ? 0.0 : std::max(least, 0.0);
+    const double distance = distance_at_start(path_, triangle);
+    return distance < radius_ - tolerance_ ? 0.0 : std::min(radius_, distance);
 }
 
 /// A contact, where the particle comes nearer to the triangle there.

@@ -16,6 +16,14 @@ double offset_for_carrying(const MovingPose& pose, const Vec3& image) {
     return kCarries * max_abs(pose.image(pose.point(image)) - image);
 }
 
+/// By coordinates of the link, not of the path: where that leads far away, a sphere must not sink in here by its
+/// rounding there.
+bool ForeignSurfaces::is_free(const Deforming& triangle, const WayPoint& p, const WayPoint& q) const {
+    const double tolerance = sphere_tolerance(triangle.radius, std::max(max_abs(p.world), max_abs(q.world)));
+    const double radius = std::max(0.0, triangle.radius - tolerance);
+    return deforming().is_free(triangle.surface, {p.world, time_of(p)}, {q.world, time_of(q)}, radius);
+}
+
 bool ForeignSurfaces::are_free(const WayPoint& p, const WayPoint& q) const {
     return std::all_of(bodies_.begin(), bodies_.end(),
                        [&](const Body& body) { return body.near.is_free(image(body, p), image(body, q)); }) &&

@@ -32,7 +32,7 @@ public:
     /// A triangle of a mesh that deforms.
     struct Deforming {
         SurfaceId surface = 0;
-        double radius = 0.0;  ///< m, of the ball that links keep off it
+        double radius = 0.0;  ///< m, of the ball that links keep off it, but for the sphere_tolerance() of each
     };
 
     /// start: of the path, stored. Bodies are added in ascending order of their queries, triangles in that of their
@@ -79,9 +79,7 @@ private:
     [[nodiscard]] const DeformingColliders& deforming() const { return view_.bodies().deforming(); }
     [[nodiscard]] bool deforms(SurfaceId surface) const { return deforming().owns(surface); }
     [[nodiscard]] double time_of(const WayPoint& p) const { return view_.clock().at(p.time); }
-    [[nodiscard]] bool is_free(const Deforming& triangle, const WayPoint& p, const WayPoint& q) const {
-        return deforming().is_free(triangle.surface, {p.world, time_of(p)}, {q.world, time_of(q)}, triangle.radius);
-    }
+    [[nodiscard]] bool is_free(const Deforming& triangle, const WayPoint& p, const WayPoint& q) const;
 
     MovingView view_;
     WayPoint start_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "collision/worlds.h"
@@ -114,6 +115,22 @@ TEST(DenseAmongMovers, AColumnRidesOnAPiston) {
         const ColliderTotals& load = simulation.collider_totals()[0];
         EXPECT_NEAR(load.impulse.z, -0.4 * mass * kG, 1e-3 * mass * kG * 0.4);
         EXPECT_NEAR(load.work, -0.4 * mass * kG * speed, 2e-3 * mass * kG * 0.4);
+    }
+}
+
+/// A floor that pushes stands where it was at the step's begin, middle and end, and has been up and down in between by
+/// more than a radius. What it throws up flies on with the speed that the floor has at first, 2 pi A over the step.
+TEST(DenseAmongMovers, AFloorThatGoesToAndFroWithinAStepComesToNoSphere) {
+    constexpr double kStep = 1e-3;
+    constexpr double kAmplitude = 1.5 * kRadius;
+    SimulationSetup setup = moving_setup(kStep, Oscillation{{0, 0, kAmplitude}, 1.0 / kStep, 0.0}, 0.3);
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "mover"}};
+    for (const double y : {-kRadius, kRadius}) setup.particles.push_back(grain({0, y, kRadius}));
+    Simulation simulation(std::move(setup));
+    run(simulation);
+    expect_sound(simulation);
+    for (const Vec3& position : simulation.particles().position) {
+        EXPECT_NEAR(position.z, kRadius + 2.0 * std::numbers::pi * kAmplitude, 1e-9);
     }
 }
 

@@ -211,6 +211,10 @@ bool ParticleStep::take_link(const StoredPosition& next) {
     return true;
 }
 
+void ParticleStep::shift_to(const Vec3& position) {
+    if (take_link({position, stored_.time})) state().position = position;
+}
+
 /// Goes with a frame until a time, as far as links are free. image: where it is in that frame.
 bool ParticleStep::carry(BodyId frame, const Vec3& image, double until, int depth) {
     const double key = rules_->bodies->deforming().next_key(stored_.time);

@@ -78,6 +78,14 @@ public:
     void end_part();
     /// The frame that the state is given in.
     [[nodiscard]] const HomeFrame& home() const { return home_; }
+    /// What a ball of a radius, m, would meet first on a path in the world; nothing is moved. held: as
+    /// ContactQuery::held.
+    [[nodiscard]] std::optional<Contact> first_contact(const Path& path, double radius,
+                                                       std::span<const SurfaceId> held) {
+        return first_contact_among_bodies({path, radius, nullptr, {}, held});
+    }
+    /// Moves it in no time to a position in the world, where that is a free link; else it stays.
+    void shift_to(const Vec3& position);
     /// Where the clock of the particle stood still in steps before: makes it go on, if it can. False where it cannot.
     [[nodiscard]] bool catch_up();
     /// At the end of the move.

@@ -38,8 +38,9 @@ private:
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
     }
-    [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
-    [[nodiscard]] std::vector<SurfaceId> passed_by(const Path& line) const;
+    [[nodiscard]] Vec3 kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const;
+    [[nodiscard]] std::vector<SurfaceId> passed_by(const Path& line);
+    void come_off(const Contact& contact);
     void hold(SurfaceId surface);
 
     const ResponseRules& rules_;
@@ -115,7 +116,7 @@ void PlannedMove::follow_among_bodies() {
         for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
             const Vec3 velocity = particle_.state.velocity;
             const double duration = step_.remaining();
-            const Vec3 end = kept_off(particle_.state.position + duration * velocity, particle_.step_end);
+            const Vec3 end = kept_off(particle_.state.position + duration * velocity, particle_.step_end, held_);
             Path path = line_path(particle_.state.position, (end - particle_.state.position) / duration, duration);
             path.end = end;
             const std::vector<SurfaceId> along = passed_by(path);
@@ -123,6 +124,7 @@ void PlannedMove::follow_among_bodies() {
             particle_.state.velocity = velocity;
             if (!contact) break;
             divert(*contact);
+            if (!along.empty()) come_off(*contact);
             for (const ContactSurface& surface : contact->all()) hold(surface.surface);
         }
         if (step_.remaining() > 0.0) step_.stop();
@@ -131,11 +133,11 @@ void PlannedMove::follow_among_bodies() {
 }
 
 /// A position at a time put off the surfaces that it would be too near.
-Vec3 PlannedMove::kept_off(Vec3 end, double time) const {
+Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const {
     const double radius = particle_.state.radius;
     for (int pass = 0; pass < kCorrections; ++pass) {
         bool is_off = true;
-        for (const SurfaceId surface : held_) {
+        for (const SurfaceId surface : surfaces) {
             const CollisionWorld::Nearest nearest = nearest_at(*rules_.bodies, surface, end, time);
             const double missing = radius + 2.0 * contact_offset(end) - nearest.distance;
             if (missing <= 0.0) continue;
@@ -148,17 +150,36 @@ Vec3 PlannedMove::kept_off(Vec3 end, double time) const {
 }
 
 /// Those held surfaces that a line goes along: it ends off them, and hardly comes nearer in between.
-std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) const {
+std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     const double radius = particle_.state.radius;
-    const double middle = 0.5 * line.duration;
     std::vector<SurfaceId> passed;
     for (const SurfaceId surface : held_) {
         const double at_end = nearest_at(*rules_.bodies, surface, line.end, particle_.step_end).distance;
-        const double between =
-            nearest_at(*rules_.bodies, surface, line.position(middle), particle_.state.time + middle).distance;
-        if (at_end >= radius && between >= (1.0 - kSagitta) * radius) passed.push_back(surface);
+        if (at_end >= radius) passed.push_back(surface);
+    }
+    std::vector<SurfaceId> met;
+    for (int k = 0; !passed.empty(); ++k) {
+        if (k == kMostDiversions) return {};
+        const std::optional<Contact> contact = step_.first_contact(line, (1.0 - kSagitta) * radius, met);
+        if (!contact) break;
+        for (const ContactSurface& surface : contact->all()) {
+            std::erase(passed, surface.surface);
+            met.push_back(surface.surface);
+        }
     }
     return passed;
+}
+
+/// Where something is in the way of a line before its end, the surfaces that it goes along may be a little too near.
+void PlannedMove::come_off(const Contact& contact) {
+    const ForceInput& state = particle_.state;
+    std::vector<SurfaceId> near = held_;
+    for (const ContactSurface& surface : contact.all()) near.push_back(surface.surface);
+    const double least = state.radius - 0.5 * sphere_tolerance(state.radius, max_abs(state.position));
+    const bool is_off = std::all_of(near.begin(), near.end(), [&](SurfaceId surface) {
+        return nearest_at(*rules_.bodies, surface, state.position, state.time).distance >= least;
+    });
+    if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
 }
 
 /// Takes away what leads into the surfaces of a contact: each is looked at twice, so that a corner leaves the line

@@ -669,17 +669,15 @@ TEST(SphereSweep, WhatItLeavesBehindOrCullsAtItsEndIsNeverHitAndNeverOverlapped)
     EXPECT_GT(apart, test::scaled(20'000) / 40);
 }
 
-// A sweep that another contact has shortened finds the same earlier contacts.
-TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
+/// How often a contact was found by a shortened sweep, and how often one that comes later was not.
+struct Shortened {
     int kept = 0;
     int dropped = 0;
-    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
-        const SphereCase s = random_case(index);
+
+    /// latest: s, until which contacts matter.
+    void compare(const SphereCase& s, double latest) {
         const auto whole = contact_of(s);
-        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
         const auto& [a, b, c] = s.triangle;
-        const double random = RandomSequence(kSeed, 5, index).uniform();
-        const double latest = whole && index % 3 == 0 ? whole->time : random * s.path.duration;
         SphereSweep sweep(s.path, s.radius);
         sweep.shorten_to(latest);
         const auto found = sweep.first_contact(a, b, c);
@@ -693,15 +691,43 @@ TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
             ASSERT_GT(whole->time, latest);
             ++dropped;
         }
-        if (!found) continue;
+        if (!found) return;
         ASSERT_TRUE(whole.has_value());
         ASSERT_EQ(found->time, whole->time);
         ASSERT_EQ(found->normal, whole->normal);
         ASSERT_EQ(found->point, whole->point);
         ASSERT_EQ(found->feature, whole->feature);
     }
-    EXPECT_GT(kept, test::scaled(20'000) / 10);
-    EXPECT_GT(dropped, test::scaled(20'000) / 10);
+};
+
+// A sweep that another contact has shortened finds the same earlier contacts.
+TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
+    Shortened shortened;
+    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
+        const SphereCase s = random_case(index);
+        const auto whole = contact_of(s);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
+        const double random = RandomSequence(kSeed, 5, index).uniform();
+        ASSERT_NO_FATAL_FAILURE(shortened.compare(s, whole && index % 3 == 0 ? whole->time : random * s.path.duration));
+    }
+    EXPECT_GT(shortened.kept, test::scaled(20'000) / 10);
+    EXPECT_GT(shortened.dropped, test::scaled(20'000) / 10);
+}
+
+// Also one that forces would lead so far away that the slack of all of it is wider than what it comes near.
+TEST(SphereSweep, FindsTheSameBitsWhereItIsATinyPartOfItsPath) {
+    Shortened shortened;
+    for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
+        SphereCase s = random_case(index);
+        RandomSequence random(kSeed, 6, index);
+        const double near = s.path.duration;
+        s.path.duration *= std::exp2(10.0 + 25.0 * random.uniform());
+        s.path.end = s.path.position(s.path.duration);
+        SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
+        ASSERT_NO_FATAL_FAILURE(shortened.compare(s, near * random.uniform()));
+    }
+    EXPECT_GT(shortened.kept, test::scaled(20'000) / 10);
+    EXPECT_GT(shortened.dropped, test::scaled(20'000) / 10);
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
 }
 
+/// The slack of a whole path over that of what is left of it from which on a cull by the latter pays.
+constexpr double kWideSlack = 0x1p10;
+
 /// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
 int side_ahead(const std::array<DoubleDouble, 4>& height) {
     for (const DoubleDouble& coefficient : height) {
@@ -125,7 +128,23 @@ std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec
     return narrow_phase_contact(TrianglePlane(a, b, c));
 }
 
+/// Nothing is said of its chords.
+bool SphereSweep::stays_clear(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const double largest = std::max({max_abs(lower_), max_abs(upper_), max_abs(a), max_abs(b), max_abs(c)}) + radius_;
+    const double margin = kCandidateSlack * largest;
+    if (!(slack_ > kWideSlack * margin)) return false;
+    const auto is_apart_along = [&](const Vec3& away) {
+        for (int i = 0; i < hull_count_; ++i) {
+            if (!(distance_lower_bound(away, hull(i), a, b, c) > radius_ + margin)) return false;
+        }
+        return true;
+    };
+    return is_apart_along(separating_direction(hull(0), a, b, c)) ||
+           is_apart_along(separating_direction(hull(1), a, b, c));
+}
+
 std::optional<SphereContact> SphereSweep::narrow_phase_contact(const TrianglePlane& triangle) const {
+    if (stays_clear(triangle.a(), triangle.b(), triangle.c())) return std::nullopt;
     return SphereTriangleSweep(*this, triangle).first();
 }
 

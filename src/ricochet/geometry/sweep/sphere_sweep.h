@@ -80,6 +80,9 @@ private:
     [[nodiscard]] const Vec3& hull(int i) const { return hull_[static_cast<std::size_t>(i)]; }
     void update_bounds();
     [[nodiscard]] bool misses_box(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    /// True where the path until latest_ is tiny beside all of it and certainly meets nothing of the triangle: what
+    /// slack_ does not let cull is no contact.
+    [[nodiscard]] bool stays_clear(const Vec3& a, const Vec3& b, const Vec3& c) const;
     [[nodiscard]] bool misses_plane(const detail::FilteredCross& normal, const Vec3& a) const;
 
     Path path_;

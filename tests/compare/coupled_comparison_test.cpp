@@ -67,6 +67,30 @@ TEST(ComparisonOfSprings, ARopeThatDivergesDoesNotCompareAsFine) {
     EXPECT_THROW((void)compare_responses(exploding(), plan_of(exploding(), "exact", {0.02})), DivergedError);
 }
 
+/// What ends a comparison.
+std::string end_of_comparison(const ComparisonPlan& plan) {
+    try {
+        (void)compare_responses(rope(0.02, 5e4), plan);
+    } catch (const DivergedError& error) {
+        return error.what();
+    }
+    return "nothing";
+}
+
+// The reference's step is short enough for the springs; the rows' are not.
+TEST(ComparisonOfSprings, SaysWhichRowDivergesAndWhatToDo) {
+    ComparisonPlan plan = plan_of(rope(0.02, 5e4), "rollback", {0.02});
+    plan.reference_step = 5e-4;
+    const std::string row = end_of_comparison(plan);
+    EXPECT_NE(row.find("a row, rollback at 0.02 s, cannot be compared: at t = "), std::string::npos) << row;
+    EXPECT_NE(row.find("use a shorter time step"), std::string::npos) << row;
+    EXPECT_NE(row.find("--time-steps"), std::string::npos) << row;
+    EXPECT_EQ(row.find('\n'), std::string::npos) << row;
+    plan.reference_step = 0.01;
+    const std::string reference = end_of_comparison(plan);
+    EXPECT_NE(reference.find("the reference, exact at 0.01 s, cannot be compared: "), std::string::npos) << reference;
+}
+
 TEST(ComparisonOfSprings, ASolverOfTheUsersOwnStepsEveryRow) {
     const auto still = [] {
         SimulationSetup setup = rope(0.01);

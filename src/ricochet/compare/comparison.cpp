@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,7 @@ public:
     [[nodiscard]] bool is_uniform() const override { return force_->is_uniform(); }
     [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
     [[nodiscard]] bool is_conservative() const override { return force_->is_conservative(); }
+    [[nodiscard]] std::optional<Vec3> common_acceleration() const override { return force_->common_acceleration(); }
 
 private:
     std::shared_ptr<const Force> force_;
@@ -70,6 +72,20 @@ SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
 namespace {
 
 constexpr ResponseChoice kExact{ResponseKind::exact, false};
+
+/// Runs a part of a comparison, and says which one it was where it diverges. A timed run does what the measured one
+/// did.
+template <class Run>
+auto named(std::string_view part, const ResponseChoice& response, double time_step, const Run& run) {
+    try {
+        return run();
+    } catch (const DivergedError& error) {
+        throw DivergedError(
+            fmt::format("{}, {} at {} s, cannot be compared: {}; or compare other steps (--time-steps, "
+                        "--reference-step) or responses (--responses)",
+                        part, name_of(response), time_step, error.what()));
+    }
+}
 
 /// Works through a plan.
 class Comparer {
@@ -120,12 +136,14 @@ private:
 
     bool measure() {
         const double step = result_.plan.reference_step;
-        const auto reference = measure_run(setup_for(kExact, step), next_run(kExact, step, 0));
+        const auto reference = named("the reference", kExact, step,
+                                     [&] { return measure_run(setup_for(kExact, step), next_run(kExact, step, 0)); });
         if (!reference) return false;
         result_.reference = {reference->figures, energy_scale(reference->trace), reference->trace.has_potential};
         return std::all_of(result_.rows.begin(), result_.rows.end(), [&](ComparisonRow& row) {
-            const auto run =
-                measure_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, 0));
+            const auto run = named("a row", row.response, row.time_step, [&] {
+                return measure_run(setup_for(row.response, row.time_step), next_run(row.response, row.time_step, 0));
+            });
             if (!run) return false;
             row.figures = run->figures;
             row.errors = errors_against(run->trace, reference->trace);

@@ -940,6 +940,15 @@ class TranslationFrameMotion(Thing):
     _fixed = {"type": "translation"}
 
 
+class ScaleFrameMotion(Thing):
+    """A scale along the frame's axes, about its origin: of what comes after it and of all that stands on the frame. Colliders in it are meshes and boxes.
+
+    factor: The factor: a curve of numbers, or of [x, y, z]. Required.
+    """
+
+    _fixed = {"type": "scale"}
+
+
 class Gust(Thing):
     """The wind is multiplied by 1 + amplitude sin(2 pi (frequency t + phase)).
 
@@ -1096,6 +1105,23 @@ class Rotation(Thing):
 
     axis: Direction of the axis, of any length. Required.
     degrees: Angle. Unit: degrees. Required.
+    """
+
+
+class ScaleCurve(Thing):
+    """Factors keyed in time: a curve whose values are numbers or [x, y, z], all above 0.
+
+    keys: The keys in the order of time, at least one, each `{"time": ..., "value": ...}`. Required.
+    interpolation: What holds between two keys. Default: "linear".
+    ends: What holds before the first and after the last key. Default: "hold".
+    """
+
+
+class ScaleCurveKey(Thing):
+    """A factor at a time.
+
+    time: When; later than the key before. Unit: s. Required.
+    value: The factor then, or one for each axis. Required.
     """
 
 

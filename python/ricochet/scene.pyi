@@ -780,6 +780,13 @@ class TranslationFrameMotion(Thing):
         way: Any,
     ) -> None: ...
 
+class ScaleFrameMotion(Thing):
+    def __init__(
+        self,
+        *,
+        factor: Any,
+    ) -> None: ...
+
 class Gust(Thing):
     def __init__(
         self,
@@ -928,6 +935,23 @@ class Rotation(Thing):
         *,
         axis: Vector,
         degrees: float,
+    ) -> None: ...
+
+class ScaleCurve(Thing):
+    def __init__(
+        self,
+        *,
+        keys: Sequence[Any],
+        interpolation: Optional[str] = ...,
+        ends: Optional[str] = ...,
+    ) -> None: ...
+
+class ScaleCurveKey(Thing):
+    def __init__(
+        self,
+        *,
+        time: float,
+        value: Any,
     ) -> None: ...
 
 class SimulationOptions(Thing):

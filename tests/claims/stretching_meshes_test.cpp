@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/stretched_motion.h"
@@ -24,16 +25,23 @@
 namespace ricochet::testing {
 namespace {
 
-/// A mesh that is scaled, within a frame with some motions, until a time.
-MeshShape stretching(const TriangleMesh& mesh, const KeyedCurve<Vec3>& factors, std::vector<FrameMotion> motions,
-                     double end) {
-    FrameDescription frame;
-    frame.name = "frame";
-    frame.motions = std::move(motions);
+/// A mesh in the last of some frames, each of which stands on the one before, until a time.
+MeshShape stretching(const TriangleMesh& mesh, std::vector<FrameDescription> chain, double end) {
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+        chain[k].name = std::to_string(k);
+        if (k > 0) chain[k].parent = chain[k - 1].name;
+    }
+    const FrameTree frames(std::move(chain));
     MeshShape shape{std::make_shared<const TriangleMesh>(mesh), {}, "", {}};
     shape.motion =
-        std::make_shared<const MeshMotion>(stretched_motion(mesh.vertices, factors, FrameTree({frame}), 0, 0.0, end));
+        std::make_shared<const MeshMotion>(stretched_motion(mesh.vertices, frames, frames.size() - 1, 0.0, end));
     return shape;
+}
+
+FrameDescription frame_with(std::vector<FrameMotion> motions) {
+    FrameDescription frame;
+    frame.motions = std::move(motions);
+    return frame;
 }
 
 SimulationSetup setup_of(double time_step, double duration, const Material& material) {
@@ -95,7 +103,8 @@ TEST(AMeshBoxWhoseScaleChanges, ReflectsWhatIsInsideAsItsWallsMove) {
             SCOPED_TRACE(std::to_string(rate.x) + " " + std::to_string(radius));
             SimulationSetup setup = setup_of(0.07, end, {"", 1.0, 0.0});
             const KeyedCurve<Vec3> factors({{0.0, {1, 1, 1}}, {4.0, Vec3{1, 1, 1} + 4.0 * rate}});
-            setup.colliders = {{"box", stretching(box_mesh({-1, -1, -1}, {1, 1, 1}), factors, {}, 4.0), 0}};
+            setup.colliders = {
+                {"box", stretching(box_mesh({-1, -1, -1}, {1, 1, 1}), {frame_with({KeyedScale{factors}})}, 4.0), 0}};
             Particle particle;
             particle.position = start;
             particle.velocity = velocity;
@@ -131,18 +140,171 @@ TEST(AMeshBoxWhoseScaleChanges, ReflectsWhatIsInsideAsItsWallsMove) {
     }
 }
 
-/// Squash and stretch, while it tumbles and is carried to and fro.
+/// What falls on the upper side of a box in a frame that is turned by a quarter, in one that grows as rates say, from
+/// (0, 0, 1) on.
+struct Growing {
+    Vec3 rates{0.3, -0.2, 0.4};
+    Vec3 place{0.5, 0.25, 0.7};  // of the box, in what grows
+    double half = 0.5;
+
+    [[nodiscard]] SimulationSetup setup(const Material& material, double radius) const {
+        SimulationSetup setup = setup_of(0.05, 1.0, material);
+        FrameDescription lower =
+            frame_with({KeyedScale{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {2.0, Vec3{1, 1, 1} + 2.0 * rates}})}});
+        lower.translation = {0, 0, 1};
+        FrameDescription upper;
+        upper.translation = place;
+        upper.rotation_degrees = 90.0;
+        const TriangleMesh box = box_mesh({-half, -half, -half}, {half, half, half});
+        setup.colliders = {{"box", stretching(box, {lower, upper}, 2.0), 0}};
+        Particle particle;
+        particle.position = {0.8, 0.1, 3.0};
+        particle.velocity = {0, 0, -2.0};
+        particle.radius = radius;
+        setup.particles = {particle};
+        return setup;
+    }
+    /// When what falls touches it, s.
+    [[nodiscard]] double time(double radius) const {
+        const double top = place.z + half;
+        return (3.0 - radius - 1.0 - top) / (2.0 + rates.z * top);
+    }
+};
+
+TEST(ABoxInAChainOfScaledFrames, IsHitWhereItsSideIsAndThrowsOffWithTwiceItsSpeed) {
+    const Growing growing;
+    for (const double radius : {0.0, 0.1}) {
+        Simulation simulation(growing.setup({"", 1.0, 0.0}, radius));
+        std::vector<ContactRecord> records;
+        while (!simulation.finished()) {
+            simulation.step();
+            const auto some = simulation.contact_records();
+            records.insert(records.end(), some.begin(), some.end());
+        }
+        ASSERT_EQ(records.size(), 1U);
+        EXPECT_NEAR(records[0].time, growing.time(radius), 1e-14);
+        const double speed = growing.rates.z * 1.2;  // of the side, whose height in what grows is 1.2 m
+        EXPECT_LT(length(records[0].velocity_after - Vec3{0, 0, 2.0 * speed + 2.0}), 1e-13);
+        expect_sound(simulation);
+    }
+}
+
+// Where nothing rebounds and all friction holds, it has the velocity of the point that it hit: the rate of the scale
+// times where that is in what grows.
+TEST(ABoxInAChainOfScaledFrames, GivesWhatSticksTheVelocityOfTheVeryPoint) {
+    const Growing growing;
+    Simulation simulation(growing.setup({"", 0.0, 1e3}, 0.0));
+    std::vector<ContactRecord> records;
+    while (records.empty()) {
+        simulation.step();
+        const auto some = simulation.contact_records();
+        records.assign(some.begin(), some.end());
+    }
+    const double time = growing.time(0.0);
+    const Vec3 rates = growing.rates;
+    const Vec3 expected{rates.x * 0.8 / (1.0 + rates.x * time), rates.y * 0.1 / (1.0 + rates.y * time), rates.z * 1.2};
+    EXPECT_LT(length(records[0].velocity_after - expected), 1e-13);
+    // It goes on with that point.
+    while (!simulation.finished()) simulation.step();
+    const Vec3 start{0.8 / (1.0 + rates.x * time), 0.1 / (1.0 + rates.y * time), 1.2};
+    const Vec3 end = Vec3{0, 0, 1} + start + Vec3{rates.x * start.x, rates.y * start.y, rates.z * start.z};
+    EXPECT_LT(length(simulation.particles().position[0] - end), 1e-6);
+    expect_sound(simulation);
+}
+
+/// Spheres in a mesh that grows and turns, in one frame or in two.
+SimulationSetup turning_gas(bool in_two) {
+    SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.8, 0.2});
+    const KeyedScale growth{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {2.0, {1.4, 1.4, 1.4}}})};
+    std::vector<FrameDescription> chain{frame_with({Spin{{1, 1, 0}, in_two ? 50.0 : 80.0}, growth})};
+    if (in_two) chain.push_back(frame_with({Spin{{1, 1, 0}, 30.0}}));
+    setup.colliders = {{"box", stretching(box_mesh({-1, -1, -1}, {1, 1, 1}), std::move(chain), 1.5), 0}};
+    EmitterDescription emitter;
+    emitter.shape = SphereShape{{}, 0.5, false};
+    emitter.burst = 40;
+    emitter.speed = {2.0, 1.0};
+    emitter.radius = {0.05, 0.05};
+    setup.emitters.push_back(std::move(emitter));
+    return setup;
+}
+
+/// The first impact of each particle.
+std::vector<ContactRecord> first_impacts(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    std::vector<ContactRecord> first(40);
+    for (ContactRecord& record : first) record.time = -1.0;
+    while (!simulation.finished()) {
+        simulation.step();
+        for (const ContactRecord& record : simulation.contact_records()) {
+            if (first.at(record.particle).time < 0.0) first[record.particle] = record;
+        }
+    }
+    expect_sound(simulation);
+    return first;
+}
+
+// A scale by one factor and a turn about the same axis go together in any order.
+TEST(AMeshInAChainOfScaledFrames, IsHitAsInOneFrameThatMovesAsBothTogether) {
+    const std::vector<ContactRecord> chained = first_impacts(turning_gas(true));
+    const std::vector<ContactRecord> single = first_impacts(turning_gas(false));
+    int hits = 0;
+    for (std::size_t k = 0; k < chained.size(); ++k) {
+        hits += chained[k].time > 0.0 ? 1 : 0;
+        EXPECT_NEAR(chained[k].time, single[k].time, 1e-12) << k;
+        EXPECT_LT(length(chained[k].velocity_after - single[k].velocity_after), 1e-11) << k;
+    }
+    EXPECT_GT(hits, 20);
+}
+
+template <class Call>
+std::string refusal(const Call& call) {
+    try {
+        call();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// What deforms is said by stretched_motion(), and what is born keeps its size.
+TEST(WhatStandsInAScaledFrame, IsNoColliderAndNoEmitter) {
+    FrameDescription frame = frame_with({KeyedScale{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {1.0, {2, 2, 2}}})}});
+    frame.name = "lung";
+    const auto frames = std::make_shared<const FrameTree>(std::vector{frame});
+    SimulationSetup with_collider = setup_of(0.01, 1.0, {"", 1.0, 0.0});
+    with_collider.frames = frames;
+    with_collider.colliders = {{"box", CuboidShape{{1, 1, 1}, {}}, 0, "lung"}};
+    EXPECT_EQ(
+        refusal([&] { Simulation{std::move(with_collider)}; }),
+        "collider \"box\": frame: found lung, expected a frame without a scale: stretched_motion() says how a mesh "
+        "in it deforms");
+    EmitterDescription emitter;
+    emitter.name = "tap";
+    emitter.rate.mean = 1.0;
+    emitter.frames = frames;
+    SimulationSetup with_emitter = setup_of(0.01, 1.0, {"", 1.0, 0.0});
+    with_emitter.emitters = {emitter};
+    EXPECT_NE(
+        refusal([&] { Simulation{std::move(with_emitter)}; }).find("its frame is scaled, expected one that keeps"),
+        std::string::npos);
+}
+
+/// Squash and stretch, while it tumbles and is carried to and fro, in a frame that breathes.
 SimulationSetup squashed_gas(double duration, int count, double radius) {
     SimulationSetup setup = setup_of(0.01, duration, {"", 0.9, 0.3});
     setup.options.record_contacts = false;
+    const KeyedScale breath{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {0.3, {1.1, 0.9, 1.2}}, {0.6, {1, 1, 1}}},
+                                             Interpolation::spline, CurveEnds::repeat)};
     std::vector<CurveKey<Vec3>> keys;
     for (int k = 0; 0.2 * k < duration + 0.2; ++k) {
         const double s = k % 2 == 0 ? 0.8 : 1.25;
         keys.push_back({0.2 * k, {s, 1.0 / s, k % 3 == 0 ? 1.1 : 0.9}});
     }
     setup.colliders = {{"skin",
-                        stretching(sphere_mesh({}, 1.0, 2), KeyedCurve<Vec3>(std::move(keys)),
-                                   {Oscillation{{0.2, 0, 0.1}, 0.8}, Spin{{1, 2, 3}, 90.0}}, duration + 0.01),
+                        stretching(sphere_mesh({}, 1.0, 2),
+                                   {frame_with({Oscillation{{0.2, 0, 0.1}, 0.8}, breath}),
+                                    frame_with({Spin{{1, 2, 3}, 90.0}, KeyedScale{KeyedCurve<Vec3>(std::move(keys))}})},
+                                   duration + 0.01),
                         0}};
     EmitterDescription emitter;
     emitter.shape = SphereShape{{}, 0.5, false};
@@ -179,7 +341,7 @@ std::uint64_t hash_of(Simulation simulation) {
 SimulationSetup mixed_setup(const std::vector<std::size_t>& order) {
     SimulationSetup setup = squashed_gas(0.4, 150, 0.03);
     setup.forces.push_back(make_gravity({0, 0, -9.81}));
-    const KeyedCurve<Vec3> growth({{0.0, {1, 1, 1}}, {1.0, {1.5, 1.5, 0.8}}});
+    const KeyedScale growth{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {1.0, {1.5, 1.5, 0.8}}})};
     FrameDescription spinning;
     spinning.name = "spinning";
     spinning.translation = {4, 0, 0};
@@ -187,7 +349,7 @@ SimulationSetup mixed_setup(const std::vector<std::size_t>& order) {
     setup.frames = std::make_shared<const FrameTree>(std::vector{spinning});
     const std::vector<ColliderDescription> all{
         setup.colliders[0],
-        {"block", stretching(box_mesh({2, -1, -1}, {3, 1, 0}), growth, {}, 1.0), 0},
+        {"block", stretching(box_mesh({2, -1, -1}, {3, 1, 0}), {frame_with({growth})}, 1.0), 0},
         {"floor", PlaneShape{{0, 0, -3}, {0, 0, 1}}, 0},
         {"wheel", CuboidShape{{1, 1, 0.2}, {}}, 0, "spinning"}};
     setup.colliders.clear();

@@ -8,6 +8,7 @@
 
 #include "io/scene_errors.h"
 #include "ricochet/core/frame_tree.h"
+#include "ricochet/io/camera_frames.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
@@ -134,6 +135,85 @@ TEST(MovingScene, MakesWhatItsPosesScaleAMeshThatDeforms) {
     EXPECT_EQ(turned.motion->times().front(), 0.0);
     EXPECT_EQ(turned.motion->times().back(), 1.01);
     EXPECT_NO_THROW(Simulation(parse_scene(scene_of(growing), "s.json").setup));
+}
+
+/// Two frames, the lower of which is scaled; `more` is what stands in the upper one.
+std::string scaled_frames(const std::string& more) {
+    return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
+  "frames": {
+    "hand": {"parent": "arm", "translation": [1, 0, 0], "rotation": {"axis": [0, 0, 1], "degrees": 90}},
+    "arm": {"translation": [0, 0, 1], "motions": [{"type": "scale", "factor": {"interpolation": "linear", "keys": [
+      {"time": 0, "value": 1}, {"time": 1, "value": [2, 1, 3]}]}}]}},
+  )" + more +
+           "}";
+}
+
+TEST(MovingScene, MakesWhatStandsInScaledFramesAMeshThatDeforms) {
+    const SimulationSetup setup = parse_scene(scaled_frames(R"("colliders": [
+      {"name": "box", "type": "box", "size": [1, 1, 1], "frame": "hand"},
+      {"name": "press", "type": "box", "size": [1, 1, 1], "frame": "hand",
+       "motion": [{"time": 0}, {"time": 1, "position": [0, 0, 1], "scale": 2}]}])"),
+                                              "s.json")
+                                      .setup;
+    for (const ColliderDescription& collider : setup.colliders) EXPECT_EQ(collider.frame, "");
+    const auto& box = std::get<MeshShape>(setup.colliders[0].shape);
+    const auto& press = std::get<MeshShape>(setup.colliders[1].shape);
+    ASSERT_NE(box.motion, nullptr);
+    ASSERT_NE(press.motion, nullptr);
+    for (std::size_t v = 0; v < box.mesh->vertices.size(); ++v) {
+        const Vec3 p = box.mesh->vertices[v];
+        for (const double time : {0.0, 0.3, 0.9}) {
+            const Vec3 hand{1.0 - p.y, p.x, p.z};
+            const Vec3 expected{(1.0 + time) * hand.x, hand.y, 1.0 + (1.0 + 2.0 * time) * hand.z};
+            EXPECT_LT(length(box.motion->at(time).position(v) - expected), 1e-15) << time;
+            const Vec3 pressed{1.0 - (1.0 + time) * p.y, (1.0 + time) * p.x, time + (1.0 + time) * p.z};
+            const Vec3 both{(1.0 + time) * pressed.x, pressed.y, 1.0 + (1.0 + 2.0 * time) * pressed.z};
+            EXPECT_LT(length(press.motion->at(time).position(v) - both), 1e-4 * std::sqrt(3.0)) << time;
+        }
+    }
+}
+
+TEST(MovingScene, StandsACameraWhereThePointsOfAScaledFrameAre) {
+    SceneDescription scene = parse_scene(scaled_frames(R"("particles": [{"position": [0, 0, 9]}],
+      "camera": {"position": [1, 0, 0], "target": [0, 0, 0], "frame": "hand"})"),
+                                         "s.json");
+    Simulation simulation(std::move(scene.setup));
+    simulation.advance(simulation.step_count());
+    const CameraPlace place = camera_place(*scene.camera, {0, 0, 1}, scene.camera->frames.get(), simulation);
+    EXPECT_LT(length(place.position - Vec3(2, 1, 1)), 1e-15);
+    EXPECT_LT(length(place.target - Vec3(2, 0, 1)), 1e-15);
+}
+
+TEST(MovingScene, SaysWhatCannotStandInScaledFrames) {
+    for (const auto& [type, measures] : {std::pair{"sphere", R"("radius": 1)"},
+                                         {"cylinder", R"("radius": 1, "height": 1)"},
+                                         {"plane", R"("normal": [0, 0, 1])"}}) {
+        const std::string collider =
+            R"("colliders": [{"frame": "hand", "type": ")" + std::string(type) + "\", " + measures;
+        EXPECT_EQ(errors_of(scaled_frames(collider + "}]")),
+                  Lines{std::string("colliders[0].frame: a ") + type +
+                        " keeps its size: the frame \"hand\" is scaled, which moves the vertices of meshes and boxes, "
+                        "expected one of these, or a frame without a \"scale\""});
+    }
+    EXPECT_EQ(errors_of(scaled_frames(R"("emitters": [{"type": "point", "rate": 1, "frame": "hand"}])")),
+              Lines{"emitters[0].frame: the frame is scaled, and what is born in it keeps its size; expected a frame "
+                    "without a \"scale\", its own or of one that it stands on"});
+    EXPECT_EQ(errors_of(scaled_frames(R"("colliders": [{"name": "box", "type": "box", "size": [1, 1, 1],
+                                          "frame": "hand"}],
+                                         "emitters": [{"type": "mesh", "collider": "box", "rate": 1}])")),
+              Lines{"emitters[0].collider: 'box' is a mesh that deforms, expected one that keeps its shape"});
+    const auto with_factor = [](const std::string& factor) {
+        return errors_of(R"({"ricochet": 1, "frames": {"f": {"motions": [{"type": "scale")" + factor +
+                         R"(}]}}, "particles": [{"position": [0, 0, 1]}]})");
+    };
+    EXPECT_EQ(
+        with_factor(R"(, "factor": {"keys": [{"time": 0, "value": [1, 0, 1]}]})"),
+        Lines{"frames.f.motions[0].factor.keys[0].value: found 0 in the list, expected a number above 0, or three "
+              "in [x, y, z]"});
+    EXPECT_EQ(with_factor(""), Lines{"frames.f.motions[0].factor: missing, expected an object {...} (scale curve)"});
+    EXPECT_EQ(with_factor(R"(, "factor": {"keys": [{"time": 0}]})"),
+              Lines{"frames.f.motions[0].factor.keys[0].value: missing, expected a number above 0, or three in "
+                    "[x, y, z]"});
 }
 
 TEST(MovingScene, SaysWhatCannotBeScaledInTime) {

@@ -57,6 +57,10 @@ void move(MovingPose& pose, const Oscillation& motion, double time) {
     shift(pose, wave.value * size, wave.rate * size, wave.second * size);
 }
 
+void move(MovingPose& pose, const KeyedScale& motion, double time) {
+    scale(pose.world_from_frame, motion.factors.value(time));
+}
+
 DerivativeBounds wave_bounds(double amplitude, double frequency) {
     const double pulsation = 2.0 * std::numbers::pi * std::fabs(frequency);
     DerivativeBounds bounds{amplitude};
@@ -81,11 +85,15 @@ struct BoundsOf {
     void operator()(const Spin& motion) const { turn({0.0, std::fabs(motion.rate), 0.0, 0.0, 0.0}); }
     void operator()(const Swing& motion) const { turn(wave_bounds(std::fabs(motion.amplitude), motion.frequency)); }
     void operator()(const Oscillation& motion) const { shift(wave_bounds(length(motion.amplitude), motion.frequency)); }
+    void operator()(const KeyedScale& motion) const {
+        bounds.rotation = product(bounds.rotation, motion.factors.bounds(from, to));
+    }
 };
 
 double next_key_of(const FrameMotion& motion, double time) {
     if (const auto* turning = std::get_if<KeyedRotation>(&motion)) return turning->degrees.next_key(time);
     if (const auto* moving = std::get_if<KeyedTranslation>(&motion)) return moving->path.next_key(time);
+    if (const auto* growing = std::get_if<KeyedScale>(&motion)) return growing->factors.next_key(time);
     return std::numeric_limits<double>::infinity();
 }
 
@@ -108,6 +116,7 @@ struct HashOf {
         add(motion.degrees);
     }
     void operator()(const KeyedTranslation& motion) const { add(motion.path); }
+    void operator()(const KeyedScale& motion) const { add(motion.factors); }
     void operator()(const Spin& motion) const {
         hash.add(motion.axis);
         hash.add(motion.rate);
@@ -121,6 +130,18 @@ struct HashOf {
         for (const double number : {motion.frequency, motion.phase}) hash.add(number);
     }
 };
+
+void require_factors(const FrameDescription& frame, const KeyedScale& motion) {
+    for (const CurveKey<Vec3>& key : motion.factors.keys()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (key.value[axis] > 0.0) continue;
+            throw InputError(fmt::format("frame '{}': found the factor {} of a scale, expected one above 0", frame.name,
+                                         key.value[axis]));
+        }
+    }
+}
+
+bool is_scale(const FrameMotion& motion) { return std::holds_alternative<KeyedScale>(motion); }
 
 // Checks a frame by itself; axes become unit vectors.
 void prepare(FrameDescription& frame) {
@@ -146,6 +167,8 @@ void prepare(FrameDescription& frame) {
             detail::require_finite(swing->amplitude, of_frame("a motion's amplitude"), "degrees");
         } else if (const auto* way = std::get_if<Oscillation>(&motion)) {
             detail::require_finite(way->amplitude, of_frame("a motion's amplitude"), "m");
+        } else if (const auto* growth = std::get_if<KeyedScale>(&motion)) {
+            require_factors(frame, *growth);
         }
     }
 }
@@ -208,6 +231,9 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
         std::vector<std::size_t> chain;
         for (std::optional<std::size_t> k = i; k; k = place_of(frames_, frames_[*k].parent)) chain.push_back(*k);
         std::reverse(chain.begin(), chain.end());
+        is_scaled_.push_back(std::any_of(chain.begin(), chain.end(), [&](std::size_t k) {
+            return std::any_of(frames_[k].motions.begin(), frames_[k].motions.end(), is_scale);
+        }));
         chains_.push_back(std::move(chain));
     }
 }
@@ -240,11 +266,27 @@ const FrameDescription& FrameTree::description(std::size_t frame) const {
     return frames_[frame];
 }
 
+bool FrameTree::is_scaled(std::size_t frame) const {
+    require_index(frame, size(), "frame");
+    return is_scaled_[frame];
+}
+
 MovingPose FrameTree::at(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
+    if (is_scaled_[frame]) {
+        throw InputError(
+            fmt::format("frame '{}': it is scaled, expected one that keeps its size", frames_[frame].name));
+    }
     MovingPose pose;
     for (const std::size_t k : chains_[frame]) step_into(pose, k, time);
     return pose;
+}
+
+AffineMap FrameTree::map(std::size_t frame, double time) const {
+    require_index(frame, size(), "frame");
+    MovingPose pose;
+    for (const std::size_t k : chains_[frame]) step_into(pose, k, time);
+    return pose.world_from_frame;
 }
 
 MotionBounds FrameTree::bounds(std::size_t frame, double from, double to) const {

@@ -48,7 +48,11 @@ struct Oscillation {
     double frequency = 0.0;  ///< Hz
     double phase = 0.0;      ///< degrees
 };
-using FrameMotion = std::variant<KeyedRotation, KeyedTranslation, Spin, Swing, Oscillation>;
+/// A scale along the frame's axes, about its origin. What comes after it, and what stands on the frame, is scaled too.
+struct KeyedScale {
+    KeyedCurve<Vec3> factors;  ///< all above 0 at keys
+};
+using FrameMotion = std::variant<KeyedRotation, KeyedTranslation, Spin, Swing, Oscillation, KeyedScale>;
 
 /// One frame as it stands in its parent: moved, turned, and then moved by its motions one after the other, each in the
 /// axes that those before it have led to.
@@ -85,7 +89,8 @@ class FrameTree {
 public:
     FrameTree() = default;
     /// Throws InputError, naming the frame, for a name that is empty or taken, an unknown parent, parents that lead
-    /// back, an axis without length, an offset that is not finite, or a driven frame that has a parent or motions.
+    /// back, an axis without length, an offset that is not finite, factors that are not above 0, or a driven frame that
+    /// has a parent or motions.
     explicit FrameTree(std::vector<FrameDescription> frames);
 
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
@@ -93,9 +98,14 @@ public:
     [[nodiscard]] const FrameDescription& description(std::size_t frame) const;
     /// The number of the frame of that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-    /// The frame's pose and motion at a time (s).
+    /// True where its own motions, or those of a frame that it stands on, have a scale: it is no rigid frame.
+    [[nodiscard]] bool is_scaled(std::size_t frame) const;
+    /// The pose and motion, at a time (s), of a frame that is not scaled; throws InputError for one that is.
     [[nodiscard]] MovingPose at(std::size_t frame, double time) const;
-    /// Bounds of its motion over [from, to], s; at keys within, of what is on both sides of them.
+    /// Where the points of any frame are at a time (s), with all scales.
+    [[nodiscard]] AffineMap map(std::size_t frame, double time) const;
+    /// Bounds of its motion over [from, to], s, its scales counted as part of the rotation; at keys within, of what is
+    /// on both sides of them.
     [[nodiscard]] MotionBounds bounds(std::size_t frame, double from, double to) const;
     /// The first time after `time`, s, at which a curve of it or of the frames that it stands on has a key: derivatives
     /// may jump there; infinite when there is none.
@@ -114,6 +124,7 @@ private:
     std::vector<FrameDescription> frames_;
     std::vector<std::vector<BodyPath>> paths_;      // one list a frame; empty but for driven ones that have been set
     std::vector<std::vector<std::size_t>> chains_;  // of each frame: from the one that stands in the world to itself
+    std::vector<bool> is_scaled_;                   // one a frame
 };
 
 }  // namespace ricochet

@@ -44,6 +44,9 @@ void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate = {}, const Ve
 /// Turns a frame about one of its own axes, of unit length, by an angle in degrees with its derivatives.
 void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate = 0.0, double second = 0.0);
 
+/// Scales the map of a frame along its own axes; what the pose says of its motion holds no longer.
+void scale(AffineMap& map, const Vec3& factors);
+
 /// Bounds of the matrix of a turn about a fixed axis by an angle with these bounds, degrees.
 [[nodiscard]] DerivativeBounds turn_bounds(DerivativeBounds degrees);
 

@@ -81,6 +81,8 @@ void check(const EmitterDescription& emitter) {
             emitter, "every radius must be >= 0 and at most 1e75 m");
     const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;  // none: the world alone
     require(emitter.frame < frames, emitter, "there is no such frame");
+    require(!emitter.frames || !emitter.frames->is_scaled(emitter.frame), emitter,
+            "its frame is scaled, expected one that keeps its size");
     require(emitter.lifetime.mean >= 0.0 && is_spread(emitter.lifetime), emitter, "the lifetime must be >= 0 s");
     for (const AttributeSpread& attribute : emitter.attributes) {
         const Vec3& spread = attribute.spread;

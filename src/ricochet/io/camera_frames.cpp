@@ -10,7 +10,7 @@ AffineMap world_from_frame(const std::string& name, const FrameTree* frames, con
         if (body.frame == name) return body.world_from_frame;
     }
     const auto frame = frames == nullptr ? std::nullopt : frames->find(name);
-    return frame ? frames->at(*frame, simulation.time()).world_from_frame : AffineMap{};
+    return frame ? frames->map(*frame, simulation.time()) : AffineMap{};
 }
 
 std::optional<Vec3> vector_field(const VtkPolyData& frame, const char* name) {

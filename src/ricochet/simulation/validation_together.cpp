@@ -68,6 +68,10 @@ void validate_moving_colliders(const SimulationSetup& setup) {
         if (!setup.frames || !setup.frames->find(collider.frame)) {
             subject.refuse("frame", collider.frame, "the name of a frame of the setup");
         }
+        if (setup.frames->is_scaled(*setup.frames->find(collider.frame))) {
+            subject.refuse("frame", collider.frame,
+                           "a frame without a scale: stretched_motion() says how a mesh in it deforms");
+        }
         if (setup.options.response != ResponseKind::exact) {
             subject.refuse("frame", collider.frame,
                            fmt::format("none: the {} response knows no colliders that move, only exact does",

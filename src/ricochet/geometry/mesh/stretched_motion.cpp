@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/memory_limit.h"
 
 namespace ricochet {
@@ -19,29 +21,36 @@ constexpr double kInside = 1e-9;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }
 
-void require_factors(const KeyedCurve<Vec3>& factors) {
-    for (const CurveKey<Vec3>& key : factors.keys()) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(key.value[axis] > 0.0)) {
-                refuse("found the factor " + std::to_string(key.value[axis]) + ", expected one above 0");
-            }
-        }
-    }
-}
-
-void require_keyed(const FrameTree& frames, std::size_t frame) {
+/// Of a frame and those that it stands on: the curves of their factors.
+std::vector<const KeyedCurve<Vec3>*> factors_of(const FrameTree& frames, std::size_t frame) {
+    std::vector<const KeyedCurve<Vec3>*> all;
     for (std::optional<std::size_t> k = frame; k; k = frames.find(frames.description(*k).parent)) {
         const FrameDescription& link = frames.description(*k);
         if (link.is_driven) refuse("the frame '" + link.name + "' is driven, expected one whose motion is given");
+        for (const FrameMotion& motion : link.motions) {
+            if (const auto* scale = std::get_if<KeyedScale>(&motion)) all.push_back(&scale->factors);
+        }
+    }
+    return all;
+}
+
+/// Curves can go below their keys.
+void require_size(const std::vector<const KeyedCurve<Vec3>*>& all, double time) {
+    for (const KeyedCurve<Vec3>* factors : all) {
+        const Vec3 factor = factors->value(time);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (factor[axis] > 0.0) continue;
+            refuse("found the factor " + std::to_string(factor[axis]) + " at " + std::to_string(time) +
+                   " s, expected one above 0 at all times");
+        }
     }
 }
 
 /// How a mesh moves, and how far from it straight lines can be.
 class Stretching {
 public:
-    Stretching(std::span<const Vec3> vertices, const KeyedCurve<Vec3>& factors, const FrameTree& frames,
-               std::size_t frame)
-        : vertices_(vertices), factors_(factors), frames_(frames), frame_(frame) {
+    Stretching(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame)
+        : vertices_(vertices), frames_(frames), frame_(frame), factors_(factors_of(frames, frame)) {
         Box3 box;
         for (const Vec3& v : vertices) {
             box.include(v);
@@ -50,48 +59,41 @@ public:
         if (!vertices.empty()) tolerance_ = kStretchDeviation * length(box.size());
     }
 
-    [[nodiscard]] double next_key(double time) const {
-        return std::min(frames_.next_key(frame_, time), factors_.next_key(time));
-    }
+    [[nodiscard]] double next_key(double time) const { return frames_.next_key(frame_, time); }
 
     /// How many pieces the time between two keys is cut into.
     [[nodiscard]] double pieces(double begin, double end) const {
         const double inside = kInside * (end - begin);
         const MotionBounds bounds = frames_.bounds(frame_, begin + inside, end - inside);
-        const DerivativeBounds linear = product(bounds.rotation, factors_.bounds(begin + inside, end - inside));
-        const double second = bounds.origin[2] + farthest_ * linear[2];
+        const double second = bounds.origin[2] + farthest_ * bounds.rotation[2];
         if (!(second > 0.0)) return 1.0;
         return std::max(1.0, std::ceil((end - begin) * std::sqrt(second / (8.0 * tolerance_))));
     }
 
     [[nodiscard]] std::vector<Vec3> positions_at(double time) const {
-        const MovingPose pose = frames_.at(frame_, time);
-        const Vec3 factor = factors_.value(time);
+        require_size(factors_, time);
+        const AffineMap map = frames_.map(frame_, time);
         std::vector<Vec3> positions;
         positions.reserve(vertices_.size());
-        for (const Vec3& v : vertices_) {
-            positions.push_back(pose.point({factor.x * v.x, factor.y * v.y, factor.z * v.z}));
-        }
+        for (const Vec3& v : vertices_) positions.push_back(map.point(v));
         return positions;
     }
 
 private:
     std::span<const Vec3> vertices_;
-    const KeyedCurve<Vec3>& factors_;
     const FrameTree& frames_;
     std::size_t frame_;
+    std::vector<const KeyedCurve<Vec3>*> factors_;
     double farthest_ = 0.0;   // m, from the frame's origin
     double tolerance_ = 0.0;  // m
 };
 
 }  // namespace
 
-MeshMotion stretched_motion(std::span<const Vec3> vertices, const KeyedCurve<Vec3>& factors, const FrameTree& frames,
-                            std::size_t frame, double begin, double end) {
+MeshMotion stretched_motion(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame, double begin,
+                            double end) {
     if (!(begin < end)) refuse("it ends before it begins, expected a later end");
-    require_factors(factors);
-    require_keyed(frames, frame);
-    const Stretching stretching(vertices, factors, frames, frame);
+    const Stretching stretching(vertices, frames, frame);
     std::vector<double> times{begin};
     double keys = 1.0;
     for (double from = begin; from < end;) {

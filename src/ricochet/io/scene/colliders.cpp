@@ -221,7 +221,7 @@ private:
         }
     }
 
-    // The name of the frame that it stands in; its own keys make one more, or where they scale it a mesh that deforms.
+    // The name of the frame that it stands in; its own keys make one more. What is scaled is a mesh that deforms.
     std::string frame_of(const ObjectView& view, ColliderDescription& collider) {
         if (view.has("deformation")) {
             require_exact(view);
@@ -238,12 +238,13 @@ private:
             context_.error(view, parent.empty() ? "motion" : "frame",
                            "particles that a flow carries know no colliders that move, expected none");
         }
-        if (!view.has("motion")) return parent;
-        FrameDescription frame = frame_through(view.objects("motion"), context_.diagnostics());
+        FrameDescription frame;
+        if (view.has("motion")) frame = frame_through(view.objects("motion"), context_.diagnostics());
         frame.name = "motion of " + collider.name;
         while (scene_frames_.find(frame.name)) frame.name += "'";
         frame.parent = parent;
         if (stretch(context_, view, setup_.options, scene_frames_, frame, collider)) return {};
+        if (!view.has("motion")) return parent;
         frames_.push_back(frame);
         return frame.name;
     }
@@ -315,8 +316,7 @@ const ObjectSpec& collider_spec() {
          {"motion", ValueType::list,
           "A frame of its own: poses in the order of time, at least one, each `{\"time\": ..., \"position\": ..., "
           "\"rotation\": ..., \"scale\": ...}`, within `frame` where that is given too. The collider's own position "
-          "and rotation are "
-          "within that.",
+          "and rotation are within that.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         shapes());
     return spec;

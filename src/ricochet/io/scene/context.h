@@ -140,6 +140,8 @@ template <class Struct>
 [[nodiscard]] const ObjectSpec& number_curve_spec();
 /// The same with "value": [x, y, z].
 [[nodiscard]] const ObjectSpec& vector_curve_spec();
+/// The same with "value": a factor above 0, or [x, y, z] of these.
+[[nodiscard]] const ObjectSpec& scale_curve_spec();
 /// The curve of an object of number_curve_spec(). What is wrong is reported with its path ("frames.arm.motions[0]"),
 /// and a constant zero returned.
 [[nodiscard]] KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics);
@@ -180,8 +182,8 @@ private:
 /// What a collider's key "deformation" says; null pointer where there is none, or after reporting.
 [[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
-/// Where poses of a collider scale it, makes it the mesh that deforms so, within its own frame, which is not one of
-/// `frames`; false where they do not. Reports shapes that keep their size.
+/// Where its own frame, which is not one of `frames`, or one that this stands on, scales a collider, makes it the mesh
+/// that deforms so; false where none does. Reports shapes that keep their size.
 [[nodiscard]] bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options,
                            const FrameTree& frames, const FrameDescription& own, ColliderDescription& collider);
 
@@ -197,8 +199,6 @@ void build_attributes(const SceneContext& context, SimulationSetup& setup);
 /// The keys of a frame that a collider has for itself, and what they say.
 [[nodiscard]] const ObjectSpec& key_pose_spec();
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
-/// The factors along the frame's axes that these keys say; nothing where none has `scale`.
-[[nodiscard]] std::optional<KeyedCurve<Vec3>> scale_through(const std::vector<ObjectView>& keys);
 /// True when a key "frame" names one of them; reports otherwise.
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
 /// In setup.frames.

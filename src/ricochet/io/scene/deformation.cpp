@@ -6,8 +6,10 @@
 #include <charconv>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "ricochet/core/memory_limit.h"
@@ -214,6 +216,22 @@ std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape
     return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
 }
 
+/// Why a shape cannot be scaled in time.
+std::string without_vertices(std::string_view type, bool by_poses, const std::string& frame) {
+    if (by_poses) {
+        return fmt::format(
+            "a {} keeps its size: poses with \"scale\" move the vertices of meshes and boxes, expected one of these, "
+            "or "
+            "no \"scale\"",
+            type);
+    }
+    return fmt::format(
+        "a {} keeps its size: the frame \"{}\" is scaled, which moves the vertices of meshes and boxes, expected one "
+        "of "
+        "these, or a frame without a \"scale\"",
+        type, frame);
+}
+
 /// Outside of its poses it stands still, unless what it stands in moves.
 std::pair<double, double> times_of(const std::vector<ObjectView>& poses) {
     const double begin = poses.front().node("time").number().value_or(0.0);
@@ -276,31 +294,32 @@ std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const Ob
 
 bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options, const FrameTree& frames,
              const FrameDescription& own, ColliderDescription& collider) {
-    const std::vector<ObjectView> poses = view.objects("motion");
-    const auto factors = scale_through(poses);
-    if (!factors || context.failed()) return factors.has_value();
+    const auto parent = frames.find(own.parent);
+    const bool is_in_scaled = parent && frames.is_scaled(*parent);
+    const bool is_scaled = std::any_of(own.motions.begin(), own.motions.end(), [](const FrameMotion& motion) {
+        return std::holds_alternative<KeyedScale>(motion);
+    });
+    if ((!is_scaled && !is_in_scaled) || context.failed()) return is_scaled || is_in_scaled;
+    const char* const key = is_scaled ? "motion" : "frame";
     const std::shared_ptr<const TriangleMesh> mesh = mesh_within_frame(collider.shape);
     if (mesh == nullptr) {
-        context.error(view, "motion",
-                      fmt::format("a {} keeps its size: poses with \"scale\" move the vertices of meshes and boxes, "
-                                  "expected one of these, or no \"scale\"",
-                                  view.type()));
+        context.error(view, key, without_vertices(view.type(), is_scaled, own.parent));
         return true;
     }
     try {
-        const auto [begin, end] = own.parent.empty() ? times_of(poses) : times_of(options);
+        const auto [begin, end] = own.parent.empty() ? times_of(view.objects("motion")) : times_of(options);
         std::vector<FrameDescription> all{own};
         for (std::size_t k = 0; k < frames.size(); ++k) all.push_back(frames.description(k));
         MeshShape shape{mesh, {}, "", {}};
         shape.motion = std::make_shared<const MeshMotion>(
-            stretched_motion(mesh->vertices, *factors, FrameTree(std::move(all)), 0, begin, end));
+            stretched_motion(mesh->vertices, FrameTree(std::move(all)), 0, begin, end));
         if (const auto* was = std::get_if<MeshShape>(&collider.shape)) {
             shape.file = was->file;
             shape.triangle_materials = was->triangle_materials;
         }
         collider.shape = std::move(shape);
     } catch (const InputError& problem) {
-        context.error(view, "motion", problem.what());
+        context.error(view, key, problem.what());
     }
     return true;
 }

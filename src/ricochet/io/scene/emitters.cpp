@@ -248,6 +248,11 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
     }
     emitter.frames = setup.frames;
     emitter.frame = *setup.frames->find(view.text("frame"));
+    if (!context.failed() && setup.frames->is_scaled(emitter.frame)) {
+        context.error(view, "frame",
+                      "the frame is scaled, and what is born in it keeps its size; expected a frame without a "
+                      "\"scale\", its own or of one that it stands on");
+    }
 }
 
 double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }

@@ -80,10 +80,30 @@ KeyedCurve<Value> curve_of(const ObjectView& view, Diagnostics& diagnostics) {
     }
 }
 
+// Where something was refused, nothing is scaled.
+KeyedCurve<Vec3> scale_curve_of(const ObjectView& view, Diagnostics& diagnostics) {
+    KeyedCurve<Vec3> curve = curve_of<Vec3>(view, diagnostics);
+    return diagnostics.failed() ? KeyedCurve<Vec3>({1, 1, 1}) : curve;
+}
+
 // A pose of a collider, with its size.
 struct ScaledPose : KeyPose {
     Vec3 scale{1, 1, 1};
 };
+
+bool has_scale(const std::vector<ObjectView>& poses) {
+    return std::any_of(poses.begin(), poses.end(), [](const ObjectView& view) { return view.has("scale"); });
+}
+
+// The factors along the frame's axes that poses say.
+KeyedCurve<Vec3> scale_through(const std::vector<ObjectView>& poses) {
+    std::vector<CurveKey<Vec3>> keys;
+    for (const ObjectView& view : poses) {
+        const auto pose = view.read<ScaledPose>();
+        keys.push_back({pose.time, pose.scale});
+    }
+    return KeyedCurve<Vec3>(std::move(keys));
+}
 
 const ObjectSpec& motion_spec() {
     using Turn = KeyedRotation;
@@ -111,7 +131,12 @@ const ObjectSpec& motion_spec() {
               {"phase", &Oscillation::phase, kCoordinate, "degrees", "Of the sine at 0 s."}}),
          variant<Unbound>("translation", "A translation along a curve.",
                           {{"way", ValueType::object, "Where the origin goes: a curve of [x, y, z].",
-                            &vector_curve_spec(), Unit{"m"}, kRequired}})});
+                            &vector_curve_spec(), Unit{"m"}, kRequired}}),
+         variant<Unbound>("scale",
+                          "A scale along the frame's axes, about its origin: of what comes after it and of all that "
+                          "stands on the frame. Colliders in it are meshes and boxes.",
+                          {{"factor", ValueType::object, "The factor: a curve of numbers, or of [x, y, z].",
+                            &scale_curve_spec(), kRequired}})});
     return spec;
 }
 
@@ -132,6 +157,8 @@ FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
             frame.motions.emplace_back(motion.read<Oscillation>());
         } else if (motion.type() == "translation") {
             frame.motions.emplace_back(KeyedTranslation{vector_curve_of(motion.object("way"), diagnostics)});
+        } else if (motion.type() == "scale" && motion.has("factor")) {
+            frame.motions.emplace_back(KeyedScale{scale_curve_of(motion.object("factor"), diagnostics)});
         }
     }
     return frame;
@@ -170,6 +197,19 @@ const ObjectSpec& vector_curve_spec() {
     static const ObjectSpec spec =
         object("vector curve", "A vector keyed in time: a curve whose values are [x, y, z].",
                curve_fields<Vec3>(curve_key_spec<Vec3>("vector curve key", "A vector at a time.")));
+    return spec;
+}
+
+const ObjectSpec& scale_curve_spec() {
+    using K = CurveKey<Vec3>;
+    static const ObjectSpec key =
+        object<K>("scale curve key", "A factor at a time.",
+                  {{"time", &K::time, kCoordinate, "s", "When; later than the key before.", kRequired},
+                   {"value", &K::value, positive_up_to(kLargestCoordinate), "",
+                    "The factor then, or one for each axis.", ValueType::scale, kRequired}});
+    static const ObjectSpec spec =
+        object("scale curve", "Factors keyed in time: a curve whose values are numbers or [x, y, z], all above 0.",
+               curve_fields<Vec3>(key));
     return spec;
 }
 
@@ -252,20 +292,11 @@ FrameDescription frame_through(const std::vector<ObjectView>& views, Diagnostics
     for (const ObjectView& view : views) poses.push_back(view.read<ScaledPose>());
     try {
         frame.motions = motions_through(poses);
+        if (has_scale(views)) frame.motions.emplace_back(KeyedScale{scale_through(views)});
     } catch (const InputError& problem) {
         diagnostics.error(views.front().location(), views.front().path(), problem.what());
     }
     return frame;
-}
-
-std::optional<KeyedCurve<Vec3>> scale_through(const std::vector<ObjectView>& views) {
-    if (std::none_of(views.begin(), views.end(), [](const ObjectView& view) { return view.has("scale"); })) return {};
-    std::vector<CurveKey<Vec3>> keys;
-    for (const ObjectView& view : views) {
-        const auto pose = view.read<ScaledPose>();
-        keys.push_back({pose.time, pose.scale});
-    }
-    return KeyedCurve<Vec3>(std::move(keys));
 }
 
 }  // namespace ricochet::detail

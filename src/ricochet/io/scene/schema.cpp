@@ -400,6 +400,7 @@ std::string scene_reference() {
     text += object_section("deformation of a mesh", detail::deformation_spec());
     text += object_section("curve", detail::number_curve_spec());
     text += object_section("vector curve", detail::vector_curve_spec());
+    text += object_section("scale curve", detail::scale_curve_spec());
     return text + kTables + std::string(kNotBuilt);
 }
 

@@ -8,12 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "claims/moving_scene.h"
 #include "ricochet/core/random.h"
-#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
@@ -164,7 +164,7 @@ Budget budget_of(const Simulation& simulation) {
 }
 
 /// A hollow box, free in space, with elastic points in it that are as heavy as it over `ratio`.
-Simulation rattle(double ratio, double step, const SymmetricMatrix& shape) {
+Simulation rattle(double ratio, std::uint64_t seed, double step, const SymmetricMatrix& shape) {
     FrameDescription frame = frame_of("box", {});
     frame.is_driven = true;
     SimulationSetup setup = setup_of({frame}, {{"box", CuboidShape{{1, 1, 1}, {}}, 0, "box"}}, step, 6.0);
@@ -174,7 +174,7 @@ Simulation rattle(double ratio, double step, const SymmetricMatrix& shape) {
     body.inertia = body.mass * shape;
     body.angular_velocity = {0.4, 0.8, -0.3};
     setup.bodies = {body};
-    RandomSequence random(12, 1, 0);
+    RandomSequence random(seed, 1, 0);
     for (int k = 0; k < 20; ++k) {
         Particle particle = particle_of(0.4 * random.uniform() * random.unit_vector(), 8.0 * random.unit_vector());
         particle.mass = 0.1;
@@ -183,38 +183,26 @@ Simulation rattle(double ratio, double step, const SymmetricMatrix& shape) {
     return Simulation(std::move(setup));
 }
 
-// Energy may be lost, where a point waits for a cube that it has pushed away; it does not grow, but by what the cube's
-// centre moves between a hit and the end of the part of the step, where the cube takes it.
+// An elastic hit is a part of the step of its own, which ends a billionth of the time to the next hit later, though it
+// lasts a millionth of the step at least: so much of the energy of a hit can come in or be lost.
 TEST(AThousandElasticHits, OnAFreeCubeKeepEnergyMomentumAndAngularMomentum) {
-    for (const double ratio : {1.0, 10.0, 1000.0}) {
-        SCOPED_TRACE(ratio);
-        Simulation simulation = rattle(ratio, 0.02, {0.2, 0.2, 0.2, 0.0, 0.0, 0.0});
+    for (const auto& [ratio, seed] : {std::pair(1.0, 12), {1.0, 4}, {0.3, 2}, {10.0, 12}, {1000.0, 12}}) {
+        SCOPED_TRACE(std::to_string(ratio) + " " + std::to_string(seed));
+        Simulation simulation = rattle(ratio, static_cast<std::uint64_t>(seed), 0.02, {0.2, 0.2, 0.2, 0.0, 0.0, 0.0});
         const Budget first = budget_of(simulation);
         const double scale = 20.0 * 0.1 * 8.0;  // kg m/s
         Budget before = first;
         double most = 0.0;
-        double bound = 1e-12 * first.energy;
         while (!simulation.finished()) {
             simulation.step();
             const Budget now = budget_of(simulation);
             ASSERT_LT(length(now.momentum - before.momentum), 1e-12 * scale) << simulation.time();
             ASSERT_LT(length(now.angular_momentum - before.angular_momentum), 1e-12 * scale) << simulation.time();
-            const BodyState& body = simulation.bodies()[0];
-            double given = 0.0;  // N s
-            for (const ContactRecord& record : simulation.contact_records()) {
-                given += record.mass * length(record.velocity_after - record.velocity_before);
-            }
-            // At most, within the step: m/s and rad/s.
-            const double speed = length(body.velocity) + given / body.mass;
-            const double turning = length(body.angular_velocity) + given * 0.9 / (0.2 * body.mass);
-            bound += kPartAfterImpact * 0.02 * speed * turning * given;
-            most = std::max(most, now.energy - first.energy);
-            EXPECT_LT(most, bound) << simulation.time();
+            most = std::max(most, std::fabs(now.energy - first.energy));
             before = now;
         }
         EXPECT_GE(simulation.statistics().contacts, 500U);
-        // The bound adds up all delays, which come with both signs; a cube as light as the points shows them most.
-        EXPECT_LT(most, (ratio == 1.0 ? 1e-2 : 1e-3) * first.energy);
+        EXPECT_LT(most, 1e-8 * first.energy);
         EXPECT_EQ(simulation.statistics().violations, 0U);
         EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
     }
@@ -248,8 +236,7 @@ Simulation pelted_door(double step) {
 }
 
 // The spring is followed in closed form, wherever hits cut the step. What is left: a hit is answered with the body's
-// velocity at its time, and the body takes it where the part of the step ends, which is kPartAfterImpact of the step
-// later at most. By then the spring has changed that velocity: so much times the impulse is what the energy is off.
+// velocity at its time, and the body takes it where the part of the step ends.
 TEST(ADoorOnASpring, KeepsTheEnergyOfAllThatPeltsIt) {
     for (const double step : {0.002, 0.02}) {
         SCOPED_TRACE(step);
@@ -260,19 +247,11 @@ TEST(ADoorOnASpring, KeepsTheEnergyOfAllThatPeltsIt) {
         };
         const double first = energy();
         double most = 0.0;
-        double given = 0.0;  // N m s
-        double swing = 0.0;  // rad
         while (!simulation.finished()) {
             simulation.step();
             most = std::max(most, std::fabs(energy() - first));
-            swing = std::max(swing, std::fabs(simulation.bodies()[0].coordinate - 0.1));
-            for (const ContactRecord& record : simulation.contact_records()) {
-                given += record.mass * std::fabs((record.velocity_after - record.velocity_before).x) *
-                         std::fabs(record.position.y);
-            }
         }
-        const double inertia = 4.01;
-        EXPECT_LT(most, kPartAfterImpact * step * (150.0 * swing / inertia) * given + 1e-12 * first);
+        EXPECT_LT(most, 1e-6 * first);
         EXPECT_GT(simulation.collider_totals()[0].hits, 30U);
         EXPECT_EQ(simulation.statistics().violations, 0U);
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/mobility.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -22,45 +23,105 @@ bool jumps(const BodyPath& before, const BodyPath& after) {
     return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
 }
 
-/// A time after one and before another, or this where there is none between.
-double soon_after(double time, double next) {
-    const double between = time + kPartAfterImpact * (next - time);
-    return between > time ? std::min(between, next) : next;
+/// A time after one by a part of the time to another, or by more than rounding where that is no more; not after the
+/// other.
+double soon_after(double time, double next, double part) {
+    constexpr double kRounding = 16.0;  // units in the last place
+    return std::min(next, time + std::max(part * (next - time), kRounding * ulp(time)));
 }
+
+/// Kinetic energy, J, that a wrench about its center would give a body, were it at rest.
+double energy_of(const Mobility& body, const Wrench& wrench) {
+    return 0.5 *
+           (dot(wrench.impulse, body.of_mass * wrench.impulse) + dot(wrench.moment, body.of_inertia * wrench.moment));
+}
+
+/// The impulse of a load, with its moment about a point.
+Wrench wrench_of(const ColliderLoad& load, const Vec3& center) {
+    return {load.impulse, cross(load.place - center, load.impulse) + load.couple};
+}
+
+/// A body on its planned path, as it yields and moves at a time.
+struct BodyOnPath {
+    Mobility mobility;
+    Vec3 velocity;          ///< of the center of that, m/s
+    Vec3 angular_velocity;  ///< rad/s
+
+    /// J, that it takes of a wrench about `center`, m.
+    [[nodiscard]] double energy_by(Wrench wrench, const Vec3& center) const {
+        wrench.moment += cross(center - mobility.center, wrench.impulse);
+        return dot(wrench.impulse, velocity) + dot(wrench.moment, angular_velocity) + energy_of(mobility, wrench);
+    }
+};
 
 /// What a list of impacts would do to a body, as they are added one after the other.
 class Tally {
 public:
-    explicit Tally(const DrivenBody& body) : body_(body) {}
+    /// id: that of its colliders; kAtRest where it has none. All must outlive it.
+    Tally(const DrivenBody& body, const BodyPath& path, const MovingColliders* colliders, BodyId id)
+        : body_(body), path_(path), colliders_(colliders), id_(id), about_(body.moment_center()) {}
 
     void add(const ColliderLoad& load) {
-        const Wrench wrench = wrench_of(load);
+        const Wrench wrench = wrench_of(load, about_);
+        const BodyOnPath body = at(load.time);
         wrench_ += wrench;
-        yielding_ += body_.quadratic_energy(wrench);
-        lost_ += load.lost_energy - load.work - body_.quadratic_energy(wrench);
+        alone_ += body.energy_by(wrench, about_);
+        lost_ += load.lost_energy - load.work - energy_of(body.mobility, wrench_of(load, body.mobility.center));
         size_ += std::fabs(load.work) + std::fabs(load.lost_energy);
     }
-    /// True when all of them together would change the energy by much of what each by itself takes off, or the body's
-    /// velocity where one hits by much of what that changes.
-    [[nodiscard]] bool is_too_much(const ColliderLoad& last, const Wrench& before) const {
-        const double together = body_.quadratic_energy(wrench_) - yielding_;
-        if (std::fabs(together) > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_) return true;
-        const Vec3 change = body_.velocity_change(before, last.place);
+    /// True when all of them, taken together at a time, s, would change the energy by much of what each by itself takes
+    /// off. doubt: such a part of the energies that are exchanged counts as a change, too.
+    [[nodiscard]] bool changes_energy(double time, double doubt = 0.0) const {
+        const double change = std::fabs(at(time).energy_by(wrench_, about_) - alone_) + doubt * size_;
+        return change > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_;
+    }
+    /// True when what was added before, an impulse about the same point, would change the body's velocity where one
+    /// hits by much of what that changes.
+    [[nodiscard]] bool changes_velocity(const ColliderLoad& last, Wrench before) const {
+        const Mobility body = at(last.time).mobility;
+        before.moment += cross(about_ - body.center, before.impulse);
+        const Vec3 change = body.change_at(last.place, before);
         return length(change) > kMostBodyChange * length(last.impulse) / last.mass;
     }
     [[nodiscard]] const Wrench& wrench() const { return wrench_; }
 
-    [[nodiscard]] Wrench wrench_of(const ColliderLoad& load) const {
-        return {load.impulse, cross(load.place - body_.moment_center(), load.impulse) + load.couple};
+private:
+    [[nodiscard]] BodyOnPath at(double time) const {
+        const MovingPose pose = path_.at(time);
+        const Mobility local = body_.mobility();
+        const Vec3 beside = id_ == kAtRest ? Vec3{} : colliders_->turning_beside_path(id_, time);
+        return {local.seen_by(pose.world_from_frame), pose.velocity_of(local.center), pose.angular_velocity + beside};
     }
 
-private:
     const DrivenBody& body_;
+    const BodyPath& path_;
+    const MovingColliders* colliders_;
+    BodyId id_;
+    Vec3 about_;  // m, that moments are about
     Wrench wrench_;
-    double yielding_ = 0.0;  // J, that the body would take from each by itself, were it at rest
-    double lost_ = 0.0;      // J, that each by itself takes off
-    double size_ = 0.0;      // J, of what was added up
+    double alone_ = 0.0;  // J, that the body would take from each by itself, at its time
+    double lost_ = 0.0;   // J, that each by itself takes off
+    double size_ = 0.0;   // J, of what was added up
 };
+
+/// When a part ends, s, in which these impacts have come, the last one at a time, before the next one: soon after it,
+/// by a power of kPartAfterImpact, and the sooner the less they take off. Till then the bodies go on as if nothing had
+/// hit them, and what has pushed one away goes along or waits. begin, shortest: when it begins, and how long it lasts
+/// at least where much is taken off, s.
+double end_after(const std::vector<Tally>& taken, double time, double next, double begin, double shortest) {
+    constexpr int kMostPowers = 3;
+    constexpr double kShorter = 0.1;
+    double end = next;
+    double part = 1.0;
+    for (int power = 1; power <= kMostPowers; ++power) {
+        part *= kPartAfterImpact;
+        end = std::max(soon_after(time, next, part), begin + shortest);
+        shortest *= kShorter;
+        const auto is_late = [&](const Tally& tally) { return tally.changes_energy(end, part); };
+        if (std::none_of(taken.begin(), taken.end(), is_late)) break;
+    }
+    return end;
+}
 
 }  // namespace
 
@@ -99,7 +160,10 @@ void DrivenMotion::begin_step() {
 
 double DrivenMotion::yielded(const ColliderLoad& load) const {
     const auto body = body_of(load);
-    return body ? bodies_[*body].quadratic_energy(Tally(bodies_[*body]).wrench_of(load)) : 0.0;
+    if (!body) return 0.0;
+    const AffineMap map = paths_[*body].back().at(load.time).world_from_frame;
+    const Mobility mobility = bodies_[*body].mobility().seen_by(map);
+    return energy_of(mobility, wrench_of(load, mobility.center));
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
@@ -158,13 +222,15 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
-    std::vector<Tally> tallies(bodies_.begin(), bodies_.end());
-    const double begin = paths_.front().back().begin;
     const double end = paths_.front().back().end;
-    double until = begin;  // what has been taken so far
-    const auto cut = [&](double next) {
-        return std::min(end, std::max(soon_after(until, next), begin + shortest_part_));
+    const double begin = paths_.front().back().begin;
+    const auto end_of = [&](const std::vector<Tally>& taken, double time, double next) {
+        return std::min(end, end_after(taken, time, next, begin, shortest_part_));
     };
+    std::vector<Tally> tallies;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        tallies.emplace_back(bodies_[k], paths_[k].back(), colliders_, collider_of_[k]);
+    }
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
         const std::vector<Tally> before = tallies;
         for (; next < preview.size() && preview[next].time == preview[first].time; ++next) {
@@ -173,18 +239,18 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
         const bool is_too_much =
             first > 0 && std::any_of(preview.begin() + first, preview.begin() + next, [&](const ColliderLoad& load) {
                 const std::size_t body = *body_of(load);
-                return tallies[body].is_too_much(load, before[body].wrench());
+                return tallies[body].changes_energy(load.time) ||
+                       tallies[body].changes_velocity(load, before[body].wrench());
             });
-        if (is_too_much) return cut(preview[first].time);
-        until = preview[first].time;
+        if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
     }
-    return preview.empty() ? end : cut(end);
+    return preview.empty() ? end : end_of(tallies, preview.back().time, end);
 }
 
 std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> loads) const {
     std::vector<Wrench> wrenches(bodies_.size());
     for (const ColliderLoad& load : loads) {
-        if (const auto body = body_of(load)) wrenches[*body] += Tally(bodies_[*body]).wrench_of(load);
+        if (const auto body = body_of(load)) wrenches[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
     return wrenches;
 }
@@ -193,7 +259,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
     const std::vector<Wrench> wrenches = wrenches_of(loads);
     for (const ColliderLoad& load : loads) {
         const auto body = load.impact ? std::nullopt : body_of(load);
-        if (body) lying_[*body] += Tally(bodies_[*body]).wrench_of(load);
+        if (body) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].follow(paths_[k].back(), loads_[k], wrenches[k]);
     if (!bodies_.empty()) lying_for_ += paths_.front().back().end - paths_.front().back().begin;

@@ -39,7 +39,9 @@ public:
         course_.scratch.segments.clear();
         course_.scratch.hits.clear();
         course_.scratch.record_segments = true;
-        const NetworkReport report = island_.plan(members, pairs(duration), duration, memory_, course_.scratch);
+        std::vector<double> reach;
+        for (NetworkMember& member : members) reach.push_back(member.reach = island_.first_reach(member));
+        const NetworkReport report = island_.plan(members, pairs(reach), duration, memory_, course_.scratch);
         unsolved += report.is_converged ? 0 : 1;
         sweeps += report.sweeps;
         memory_.replace(island_.entries());
@@ -80,23 +82,21 @@ public:
 
 private:
     /// By columns along x.
-    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> pairs(double duration) const {
+    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> pairs(const std::vector<double>& reach) const {
         std::vector<std::pair<double, std::uint32_t>> begins;
-        const auto half = [&](const MovingParticle& p) {
-            return p.state.radius + NetworkIsland::reach(p.state.velocity, p.state.radius, duration);
-        };
+        const auto half = [&](std::uint32_t i) { return particles_[i].state.radius + reach[i]; };
         for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-            begins.emplace_back(particles_[i].state.position.x - half(particles_[i]), i);
+            begins.emplace_back(particles_[i].state.position.x - half(i), i);
         }
         std::sort(begins.begin(), begins.end());
         std::vector<std::array<std::uint32_t, 2>> found;
         for (std::size_t n = 0; n < begins.size(); ++n) {
             const std::uint32_t i = begins[n].second;
-            const double end = particles_[i].state.position.x + half(particles_[i]);
+            const double end = particles_[i].state.position.x + half(i);
             for (std::size_t m = n + 1; m < begins.size() && begins[m].first <= end; ++m) {
                 const std::uint32_t j = begins[m].second;
                 const Vec3 apart = particles_[i].state.position - particles_[j].state.position;
-                if (length(apart) < half(particles_[i]) + half(particles_[j])) {
+                if (length(apart) < half(i) + half(j)) {
                     found.push_back({std::min(i, j), std::max(i, j)});
                 }
             }
@@ -106,7 +106,7 @@ private:
     }
     void measure() {
         overlap = 0.0;
-        for (const auto& [i, j] : pairs(0.0)) {
+        for (const auto& [i, j] : pairs(std::vector<double>(particles_.size(), 0.0))) {
             const ForceInput& a = particles_[i].state;
             const ForceInput& b = particles_[j].state;
             const double deep = a.radius + b.radius - length(a.position - b.position);

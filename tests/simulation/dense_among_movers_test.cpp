@@ -159,12 +159,16 @@ TEST(DenseAmongMovers, ABeltGivesSpheresTwoSeventhsOfItsSpeed) {
 
 /// A press that closes on what fills it has nowhere to put it: clocks stand still, nothing goes through.
 TEST(DenseAmongMovers, APressLetsNothingThrough) {
-    SimulationSetup setup = moving_setup(0.3, steady({0, 0, -0.3}), 0.3);
+    SimulationSetup setup = moving_setup(0.25, steady({0, 0, -0.3}), 0.3);
     setup.colliders = {{"anvil", CuboidShape{{0.2, 0.2, 0.02}, {{0, 0, -0.01}}}, 0},
                        {"press", CuboidShape{{0.2, 0.2, 0.02}, {{0, 0, 0.07}}}, 0, "mover"}};
-    for (int k = 0; k < 27; ++k) {
-        const double pitch = 2.2 * kRadius;
-        setup.particles.push_back(grain({pitch * (k % 3), pitch * (k / 3 % 3), kRadius + pitch * (k / 9)}));
+    const double pitch = 2.2 * kRadius;
+    for (const Vec3& normal : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}}) {
+        const Vec3 middle{0.5 * pitch, 0.5 * pitch, 0};
+        setup.colliders.push_back({"", PlaneShape{middle - (1.1 * pitch) * normal, normal}, 0});
+    }
+    for (int k = 0; k < 8; ++k) {
+        setup.particles.push_back(grain({pitch * (k % 2), pitch * (k / 2 % 2), kRadius + pitch * (k / 4)}));
     }
     Simulation simulation(std::move(setup));
     run(simulation);

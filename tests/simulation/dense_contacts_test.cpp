@@ -105,6 +105,21 @@ TEST(DenseContacts, AColumnStands) {
     }
 }
 
+/// A heavy sphere drives a light one that is at rest onto a floor that is farther away than the light one comes by
+/// itself.
+TEST(DenseContacts, WhatIsPushedFartherThanItComesByItselfFindsWhatIsThere) {
+    SimulationSetup setup = box_setup(0.05, PairMethod::contacts);
+    Particle light = particle_of({0.03, 0.03, 1.3 * kRadius}, {}, kRadius);
+    light.mass = 1e-3;
+    Particle heavy = particle_of({0.03, 0.03, 3.32 * kRadius}, {0, 0, -2}, kRadius);
+    heavy.mass = 1.0;
+    setup.particles = {light, heavy};
+    Simulation simulation(std::move(setup));
+    advance(simulation, 50);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+}
+
 TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
     const auto made = [] {
         SimulationSetup setup = box_setup(0.3, PairMethod::automatic);

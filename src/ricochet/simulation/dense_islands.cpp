@@ -11,6 +11,9 @@ namespace {
 /// Spheres of an island that are looked at impact by impact, where impacts lose energy.
 constexpr std::size_t kMostInFreeIsland = 300;
 
+/// Plans of an island in a step, each with contacts looked for farther than in the one before.
+constexpr int kMostPlans = 8;
+
 }  // namespace
 
 bool PairMotion::may_be_dense() const { return settings_.method != PairMethod::events; }
@@ -24,17 +27,24 @@ bool PairMotion::begins_dense(const Island& island) const {
                                [](const IslandMember& member) { return member.moving.id; });
 }
 
-void PairMotion::find_near_pairs(const Island& island, DenseWork& work) const {
-    work.boxes.clear();
-    for (const IslandMember& member : island.members) {
-        const ForceInput& state = member.moving.state;
-        const double duration = member.end - state.time;
-        const Vec3 velocity = state.velocity + duration * response_.rules().forces.acceleration(state);
-        work.boxes.push_back(
-            ball_box(state.position, member.radius() + NetworkIsland::reach(velocity, member.radius(), duration)));
+/// Again where a sphere is pushed farther than its contacts have been looked for.
+NetworkReport PairMotion::plan_dense(DenseWork& work, double duration) const {
+    for (NetworkMember& member : work.members) member.reach = work.network.first_reach(member);
+    MoveScratch scratch;
+    NetworkReport report;
+    for (int k = 0; k < kMostPlans; ++k) {
+        work.boxes.clear();
+        for (const NetworkMember& member : work.members) {
+            work.boxes.push_back(ball_box(member.moving->state.position, member.radius + member.reach));
+        }
+        work.pairs.clear();
+        for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) {
+            work.pairs.push_back({pair.first, pair.second});
+        }
+        report = work.network.plan(work.members, work.pairs, duration, memory_, scratch);
+        if (!work.network.reach_farther(work.members)) break;
     }
-    work.pairs.clear();
-    for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) work.pairs.push_back({pair.first, pair.second});
+    return report;
 }
 
 /// Islands in parallel have one each.
@@ -49,7 +59,24 @@ std::unique_ptr<PairMotion::DenseWork> PairMotion::take_work() {
     return work;
 }
 
+/// Where a member has gone; what has no time left stays where it is to the end.
+void PairMotion::keep_way(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
+    member.way = flown;
+    member.swept = ball_box(from.position, member.radius());
+    for (const FlownPiece& piece : flown) {
+        const Box3 ball = ball_box(piece.path.end, member.radius());
+        member.swept.include(ball.lower);
+        member.swept.include(ball.upper);
+    }
+    const double begin = flown.empty() ? from.time : flown.back().begin + flown.back().duration;
+    if (member.is_gone() || !(begin < member.end)) return;
+    const Vec3& place = flown.empty() ? from.position : flown.back().path.end;
+    member.way.push_back(
+        {line_path(place, Vec3{}, member.end - begin), begin, member.end - begin, Vec3{}, Vec3{}, false});
+}
+
 void PairMotion::run_dense(Island& island, const TimeSpan& step) {
+    island.is_dense = true;
     std::unique_ptr<DenseWork> work = take_work();
     NetworkIsland& network = work->network;
     std::vector<NetworkMember>& members = work->members;
@@ -59,12 +86,10 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
         member.moving.step_end = member.end;
         const bool is_squeezed = response_.rules().bodies != nullptr && !member.is_fixed &&
                                  member.moving.stored_time < member.moving.state.time;
-        const bool sleeps = asleep_[member.particle - first_] != 0;
-        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps, {}});
+        const bool sleeps = is_asleep(static_cast<std::uint32_t>(member.particle - first_));
+        members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps});
     }
-    MoveScratch scratch;
-    find_near_pairs(island, *work);
-    const NetworkReport report = network.plan(members, work->pairs, step.end - step.begin, memory_, scratch);
+    const NetworkReport report = plan_dense(*work, step.end - step.begin);
     island.is_unsolved = !report.is_converged;
     island.pressed = network.entries();
     island.still.clear();
@@ -78,7 +103,7 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
         for (std::size_t i = begin; i < end; ++i) {
             IslandMember& member = island.members[i];
             own.flown.clear();
-            const Vec3 from = member.moving.state.position;
+            const ForceInput from = member.moving.state;
             network.move(i, members[i], own);
             member.outcome = members[i].outcome;
             const bool falls_asleep =
@@ -86,12 +111,7 @@ void PairMotion::run_dense(Island& island, const TimeSpan& step) {
             if (falls_asleep) member.outcome.end = MoveEnd::held;
             member.is_free = false;
             member.lists.take(own);
-            member.swept = ball_box(from, member.radius());
-            for (const FlownPiece& piece : own.flown) {
-                const Box3 ball = ball_box(piece.path.end, member.radius());
-                member.swept.include(ball.lower);
-                member.swept.include(ball.upper);
-            }
+            keep_way(member, from, own.flown);
         }
     });
     const std::lock_guard lock(spare_mutex_);

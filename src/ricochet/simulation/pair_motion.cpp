@@ -31,17 +31,14 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     meetings_.clear();
     islands_.clear();
     round_ = 0;
-    boxes_.resize(range.size());
     find_sleepers(range, step);
     do {
-        parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) boxes_[k] = declared_box(first_ + k, step);
-        });
-        find_pairs(step);
+        find_traces(range);
+        plans_.find(range, step, traces_);
     } while (wake_those_hit(step));
     find_islands(range);
     run(islands_, step);
-    while (join_those_met(step)) rebuild(step);
+    while (join_those_met()) rebuild(step);
     for (Island& island : islands_) {
         // Those that have flown as if nobody had been there go the ordinary way.
         std::erase_if(island.members, [](const IslandMember& member) { return member.is_free; });
@@ -50,86 +47,20 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     }
 }
 
-/// Where a sphere stays if it meets no other one; empty where it meets nobody.
-Box3 PairMotion::declared_box(std::size_t i, const TimeSpan& step) const {
-    const Particles& particles = store_.particles();
-    const double radius = particles.radius[i];
-    if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0 || asleep_[i - first_] != 0) return {};
-    const Vec3& x = particles.position[i];
-    if (particles.pinned[i] != 0 || store_.is_asleep(i)) return ball_box(x, radius);
-    const double begin = std::max(step.begin, particles.birth_time[i]);
-    const double duration = std::min(step.end, particles.birth_time[i] + particles.lifetime[i]) - begin;
-    if (!(duration > 0.0)) return {};
-    if (!schedule_.is_in_free_flight(i)) return ball_box(x, radius + reach(i, duration));
-    // Whatever the integrator: the parabola, and the lines with the velocities of its ends.
-    const Vec3& v = particles.velocity[i];
-    const Vec3 kick = duration * response_.rules().forces.acceleration(store_.force_input(i, begin));
-    Box3 box;
-    for (const Vec3& by : {Vec3{}, v, v + 0.5 * kick, v + kick}) box.include(x + duration * by);
-    const double slack = radius * kPairBoxSlack;
-    return {box.lower - Vec3{slack, slack, slack}, box.upper + Vec3{slack, slack, slack}};
-}
-
-/// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force
-/// does: its spin may turn into speed.
-double PairMotion::reach(std::size_t i, double duration) const {
-    const Particles& particles = store_.particles();
-    const double turning = particles.radius[i] * length(particles.spin[i]);
-    const double speed = std::sqrt(length_squared(particles.velocity[i]) + 0.4 * turning * turning);
-    const double change = duration * length(response_.rules().forces.acceleration(store_.force_input(i, 0.0)));
-    return kPairBoxSlack * duration * (speed + change);
-}
-
-/// Whether reach() is all that spheres may come.
-bool PairMotion::is_bounded() const {
-    const ResponseRules& rules = response_.rules();
-    const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
-    return rules.forces.is_uniform() && rules.bodies == nullptr &&
-           std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
-}
-
-bool PairMotion::moves(std::uint32_t k) const {
-    return store_.particles().pinned[first_ + k] == 0 && !store_.is_asleep(first_ + k) && !is_asleep(k);
-}
-
-FlownPiece PairMotion::way_of_free(std::uint32_t k, const TimeSpan& step) const {
-    return free_way(response_.rules(), store_.force_input(first_ + k, step.begin), step.end);
-}
-
-/// False for two spheres whose boxes overlap that do not meet, unless others are met.
-bool PairMotion::may_meet(const NeighbourPair& pair, const TimeSpan& step) const {
-    if (!moves(pair.first) && !moves(pair.second)) return false;
-    if (!is_free(pair.first) || !is_free(pair.second)) return true;
-    const FlownPiece first = way_of_free(pair.first, step);
-    const FlownPiece second = way_of_free(pair.second, step);
-    const std::vector<double>& radius = store_.particles().radius;
-    const double distance = radius[first_ + pair.first] + radius[first_ + pair.second];
-    return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
-}
-
-void PairMotion::find_pairs(const TimeSpan& step) {
-    pairs_ = grid_.find_pairs(boxes_);
-    add_pairs_with_sleepers();
-    met_.assign(pairs_.size(), 0);
-    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) met_[n] = may_meet(pairs_[n], step) ? 1 : 0;
-    });
-}
-
 void PairMotion::find_islands(const ParticleRange& range) {
     parents_.resize(range.size());
     std::iota(parents_.begin(), parents_.end(), 0U);
     std::vector<std::uint32_t> involved;
-    for (std::size_t n = 0; n < pairs_.size(); ++n) {
-        if (met_[n] == 0) continue;
-        static_cast<void>(join(pairs_[n].first, pairs_[n].second));
-        involved.push_back(pairs_[n].first);
-        involved.push_back(pairs_[n].second);
+    for (std::size_t n = 0; n < plans_.pairs().size(); ++n) {
+        if (!plans_.may_meet(n)) continue;
+        const NeighbourPair& pair = plans_.pairs()[n];
+        static_cast<void>(join(pair.first, pair.second));
+        involved.push_back(pair.first);
+        involved.push_back(pair.second);
     }
     // Where a sphere may go farther than its box those that meet nobody are watched, too.
-    const bool may_roam = !is_bounded();
-    for (std::uint32_t k = 0; may_roam && k < boxes_.size(); ++k) {
-        if (!boxes_[k].empty() && moves(k)) involved.push_back(k);
+    for (std::uint32_t k = 0; plans_.may_roam() && k < range.size(); ++k) {
+        if (plans_.is_bound(k)) involved.push_back(k);
     }
     islands_ = islands_of(std::move(involved));
 }
@@ -174,6 +105,7 @@ void PairMotion::run(std::vector<Island>& islands, const TimeSpan& step) {
             Island& island = islands[n];
             if (!island.members.empty()) continue;  // as before
             island.round = round_;
+            island.is_dense = false;
             take_members(island, step);
             bool is_dense = begins_dense(island);
             const bool may_give_up = may_be_dense() && settings_.method == PairMethod::automatic;
@@ -212,8 +144,15 @@ void PairMotion::take_members(Island& island, const TimeSpan& step) {
     }
 }
 
-/// Members that have gone another way than they would have gone by themselves, or farther than declared: first those of
-/// islands of this round, then those of islands that have been joined before.
+/// Who flies freely has declared its way, others how far they may come.
+bool PairMotion::is_off_plan(const Island& island, const IslandMember& member) const {
+    if (member.is_fixed) return false;
+    const auto k = static_cast<std::uint32_t>(member.particle - first_);
+    if (plans_.is_free(k)) return member.impacts > 0 || island.is_dense;
+    return member.impacts > 0 || !contains(plans_.box(k), member.swept);
+}
+
+/// First those of islands of this round, then those of islands that have been joined before.
 PairMotion::OffPlan PairMotion::members_off_plan() const {
     OffPlan off;
     std::vector<const IslandMember*> earlier;
@@ -221,9 +160,7 @@ PairMotion::OffPlan PairMotion::members_off_plan() const {
         const bool is_new = island.round == round_;
         if (!is_new && island.round == 0) continue;
         for (const IslandMember& member : island.members) {
-            if (member.is_fixed) continue;
-            const bool is_inside = contains(boxes_[member.particle - first_], member.swept);
-            if (member.impacts > 0 || !is_inside) (is_new ? off.members : earlier).push_back(&member);
+            if (is_off_plan(island, member)) (is_new ? off.members : earlier).push_back(&member);
         }
     }
     off.of_this_round = off.members.size();
@@ -232,13 +169,30 @@ PairMotion::OffPlan PairMotion::members_off_plan() const {
     return off;
 }
 
-/// Whether a member's way leads it onto a sphere of another island that flies freely and meets nobody; of others that
-/// is not known, and their boxes decide.
-bool PairMotion::comes_to(const IslandMember& member, std::uint32_t k, const TimeSpan& step) const {
-    if (!is_free(k) || member.way.empty()) return true;
-    const FlownPiece way = way_of_free(k, step);
-    const double distance = member.radius() + store_.particles().radius[first_ + k];
-    return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
+/// What those of this round have met of what has done what it has declared, and was off its plan in the first round.
+std::vector<std::vector<std::uint32_t>> PairMotion::met_by(const OffPlan& off) {
+    std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
+    const auto for_each = [&](const auto& body) {
+        parallel_for_blocks(met.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) body(*off.members[n], off.swept[n], met[n]);
+        });
+    };
+    for_each([&](const IslandMember&, const Box3& swept, auto& found) { plans_.find_near(swept, found); });
+    std::vector<std::uint32_t> all;
+    for (const auto& found : met) all.insert(all.end(), found.begin(), found.end());
+    plans_.ask(std::move(all));
+    for_each([&](const IslandMember& member, const Box3& swept, auto& found) {
+        std::erase_if(found, [&](std::uint32_t k) { return !plans_.comes_to(member, k); });
+        if (round_ == 0) return;
+        std::vector<std::uint32_t> near;
+        first_off_plan_grid_.find_near(swept, near);
+        for (const std::uint32_t k : near) {
+            const IslandMember* const other = first_off_plan_[k];  // valid where it has not been run anew
+            if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other))
+                found.push_back(first_numbers_[k]);
+        }
+    });
+    return met;
 }
 
 /// False where both ways are known and do not meet.
@@ -249,29 +203,12 @@ bool PairMotion::may_have_met(const IslandMember& first, const IslandMember& sec
 
 /// True where members that are off their plans have met particles of other islands, which are joined. What islands of
 /// earlier rounds have to do with each other is known.
-bool PairMotion::join_those_met(const TimeSpan& step) {
+bool PairMotion::join_those_met() {
     const OffPlan off = members_off_plan();
     const auto number = [&](const IslandMember& member) {
         return static_cast<std::uint32_t>(member.particle - first_);
     };
-    std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
-    parallel_for_blocks(off.of_this_round, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> near;
-        for (std::size_t n = begin; n < end; ++n) {
-            const IslandMember& member = *off.members[n];
-            find_all_near(off.swept[n], met[n]);
-            std::erase_if(met[n], [&](std::uint32_t k) { return !comes_to(member, k, step); });
-            if (round_ == 0) continue;
-            near.clear();
-            first_off_plan_grid_.find_near(off.swept[n], near);
-            for (const std::uint32_t k : near) {
-                const IslandMember* const other = first_off_plan_[k];  // valid where it has not been run anew
-                if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other)) {
-                    met[n].push_back(first_numbers_[k]);
-                }
-            }
-        }
-    });
+    const std::vector<std::vector<std::uint32_t>> met = met_by(off);
     joined_.clear();
     for (std::size_t n = 0; n < off.of_this_round; ++n) {
         for (const std::uint32_t k : met[n]) static_cast<void>(join(number(*off.members[n]), k));
@@ -345,7 +282,7 @@ void PairMotion::measure_overlaps() {
         const double smaller = std::min(particles.radius[i], particles.radius[j]);
         counts_.largest_overlap = std::max(counts_.largest_overlap, overlap / smaller);
     };
-    for (const NeighbourPair& pair : pairs_) measure(first_ + pair.first, first_ + pair.second);
+    for (const NeighbourPair& pair : plans_.pairs()) measure(first_ + pair.first, first_ + pair.second);
 }
 
 }  // namespace ricochet

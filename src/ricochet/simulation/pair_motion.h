@@ -1,10 +1,9 @@
 /// \file
 /// Private to the simulation: spheres that meet each other in a step.
 ///
-/// Each sphere declares a box in which it stays if it meets none of the others. Those whose boxes overlap form islands,
-/// but for two that fly freely and do not meet; PairIsland works them off, in parallel, and all others go the ordinary
-/// way. A member that has met another, or has left its box, may have missed somebody: its island and those that it
-/// would have met are joined and worked off again from the step's begin, until there are none.
+/// Those that may meet, by what they declare (PairPlans), form islands; PairIsland works them off, in parallel, and all
+/// others go the ordinary way. A member that has done something else than it has declared may have missed somebody: its
+/// island and those that it would have met are joined and worked off again from the step's begin, until there are none.
 ///
 /// Islands in which spheres press on each other, or in which impact would follow impact, are dense: their members are
 /// planned together, by the problem of all their contacts (NetworkIsland). What has lain still there for a while sleeps
@@ -22,6 +21,7 @@
 #include "ricochet/response/network/network_island.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/pair_plans.h"
 #include "ricochet/simulation/sleeping_piles.h"
 
 namespace ricochet {
@@ -37,7 +37,12 @@ public:
     /// All must outlive it.
     PairMotion(ParticleStore& store, QuerySchedule& schedule, ActiveMover& mover, const Response& response,
                const PairContactSettings& settings)
-        : store_(store), schedule_(schedule), mover_(mover), response_(response), settings_(settings) {
+        : store_(store),
+          schedule_(schedule),
+          mover_(mover),
+          response_(response),
+          settings_(settings),
+          plans_(store, schedule, mover, response, settings.method != PairMethod::events) {
         mover_.set_piles(&piles_);
     }
 
@@ -75,6 +80,7 @@ private:
         std::vector<PairImpactRecord> impacts;
         std::vector<PairMeeting> meetings;
         std::vector<NetworkMemory::Entry> pressed;  ///< where it is dense: what its contacts do
+        bool is_dense = false;
         bool is_unsolved = false;
         std::vector<SleepingPiles::Still> still;  ///< where it is dense: those that have not moved
         std::vector<std::uint64_t> falling_asleep;
@@ -88,27 +94,21 @@ private:
         std::size_t of_this_round = 0;  ///< so many come first
     };
 
-    [[nodiscard]] Box3 declared_box(std::size_t i, const TimeSpan& step) const;
-    [[nodiscard]] double reach(std::size_t i, double duration) const;
-    [[nodiscard]] bool is_bounded() const;
-    void find_pairs(const TimeSpan& step);
     void find_islands(const ParticleRange& range);
-    [[nodiscard]] bool moves(std::uint32_t k) const;
-    [[nodiscard]] bool is_free(std::uint32_t k) const { return schedule_.is_in_free_flight(first_ + k); }
-    [[nodiscard]] FlownPiece way_of_free(std::uint32_t k, const TimeSpan& step) const;
-    [[nodiscard]] bool may_meet(const NeighbourPair& pair, const TimeSpan& step) const;
-    [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k, const TimeSpan& step) const;
+    [[nodiscard]] bool is_off_plan(const Island& island, const IslandMember& member) const;
     [[nodiscard]] OffPlan members_off_plan() const;
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> met_by(const OffPlan& off);
     [[nodiscard]] static bool may_have_met(const IslandMember& first, const IslandMember& second);
     [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
     bool join(std::uint32_t a, std::uint32_t b);
     [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
     void run(std::vector<Island>& islands, const TimeSpan& step);
-    [[nodiscard]] bool join_those_met(const TimeSpan& step);
+    [[nodiscard]] bool join_those_met();
     void take_members(Island& island, const TimeSpan& step);
     [[nodiscard]] bool may_be_dense() const;
     [[nodiscard]] bool begins_dense(const Island& island) const;
     void run_dense(Island& island, const TimeSpan& step);
+    static void keep_way(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown);
     /// What planning an island takes, kept for the next one.
     struct DenseWork {
         DenseWork(const ResponseRules& rules, const PairLaw& law) : network(rules, law) {}
@@ -119,16 +119,15 @@ private:
         std::vector<NetworkMember> members;
     };
     [[nodiscard]] std::unique_ptr<DenseWork> take_work();
-    void find_near_pairs(const Island& island, DenseWork& work) const;
+    [[nodiscard]] NetworkReport plan_dense(DenseWork& work, double duration) const;
     void rebuild(const TimeSpan& step);
 
     // Sleep, see pile_sleep.cpp.
-    [[nodiscard]] bool is_asleep(std::uint32_t k) const { return asleep_[k] != 0; }
+    [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
     void find_sleepers(const ParticleRange& range, const TimeSpan& step);
+    void find_traces(const ParticleRange& range);
     void wake_pile(std::uint64_t particle, double time);
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t particle) const;
-    void add_pairs_with_sleepers();
-    void find_all_near(const Box3& box, std::vector<std::uint32_t>& found) const;
     [[nodiscard]] bool hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const;
     [[nodiscard]] bool wake_those_hit(const TimeSpan& step);
     void let_lie(Island& island, std::vector<NetworkMember>& members, NetworkIsland& network, const TimeSpan& step);
@@ -150,7 +149,8 @@ private:
     const Response& response_;
     const PairContactSettings& settings_;
     std::size_t first_ = 0;  // of the range: the numbers below count from it
-    NeighbourGrid grid_;
+    PairPlans plans_;
+    PairTraces traces_;
     std::size_t round_ = 0;              // of joining islands
     std::vector<std::uint32_t> joined_;  // in the last round
     NeighbourGrid first_off_plan_grid_;  // of the members that were off their plans in the first round
@@ -158,9 +158,6 @@ private:
     std::vector<std::uint32_t> first_numbers_;  // of these
     std::vector<std::uint8_t> has_run_anew_;    // by number, in a later round
     NeighbourGrid off_plan_grid_;
-    std::vector<Box3> boxes_;             // declared
-    std::vector<NeighbourPair> pairs_;    // whose declared boxes overlap
-    std::vector<std::uint8_t> met_;       // of the pairs: they may meet
     std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
     std::vector<Island> islands_;
     std::vector<PairImpactRecord> impacts_;
@@ -171,11 +168,6 @@ private:
     std::mutex spare_mutex_;
     std::vector<std::unique_ptr<DenseWork>> spare_;
     SleepingPiles piles_;
-    std::vector<std::uint8_t> asleep_;  // of each particle of the range: it sleeps in a pile
-    NeighbourGrid sleeper_grid_;
-    std::vector<Box3> sleeper_boxes_;
-    std::vector<std::uint8_t> in_grid_;  // asleep_ as the grid has it
-    std::uint64_t grid_version_ = 0;     // SleepingPiles::version() that it has
 };
 
 }  // namespace ricochet

@@ -29,6 +29,9 @@ constexpr double kWeights = 2.0;
 
 std::optional<std::size_t> PairMotion::index_of(std::uint64_t particle) const {
     const std::vector<std::uint64_t>& ids = store_.particles().id;
+    if (ids.empty() || particle < ids.front()) return std::nullopt;
+    const std::size_t guess = particle - ids.front();  // while nobody has gone
+    if (guess < ids.size() && ids[guess] == particle) return guess;
     const auto at = std::lower_bound(ids.begin(), ids.end(), particle);
     if (at == ids.end() || *at != particle) return std::nullopt;
     return static_cast<std::size_t>(at - ids.begin());
@@ -36,7 +39,7 @@ std::optional<std::size_t> PairMotion::index_of(std::uint64_t particle) const {
 
 /// Marks who sleeps; wakes piles that have lost a sphere, and those that colliders come near.
 void PairMotion::find_sleepers(const ParticleRange& range, const TimeSpan& step) {
-    asleep_.assign(range.size(), 0);
+    traces_.is_asleep.assign(range.size(), 0);
     if (range.begin != 0 || piles_.empty()) return;
     std::vector<std::uint64_t> disturbed;
     const MovingColliders* const bodies = response_.rules().bodies;
@@ -46,7 +49,7 @@ void PairMotion::find_sleepers(const ParticleRange& range, const TimeSpan& step)
             disturbed.push_back(particle);
             continue;
         }
-        asleep_[*i] = 1;
+        traces_.is_asleep[*i] = 1;
         schedule_.leave_alone(*i);
         const Particles& particles = store_.particles();
         const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
@@ -62,7 +65,7 @@ void PairMotion::wake_pile(std::uint64_t particle, double time) {
         const std::optional<std::size_t> i = index_of(member);
         if (!i) continue;
         mover_.wake(*i, time);
-        if (*i >= first_ && *i - first_ < asleep_.size()) asleep_[*i - first_] = 0;
+        if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     piles_.wake(pile, memory_);
 }
@@ -71,31 +74,18 @@ void PairMotion::wake_all(double time) {
     while (!piles_.empty()) wake_pile(piles_.particles().front(), time);
 }
 
-/// They are in a grid of their own, which stays as long as they do.
-void PairMotion::add_pairs_with_sleepers() {
-    if (piles_.empty() || first_ != 0) return;
-    if (grid_version_ != piles_.version() || in_grid_ != asleep_) {
-        sleeper_boxes_.assign(asleep_.size(), {});
-        for (std::size_t k = 0; k < asleep_.size(); ++k) {
-            if (asleep_[k] != 0)
-                sleeper_boxes_[k] = ball_box(store_.particles().position[k], store_.particles().radius[k]);
-        }
-        static_cast<void>(sleeper_grid_.find_pairs(sleeper_boxes_));
-        in_grid_ = asleep_;
-        grid_version_ = piles_.version();
+/// What the plans of a step depend on.
+void PairMotion::find_traces(const ParticleRange& range) {
+    traces_.version = piles_.version();
+    traces_.presses.assign(range.size(), 0);
+    const auto mark = [&](std::uint64_t particle) {
+        const std::optional<std::size_t> i = index_of(particle);
+        if (i && *i >= range.begin && *i < range.end) traces_.presses[*i - range.begin] = 1;
+    };
+    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+        mark(entry.key.particle);
+        if (!entry.key.is_wall()) mark(entry.key.other);
     }
-    std::vector<std::uint32_t> near;
-    for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
-        if (boxes_[k].empty() || !moves(k)) continue;
-        near.clear();
-        sleeper_grid_.find_near(boxes_[k], near);
-        for (const std::uint32_t other : near) pairs_.push_back({std::min(k, other), std::max(k, other)});
-    }
-}
-
-void PairMotion::find_all_near(const Box3& box, std::vector<std::uint32_t>& found) const {
-    grid_.find_near(box, found);
-    if (!piles_.empty() && first_ == 0) sleeper_grid_.find_near(box, found);
 }
 
 /// Slow ones do not: their contacts say whether they press.
@@ -112,9 +102,10 @@ bool PairMotion::hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) c
 bool PairMotion::wake_those_hit(const TimeSpan& step) {
     if (piles_.empty() || first_ != 0) return false;
     std::vector<std::uint64_t> hit;
-    for (std::size_t n = 0; n < pairs_.size(); ++n) {
-        if (met_[n] == 0 || !hits_sleeper(pairs_[n], step)) continue;
-        const std::uint32_t k = is_asleep(pairs_[n].first) ? pairs_[n].first : pairs_[n].second;
+    for (std::size_t n = 0; n < plans_.pairs().size(); ++n) {
+        const NeighbourPair& pair = plans_.pairs()[n];
+        if (!plans_.may_meet(n) || !hits_sleeper(pair, step)) continue;
+        const std::uint32_t k = is_asleep(pair.first) ? pair.first : pair.second;
         hit.push_back(store_.particles().id[first_ + k]);
     }
     for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);
@@ -206,8 +197,8 @@ void PairMotion::put_to_sleep(const TimeSpan& step) {
 void PairMotion::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
     if (piles_.empty() || first_ != 0 || response_.rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
-    for (std::size_t k = 0; k < asleep_.size(); ++k) {
-        if (asleep_[k] != 0) mover_.check_sleeper(k, step, record);
+    for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
+        if (is_asleep(static_cast<std::uint32_t>(k))) mover_.check_sleeper(k, step, record);
     }
 }
 

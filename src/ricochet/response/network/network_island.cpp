@@ -23,12 +23,13 @@ constexpr double kRounding = 1e-12;
 /// Part of a radius beside it in which contacts are looked for even where nothing moves.
 constexpr double kReach = 0.05;
 
-bool stays(const NetworkMember& member) { return member.is_fixed || member.is_squeezed; }
+/// m, for a sphere that goes a way, m.
+double reach_of(double way, double radius) { return 2.0 * way + kReach * radius; }
 
 /// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
 constexpr double kClear = 0.9;
 
-Vec3 velocity_of(const NetworkMember& member) { return stays(member) ? Vec3{} : member.moving->state.velocity; }
+Vec3 velocity_of(const NetworkMember& member) { return member.stays() ? Vec3{} : member.moving->state.velocity; }
 
 }  // namespace
 
@@ -53,10 +54,10 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
         const ForceInput& state = member.moving->state;
         NetworkBody body;
         body.radius = member.radius;
-        if (stays(member)) {
+        if (member.stays()) {
             body.inverse_mass = 0.0;
         } else {
-            body.velocity = state.velocity + member.duration * rules_.forces.acceleration(state);
+            body.velocity = velocity_in_flight(member);
             body.spin = (state.radius / member.radius) * member.moving->spin;
             body.inverse_mass = 1.0 / state.mass;
             body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
@@ -68,7 +69,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
 void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
                               std::span<const std::array<std::uint32_t, 2>> pairs, const NetworkMemory& memory) {
     for (const auto& [first, second] : pairs) {
-        if (stays(members[first]) && stays(members[second])) continue;
+        if (members[first].stays() && members[second].stays()) continue;
         const bool in_order = members[first].moving->id < members[second].moving->id;
         NetworkContact contact;
         contact.a = in_order ? first : second;
@@ -81,9 +82,7 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         contact.gap = distance - a.radius - b.radius;
         // Between two sleepers there may be no room to part from both.
         if (a.is_asleep || b.is_asleep) contact.gap = std::max(0.0, contact.gap);
-        const double near = reach(bodies_[contact.a].velocity, a.radius, duration_) +
-                            reach(bodies_[contact.b].velocity, b.radius, duration_);
-        if (contact.gap > near) continue;
+        if (contact.gap > a.reach + b.reach) continue;
         contact.normal = apart / distance;
         contact.friction = law_.friction;
         contact.rolling_friction = law_.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
@@ -101,10 +100,10 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, const Netw
     for (std::uint32_t i = 0; i < members.size(); ++i) {
         first_wall_.push_back(contacts_.size());
         clear_.push_back(0.0);
-        if (stays(members[i])) continue;
+        if (members[i].stays()) continue;
         const ForceInput& state = members[i].moving->state;
         walls_.clear();
-        const double near = reach(bodies_[i].velocity, state.radius, duration_);
+        const double near = members[i].reach;
         if (rules_.bodies == nullptr) {
             const bool is_near = find_wall_contacts(geometry, state.position, state.radius, near, walls_);
             if (!is_near) clear_.back() = kClear * near;
@@ -217,8 +216,25 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
     return entries;
 }
 
-double NetworkIsland::reach(const Vec3& velocity, double radius, double duration) {
-    return 2.0 * duration * length(velocity) + kReach * radius;
+Vec3 NetworkIsland::velocity_in_flight(const NetworkMember& member) const {
+    const ForceInput& state = member.moving->state;
+    return state.velocity + member.duration * rules_.forces.acceleration(state);
+}
+
+double NetworkIsland::first_reach(const NetworkMember& member) const {
+    return reach_of(member.stays() ? 0.0 : member.duration * length(velocity_in_flight(member)), member.radius);
+}
+
+bool NetworkIsland::reach_farther(std::span<NetworkMember> members) const {
+    bool is_any = false;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        NetworkMember& member = members[i];
+        const double way = member.duration * length(bodies_[i].velocity);
+        if (member.stays() || !(way > member.reach)) continue;
+        member.reach = reach_of(way, member.radius);
+        is_any = true;
+    }
+    return is_any;
 }
 
 }  // namespace ricochet

@@ -31,8 +31,11 @@ struct NetworkMember {
     double duration = 0.0;     ///< s, of its part of the step
     bool is_squeezed = false;  ///< surfaces that close on it have stopped its clock: others find it where it is
     bool is_asleep = false;    ///< fixed as long as it sleeps: what overlaps it is not parted from it
+    double reach = 0.0;        ///< m, how far beside its surface its contacts are looked for
     // Out:
     MoveOutcome outcome{};
+
+    [[nodiscard]] bool stays() const { return is_fixed || is_squeezed; }
 };
 
 /// Plans with the velocities that forces give the spheres within the step (symplectic Euler's), finds their contacts
@@ -43,8 +46,10 @@ public:
     /// rules must outlive it.
     NetworkIsland(const ResponseRules& rules, const PairLaw& law) : rules_(rules), law_(law) {}
 
-    /// Plans a step of `duration` seconds. pairs: those that may touch within it, by their numbers. memory: of the last
-    /// step.
+    /// m, for a first plan: as far as a member comes by itself, and more.
+    [[nodiscard]] double first_reach(const NetworkMember& member) const;
+    /// Plans a step of `duration` seconds. pairs: those within reach of each other, by their numbers. memory: of the
+    /// last step.
     NetworkReport plan(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
                        double duration, const NetworkMemory& memory, MoveScratch& scratch);
     /// Moves one of the members, by its number, as it has been planned. Several threads may move different ones.
@@ -58,8 +63,9 @@ public:
     [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
     [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
-    /// m, how far beside its surface a sphere's contacts are looked for: whatever pushes it, it hardly comes farther.
-    [[nodiscard]] static double reach(const Vec3& velocity, double radius, double duration);
+    /// Lets members that others push farther than their contacts have been looked for reach as far; false where there
+    /// are none: what is planned then leads into nothing.
+    bool reach_farther(std::span<NetworkMember> members) const;
 
 private:
     void add_bodies(std::span<const NetworkMember> members);
@@ -72,6 +78,7 @@ private:
                const ForceInput& state) const;
     void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
     [[nodiscard]] double rebound(double restitution, double approach) const;
+    [[nodiscard]] Vec3 velocity_in_flight(const NetworkMember& member) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
 
     const ResponseRules& rules_;

@@ -1,0 +1,207 @@
+#include "ricochet/simulation/pair_plans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "ricochet/core/box_tools.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
+
+namespace ricochet {
+namespace {
+
+/// Parts of the radius beside what lies held by walls in which a collider that moves may disturb it.
+constexpr double kDisturbed = 0.01;
+
+}  // namespace
+
+void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces) {
+    first_ = range.begin;
+    step_ = step;
+    traces_ = &traces;
+    is_bounded_ = is_bounded();
+    freedom_.assign(range.size(), Freedom::unknown);
+    boxes_.resize(range.size());
+    declare();
+    // What may go anywhere without touching a wall has to say where.
+    std::vector<std::uint32_t> asked;
+    for (std::uint32_t k = 0; !is_bounded_ && k < boxes_.size(); ++k) asked.push_back(k);
+    ask(std::move(asked));
+    pairs_ = grid_.find_pairs(boxes_);
+    add_pairs_with_sleepers();
+    std::erase_if(pairs_, [&](const NeighbourPair& pair) { return !moves(pair.first) && !moves(pair.second); });
+    std::vector<std::uint32_t> near;
+    for (const NeighbourPair& pair : pairs_) near.push_back(pair.first), near.push_back(pair.second);
+    ask(std::move(near));
+    met_.assign(pairs_.size(), 0);
+    parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) met_[n] = do_meet(pairs_[n]) ? 1 : 0;
+    });
+}
+
+/// What is known without asking.
+void PairPlans::declare() {
+    parallel_for_blocks(boxes_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            const auto k = static_cast<std::uint32_t>(n);
+            if (is_known_free(k)) freedom_[k] = Freedom::free;
+            boxes_[k] = is_free(k) ? box_of_free(k) : reachable_box(k);
+        }
+    });
+}
+
+void PairPlans::ask(std::vector<std::uint32_t> particles) {
+    std::erase_if(particles, [&](std::uint32_t k) {
+        if (freedom_[k] != Freedom::unknown) return true;
+        freedom_[k] = Freedom::bound;  // until it says otherwise
+        return !decides_ || boxes_[k].empty() || !moves(k);
+    });
+    parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        MoveScratch scratch;
+        mover_.prepare(scratch);
+        for (std::size_t n = begin; n < end; ++n) {
+            const std::uint32_t k = particles[n];
+            if (!flies_freely(k, scratch)) continue;
+            freedom_[k] = Freedom::free;
+            boxes_[k] = box_of_free(k);
+        }
+    });
+}
+
+/// Held by walls alone, for as long as nothing comes: where single particles may sleep it does.
+bool PairPlans::lies(std::size_t i) const {
+    const Particles& particles = store_.particles();
+    if (particles.held[i] == 0 || !response_.rules().forces.is_steady()) return false;
+    const MovingColliders* const bodies = response_.rules().bodies;
+    const Box3 near = ball_box(particles.position[i], (1.0 + kDisturbed) * particles.radius[i]);
+    return bodies == nullptr || bodies->all_stay_out(near);
+}
+
+bool PairPlans::moves(std::uint32_t k) const {
+    const std::size_t i = first_ + k;
+    return store_.particles().pinned[i] == 0 && !is_asleep(k) && !lies(i);
+}
+
+/// Whether reach() is all that spheres may come.
+bool PairPlans::is_bounded() const {
+    const ResponseRules& rules = response_.rules();
+    const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
+    return rules.forces.is_uniform() && rules.bodies == nullptr &&
+           std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
+}
+
+/// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force
+/// does: its spin may turn into speed.
+double PairPlans::reach(std::size_t i, double duration) const {
+    const Particles& particles = store_.particles();
+    const double turning = particles.radius[i] * length(particles.spin[i]);
+    const double speed = std::sqrt(length_squared(particles.velocity[i]) + 0.4 * turning * turning);
+    const double change = duration * length(response_.rules().forces.acceleration(store_.force_input(i, 0.0)));
+    return kPairBoxSlack * duration * (speed + change);
+}
+
+/// Of one that may touch walls; empty where it meets nobody. Those that sleep are in a grid of their own.
+Box3 PairPlans::reachable_box(std::uint32_t k) const {
+    const std::size_t i = first_ + k;
+    const Particles& particles = store_.particles();
+    const double radius = particles.radius[i];
+    if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0 || is_asleep(k)) return {};
+    const Vec3& x = particles.position[i];
+    if (particles.pinned[i] != 0 || lies(i)) return ball_box(x, radius);
+    const double begin = std::max(step_.begin, particles.birth_time[i]);
+    const double duration = std::min(step_.end, particles.birth_time[i] + particles.lifetime[i]) - begin;
+    return duration > 0.0 ? ball_box(x, radius + reach(i, duration)) : Box3{};
+}
+
+FlownPiece PairPlans::way_of_free(std::uint32_t k) const {
+    return free_way(response_.rules(), store_.force_input(first_ + k, step_.begin), step_.end);
+}
+
+Box3 PairPlans::box_of_free(std::uint32_t k) const {
+    const Path path = way_of_free(k).path;
+    return grown(box_of(path, path.duration), kPairBoxSlack * store_.particles().radius[first_ + k]);
+}
+
+bool PairPlans::lives_through(std::size_t i) const {
+    const Particles& particles = store_.particles();
+    return particles.birth_time[i] <= step_.begin && particles.birth_time[i] + particles.lifetime[i] >= step_.end;
+}
+
+/// By what has been looked at ahead. Where nothing depends on it no more is asked for.
+bool PairPlans::is_known_free(std::uint32_t k) const {
+    const std::size_t i = first_ + k;
+    if (store_.particles().radius[i] == 0.0 || is_asleep(k) || !schedule_.is_in_free_flight(i)) return false;
+    return !decides_ || (traces_->presses[k] == 0 && lives_through(i));
+}
+
+/// By going its way, as if nobody were there.
+bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
+    const std::size_t i = first_ + k;
+    const bool touches = store_.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
+    if (touches || !lives_through(i)) return false;
+    std::optional<IslandMember> member = mover_.member_of(i, step_);
+    if (!member || member->is_fixed || member->moving.state.time > step_.begin) return false;
+    MovingParticle& moving = member->moving;
+    moving.step_end = member->end;
+    scratch.segments.clear();
+    scratch.records.clear();
+    const MoveOutcome outcome = response_.move(moving, member->end - moving.state.time, scratch);
+    scratch.hits.clear();
+    scratch.loads.clear();
+    scratch.motions.clear();
+    const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
+    return goes_on && outcome.bounces == 0 && moving.state.position == way_of_free(k).path.end;
+}
+
+/// False for two whose boxes overlap that do not meet, unless others are met.
+bool PairPlans::do_meet(const NeighbourPair& pair) const {
+    if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
+    if (!is_free(pair.first) || !is_free(pair.second)) return true;
+    const FlownPiece first = way_of_free(pair.first);
+    const FlownPiece second = way_of_free(pair.second);
+    const std::vector<double>& radius = store_.particles().radius;
+    const double distance = radius[first_ + pair.first] + radius[first_ + pair.second];
+    return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
+}
+
+bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
+    if (!overlap(member.swept, place_of(k))) return false;
+    if (!is_free(k) || member.way.empty()) return true;
+    const FlownPiece way = way_of_free(k);
+    const double distance = member.radius() + store_.particles().radius[first_ + k];
+    return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
+}
+
+/// They are in a grid of their own, which stays as long as they do.
+void PairPlans::add_pairs_with_sleepers() {
+    const std::vector<std::uint8_t>& asleep = traces_->is_asleep;
+    if (grid_version_ != traces_->version || in_grid_ != asleep) {
+        sleeper_boxes_.assign(asleep.size(), {});
+        for (std::size_t k = 0; k < asleep.size(); ++k) {
+            const std::size_t i = first_ + k;
+            if (asleep[k] != 0)
+                sleeper_boxes_[k] = ball_box(store_.particles().position[i], store_.particles().radius[i]);
+        }
+        static_cast<void>(sleeper_grid_.find_pairs(sleeper_boxes_));
+        in_grid_ = asleep;
+        grid_version_ = traces_->version;
+    }
+    if (std::find(asleep.begin(), asleep.end(), 1) == asleep.end()) return;
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
+        if (boxes_[k].empty() || !moves(k)) continue;
+        near.clear();
+        sleeper_grid_.find_near(boxes_[k], near);
+        for (const std::uint32_t other : near) pairs_.push_back({std::min(k, other), std::max(k, other)});
+    }
+}
+
+void PairPlans::find_near(const Box3& box, std::vector<std::uint32_t>& found) const {
+    grid_.find_near(box, found);
+    sleeper_grid_.find_near(box, found);
+}
+
+}  // namespace ricochet

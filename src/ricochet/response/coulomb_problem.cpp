@@ -19,6 +19,10 @@ struct Start {
     int sweeps;
 };
 constexpr std::array<Start, 5> kStarts{{{false, 20}, {true, 30}, {false, 300}, {true, 1000}, {true, 6000}}};
+/// Sweeps after which what a sweep changes is looked at first, then after twice as many; and by which part it may
+/// differ from the change then, so that forces run away: they would not settle in ten thousand.
+constexpr int kFirstLook = 32;
+constexpr double kSteadyChange = 1e-3;
 constexpr double kSomeStiffening = 0.2;
 constexpr int kFrictionParts = 16;
 constexpr int kSweepsOfPart = 100;
@@ -164,8 +168,9 @@ bool CoulombProblem::solve_at(const Compliance& compliance, Effort effort) {
     if (newton(compliance, kEnoughOnTheWay)) return true;
     for (const Start& start : std::span(kStarts).first(effort == Effort::all ? kStarts.size() : 1)) {
         force_ = start.anew ? Unknowns{} : given;
-        relax(compliance, start.sweeps);
+        const bool runs_away = relax(compliance, start.sweeps);
         if (newton(compliance, kEnoughOnTheWay)) return true;
+        if (runs_away && start.anew) break;  // more sweeps from there lead on
     }
     return effort == Effort::all && grow_friction(compliance);
 }
@@ -176,7 +181,7 @@ bool CoulombProblem::grow_friction(const Compliance& compliance) {
     force_ = {};
     for (int part = 0; part < kFrictionParts; ++part) {
         friction_ = whole * part / kFrictionParts;
-        if (!newton(compliance, kEnoughOnTheWay)) relax(compliance, kSweepsOfPart);
+        if (!newton(compliance, kEnoughOnTheWay)) static_cast<void>(relax(compliance, kSweepsOfPart));
     }
     friction_ = whole;
     return newton(compliance, kEnoughOnTheWay);
@@ -203,8 +208,9 @@ bool CoulombProblem::newton(const Compliance& compliance, double enough) {
     return defect <= enough;
 }
 
-/// Gauss-Seidel: every contact and resistance in turn answers what the others do.
-void CoulombProblem::relax(const Compliance& compliance, int sweeps) {
+/// Gauss-Seidel: every contact and resistance in turn answers what the others do. True where forces run away, as in a
+/// wedge that friction jams: each sweep adds what the ones long before it did.
+bool CoulombProblem::relax(const Compliance& compliance, int sweeps) {
     MotionVector all = change();
     const auto find_rate = [&](std::size_t i) {
         rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
@@ -213,7 +219,11 @@ void CoulombProblem::relax(const Compliance& compliance, int sweeps) {
         for (std::size_t c = 0; c < all.size(); ++c) all[c] += (value - force_[i]) * direction_[i][c];
         force_[i] = value;
     };
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
+    int look = kFirstLook;
+    double change_at_look = 0.0;
+    bool runs_away = false;
+    for (int sweep = 1; sweep <= sweeps; ++sweep) {
+        const Unknowns before = sweep == look ? force_ : Unknowns{};
         for (std::size_t k = 0; k < contact_count_; ++k) {
             find_rate(k);
             set(k, std::max(0.0, force_[k] - gain_of(k, compliance) * rate_[k]));
@@ -225,7 +235,19 @@ void CoulombProblem::relax(const Compliance& compliance, int sweeps) {
             const double part = wish.is_cut ? wish.most / wish.size : 1.0;
             for (std::size_t d = 0; d < r.size; ++d) set(first_[k] + d, part * wish.force[d]);
         }
+        if (sweep != look) continue;
+        const double now = largest_change_from(before);
+        runs_away = now > kEnoughOnTheWay && std::fabs(now - change_at_look) <= kSteadyChange * now;
+        change_at_look = now;
+        look *= 2;
     }
+    return runs_away;
+}
+
+double CoulombProblem::largest_change_from(const Unknowns& before) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i] - before[i]));
+    return largest;
 }
 
 double CoulombProblem::gain_of(std::size_t contact, const Compliance& compliance) const {

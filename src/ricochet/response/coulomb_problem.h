@@ -118,7 +118,8 @@ private:
     [[nodiscard]] bool solve_at(const Compliance& compliance, Effort effort);
     [[nodiscard]] bool grow_friction(const Compliance& compliance);
     [[nodiscard]] bool newton(const Compliance& compliance, double enough);
-    void relax(const Compliance& compliance, int sweeps);
+    [[nodiscard]] bool relax(const Compliance& compliance, int sweeps);
+    [[nodiscard]] double largest_change_from(const Unknowns& before) const;
     double find_defects(const Compliance& compliance);
     void find_matrix(const Compliance& compliance);
     void find_rows_of(std::size_t resistance, const Compliance& compliance);

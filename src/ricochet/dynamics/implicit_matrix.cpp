@@ -86,7 +86,24 @@ private:
                 }
             }
         }
+        if (state_.held[i].grip > 0.0) add_friction(block, i);
         return block;
+    }
+
+    /// Across what holds it: against a change of the slip where that is slow, and else of its direction.
+    void add_friction(Block3& block, std::size_t i) const {
+        const HeldMotion& held = state_.held[i];
+        const Vec3 slip = held.slip_of(state_.v1[i]);
+        const double speed = length(slip);
+        const bool is_slow = speed <= held.yield;
+        const double factor = state_.system.mass(i) * held.grip / std::max(speed, held.yield);
+        for (std::size_t column = 0; column < 3; ++column) {
+            Vec3 unit;
+            unit[static_cast<int>(column)] = 1.0;
+            Vec3 kept = held.across(unit);
+            if (!is_slow) kept -= (slip[static_cast<int>(column)] / (speed * speed)) * slip;
+            for (std::size_t row = 0; row < 3; ++row) block[row][column] += factor * kept[static_cast<int>(row)];
+        }
     }
 
     /// What a spring adds to its ends and between them; so far the matrix holds the spring's block there.

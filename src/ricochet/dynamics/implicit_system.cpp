@@ -96,9 +96,7 @@ private:
         return result;
     }
 
-    [[nodiscard]] bool is_held(std::size_t i) const {
-        return !held_.empty() && (held_[i].count > 0 || held_[i].push != Vec3{});
-    }
+    [[nodiscard]] bool is_held(std::size_t i) const { return !held_.empty() && held_[i].count > 0; }
 
     /// Newton's method. The residual is the slope of an energy: the kinetic one, relative to the motion without
     /// springs, that of springs, what dampers take, and the work of forces. Definite matrices lead downhill from any
@@ -188,7 +186,7 @@ private:
     void set_residual(std::size_t i) {
         Vec3 missing = h_ * forces_[i] - system_.mass(i) * change_of(i);
         if (system_.is_pinned(i)) missing = {};
-        if (is_held(i)) missing = held_[i].across(missing);
+        if (is_held(i)) missing = held_[i].across(missing) + system_.mass(i) * held_[i].friction_at(v1_[i]);
         for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
     }
 
@@ -197,11 +195,8 @@ private:
         return system_.is_pinned(i) ? Vec3{} : (h_ / system_.mass(i)) * forces_[i];
     }
 
-    /// What they have to have given it, m/s.
-    [[nodiscard]] Vec3 change_of(std::size_t i) const {
-        const Vec3 change = v1_[i] - system_.velocities()[i];
-        return is_held(i) ? change - held_[i].push : change;
-    }
+    /// What they and friction have to have given it, m/s.
+    [[nodiscard]] Vec3 change_of(std::size_t i) const { return v1_[i] - system_.velocities()[i]; }
 
     /// Of the velocities: positions, forces, the energy and the negative residuals.
     void evaluate() {
@@ -221,6 +216,7 @@ private:
         right_.resize(static_cast<Eigen::Index>(3 * count));
         for (std::size_t i = 0; i < count; ++i) {
             energy_ += 0.5 * system_.mass(i) * length_squared(change_of(i));
+            if (is_held(i)) energy_ += system_.mass(i) * held_[i].friction_energy_at(v1_[i]);
             set_residual(i);
         }
     }

@@ -155,6 +155,28 @@ SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& sys
 
 }  // namespace
 
+Vec3 HeldMotion::friction_at(const Vec3& mean) const {
+    if (!(grip > 0.0)) return {};
+    const Vec3 slip = slip_of(mean);
+    return (-grip / std::max(length(slip), yield)) * slip;
+}
+
+double HeldMotion::friction_energy_at(const Vec3& mean) const {
+    if (!(grip > 0.0)) return 0.0;
+    const double slip = length(slip_of(mean));
+    return slip <= yield ? 0.5 * grip / yield * slip * slip : grip * (slip - 0.5 * yield);
+}
+
+// Where the slip is in proportion what is taken is grip / yield of what is left.
+Vec3 HeldMotion::mean_of(const Vec3& free) const {
+    if (count == 0) return free;
+    Vec3 along = across(free);
+    const Vec3 slip = along - spin_slip;
+    const double speed = length(slip);
+    if (grip > 0.0 && speed > 0.0) along -= std::min(grip / speed, grip / (grip + yield)) * slip;
+    return along + velocity;
+}
+
 SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration, double first_try) {
     switch (integrator.kind) {
         case IntegratorKind::forward_euler:

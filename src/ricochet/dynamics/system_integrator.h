@@ -19,23 +19,24 @@ struct HeldMotion {
     std::array<Vec3, 3> directions;  ///< orthogonal units, along which the velocity is given: the first `count`
     std::uint8_t count = 0;          ///< 0: nothing holds it
     Vec3 velocity;                   ///< m/s, mean over the step along these
-    Vec3 push;                       ///< m/s, by friction, in addition
+    /// m/s across them, by which the particle's spin moves the place of contact: friction is against the rest.
+    Vec3 spin_slip;
+    double grip = 0.0;   ///< m/s, the most that friction takes of the mean velocity; 0: there is none
+    double yield = 0.0;  ///< m/s > 0 where there is grip, the slip from which on it takes that; of less in proportion
 
     /// What it leaves of a vector: the part across the directions.
     [[nodiscard]] Vec3 across(Vec3 v) const {
         for (std::uint8_t k = 0; k < count; ++k) v -= dot(v, directions[k]) * directions[k];
         return v;
     }
-    /// Holds what is free so far too, at this velocity across the directions, m/s.
-    void hold_all(const Vec3& velocity_across) {
-        velocity += velocity_across;
-        for (int axis = 0; axis < 3 && count < directions.size(); ++axis) {
-            Vec3 unit;
-            unit[axis] = 1.0;
-            const Vec3 free = across(unit);
-            if (length(free) > 0.5) directions[count++] = normalized(free);
-        }
-    }
+    /// The slip of a mean velocity, m/s.
+    [[nodiscard]] Vec3 slip_of(const Vec3& mean) const { return across(mean) - spin_slip; }
+    /// What friction gives a member on its way to a mean velocity, m/s.
+    [[nodiscard]] Vec3 friction_at(const Vec3& mean) const;
+    /// The energy whose slope that is, over the mass, m^2/s^2. It is convex.
+    [[nodiscard]] double friction_energy_at(const Vec3& mean) const;
+    /// The mean velocity of a member that would have the velocity `free` if nothing held it, m/s.
+    [[nodiscard]] Vec3 mean_of(const Vec3& free) const;
 };
 
 /// How far the implicit method goes.

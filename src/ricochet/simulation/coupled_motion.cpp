@@ -27,36 +27,75 @@ double negligible_energy(const SpringNetwork& network) {
 }
 
 /// Solutions of a step among surfaces before half of it is tried.
-constexpr int kMostForesights = 4;
+constexpr int kMostForesights = 16;
 
-/// Halvings of a step for which it does not settle what surfaces hold; then the last solution is taken, and counted.
-constexpr int kMostHalvings = 6;
+/// Solutions, one after the other, none of which is better than the best before them; then no more are tried.
+constexpr int kMostWorse = 3;
 
-/// By which part of the largest speed what surfaces hold may differ from what the step was solved for.
-constexpr double kForesight = 1e-3;
+/// The least part of a step that is taken where it does not settle what surfaces hold.
+constexpr double kLeastPart = 0x1p-6;
 
-/// Tolerance of the solutions before it is known what surfaces hold: below what these may differ by.
-constexpr double kForesightTolerance = 1e-4;
+/// A part of a step is taken for this much less energy that springs get by what was not foreseen.
+constexpr double kWorthCutting = 0.5;
 
-bool agree(std::span<const HeldMotion> a, std::span<const HeldMotion> b, std::span<const Vec3> velocities) {
-    double fastest = 0.0;
-    for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        if (a[i].count != b[i].count) return false;
-        if (max_abs(a[i].velocity - b[i].velocity) > kForesight * fastest) return false;
-        if (max_abs(a[i].push - b[i].push) > kForesight * fastest) return false;
+/// Halvings, one after the other, that are not worth it; then no more are tried.
+constexpr int kMostVainCuts = 2;
+
+/// Energy that springs may get in a step where members end elsewhere than foreseen, over the kinetic energy that these
+/// would have without springs.
+constexpr double kForesight = 1e-5;
+
+/// The same where surfaces bend, over the energy that the step takes away.
+constexpr double kSpared = 0.1;
+
+/// How closely a step is solved.
+struct Closeness {
+    double tolerance;    ///< of Newton's method
+    double least_yield;  ///< of friction, see PlannedContacts::find()
+};
+/// Before it is known what surfaces hold: friction that yields more is found in fewer iterations.
+constexpr Closeness kRough{1e-5, 1e-3};
+/// After it. What yields ten times as much was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
+constexpr Closeness kClose{kNewtonTolerance, 1e-4};
+
+double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities) {
+    return ordered_sum(system.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t k = begin; k < end; ++k) sum += 0.5 * system.mass(k) * length_squared(velocities[k]);
+        return sum;
+    });
+}
+
+/// m, by which members are foreseen elsewhere than surfaces, as they are found, leave them.
+std::vector<Vec3> missed_ways(const SystemStep& step, std::span<const HeldMotion> found) {
+    std::vector<Vec3> missed(found.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        missed[k] = step.duration * (found[k].mean_of(step.free_velocities[k]) - step.velocities[k]);
     }
-    return true;
+    return missed;
+}
+
+/// J, by which springs are stretched by that.
+double misplaced_energy(const ParticleSystem& system, const SystemStep& step, std::span<const Vec3> missed) {
+    double sum = 0.0;
+    for (const ParticleSystem::Bond& bond : system.bonds()) {
+        const Spring& spring = system.spring_of(bond);
+        const Vec3 apart = step.positions[bond.second] - step.positions[bond.first];
+        const double stretch = length(apart + missed[bond.second] - missed[bond.first]) - length(apart);
+        sum += 0.5 * (spring.stiffness + spring.damping / step.duration) * stretch * stretch;
+    }
+    return sum;
 }
 
 }  // namespace
 
 CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                             const ForceField& forces, const Integrator& integrator)
+                             const ForceField& forces, const Integrator& integrator, double time_step)
     : springs_(std::move(springs)),
       mutual_(std::move(mutual)),
       solver_(std::move(solver)),
       integrator_(integrator),
+      time_step_(time_step),
       system_(forces, springs_, mutual_),
       least_energy_(negligible_energy(springs_)) {}
 
@@ -135,55 +174,93 @@ SystemStep CoupledMotion::stepped(double duration) {
 }
 
 /// The step with what surfaces hold in its equations. Where that goes on changing a part of it is taken: in half of the
-/// time springs carry less from one to the other. The next part begins with what has settled last.
+/// time springs carry less from one to the other. The next part begins with what has settled last. What a part would
+/// not make better, as on an edge from both faces of which a point is led to the other, is taken as it is, and counted.
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
     const bool is_part = first_try_ > 0.0 && first_try_ < 0.75 * duration;
-    double h = is_part ? first_try_ : duration;
-    for (int halvings = 0;; ++halvings, h *= 0.5) {
-        const Foreseen foreseen = foresee(h, spins, contacts);
-        if (!foreseen.has_settled && halvings < kMostHalvings) continue;
-        if (halvings > 0 || is_part) first_try_ = halvings > 0 ? h : 2.0 * h;
-        SystemStep step = implicit_system_step(system_, foreseen.step.duration, foreseen.held, foreseen.step.velocities,
-                                               {kNewtonTolerance, between_});
-        step.solved = step.solved && foreseen.has_settled;
-        return step;
+    Foreseen foreseen = foresee(is_part ? first_try_ : duration, spins, contacts);
+    bool is_cut = false;
+    int vain = 0;
+    double h = foreseen.step.duration;
+    while (!foreseen.has_settled && 0.5 * h >= kLeastPart * time_step_ && vain < kMostVainCuts) {
+        Foreseen half = foresee(0.5 * h, spins, contacts);
+        h = half.step.duration;
+        const bool is_better = half.has_settled || half.misplaced < kWorthCutting * foreseen.misplaced;
+        vain = is_better ? 0 : vain + 1;
+        is_cut = is_cut || is_better;
+        if (is_better) foreseen = std::move(half);
     }
+    h = foreseen.step.duration;
+    if (is_cut || is_part) first_try_ = is_cut ? h : 2.0 * h;
+    SystemStep step = std::move(foreseen.step);
+    if (!foreseen.is_close) {
+        step = implicit_system_step(system_, h, foreseen.held, step.velocities, {kNewtonTolerance, between_});
+    }
+    step.solved = step.solved && foreseen.has_settled;
+    return step;
 }
 
 /// What surfaces hold follows from the step and decides it: it is solved again until it agrees with what was foreseen
 /// for it, and closely only then.
 CoupledMotion::Foreseen CoupledMotion::foresee(double duration, std::span<const Vec3> spins,
                                                const PlannedContacts& contacts) const {
-    Foreseen foreseen;
-    SystemStep& step = foreseen.step;
-    step.duration = duration;
+    Foreseen best;
+    SystemStep step;
     step.velocities = system_.velocities();
     for (std::size_t k = 0; k < system_.size(); ++k) {
         if (system_.is_pinned(k)) continue;
         const Vec3& v = system_.velocities()[k];
         step.velocities[k] += duration * system_.own_acceleration(k, system_.time(), system_.positions()[k], v);
     }
-    foreseen.held = contacts.find(system_, step.velocities, spins, duration);
-    for (int pass = 0; pass < kMostForesights; ++pass) {
-        step = implicit_system_step(system_, step.duration, foreseen.held, step.velocities,
-                                    {kForesightTolerance, between_});
-        std::vector<HeldMotion> found = contacts.find(system_, step.free_velocities, spins, step.duration);
-        foreseen.has_settled = agree(found, foreseen.held, step.free_velocities);
-        if (foreseen.has_settled) break;
-        foreseen.held = std::move(found);
+    const double negligible = kForesight * kinetic_energy(system_, step.velocities) + least_energy_;
+    bool is_close = false;
+    std::vector<HeldMotion> held = contacts.find(system_, step.velocities, spins, duration, kRough.least_yield);
+    for (int pass = 0, worse = 0; pass < kMostForesights && worse < kMostWorse; ++pass) {
+        const Closeness& closeness = is_close ? kClose : kRough;
+        step = implicit_system_step(system_, duration, held, step.velocities, {closeness.tolerance, between_});
+        duration = step.duration;
+        const auto find = [&](double least_yield) {
+            return contacts.find(system_, step.free_velocities, spins, duration, least_yield);
+        };
+        std::vector<HeldMotion> found = find(closeness.least_yield);
+        double misplaced = misplaced_energy(system_, step, missed_ways(step, found));
+        const bool has_settled = misplaced <= negligible;
+        if (has_settled && !is_close) {
+            is_close = true;
+            held = find(kClose.least_yield);
+            continue;
+        }
+        if (has_settled) misplaced += misplaced_energy(system_, step, contacts.bends(system_, step, found));
+        ++worse;
+        if (has_settled || best.held.empty() || misplaced < best.misplaced) {
+            const double lost = lost_in(step);  // where surfaces throw members back it can be below 0
+            const bool is_true = has_settled && lost >= -negligible && misplaced <= negligible + kSpared * lost;
+            best = {step, held, misplaced, is_true, is_close};
+            worse = 0;
+        }
+        if (has_settled) break;
+        held = std::move(found);
     }
-    return foreseen;
+    return best;
+}
+
+/// J, that a step takes away; below 0 what it makes out of nothing.
+double CoupledMotion::lost_in(const SystemStep& step) const {
+    double work = 0.0;
+    for (std::size_t k = 0; k < system_.size(); ++k) {
+        if (system_.is_pinned(k)) continue;
+        const Vec3 pull =
+            system_.own_acceleration(k, system_.time() + step.duration, step.positions[k], step.velocities[k]);
+        work += system_.mass(k) * dot(pull, step.positions[k] - system_.positions()[k]);
+    }
+    const double before = energy(system_.positions(), system_.velocities());
+    return before + work - energy(step.positions, step.velocities);
 }
 
 double CoupledMotion::energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const {
-    const double kinetic = ordered_sum(system_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-        double sum = 0.0;
-        for (std::size_t k = begin; k < end; ++k) sum += 0.5 * system_.mass(k) * length_squared(velocities[k]);
-        return sum;
-    });
-    return kinetic + system_.spring_energy(positions);
+    return kinetic_energy(system_, velocities) + system_.spring_energy(positions);
 }
 
 // Energy comes from the start, from forces and from walls. What a method makes beyond that is its error, and far beyond

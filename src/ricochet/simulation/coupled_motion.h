@@ -22,9 +22,9 @@ namespace ricochet {
 /// if no surface stopped them; then each member moves along its flight and bounces; settle() takes up what came out.
 class CoupledMotion {
 public:
-    /// Throws InputError for springs that cannot be. forces must outlive it.
+    /// Throws InputError for springs that cannot be. forces must outlive it. time_step: s, of the run.
     CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                  const ForceField& forces, const Integrator& integrator);
+                  const ForceField& forces, const Integrator& integrator, double time_step);
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
     [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty() || !mutual_.empty(); }
@@ -88,11 +88,14 @@ private:
     struct Foreseen {
         SystemStep step;
         std::vector<HeldMotion> held;
+        double misplaced = 0.0;  // J, that springs get by what was not foreseen
         bool has_settled = false;
+        bool is_close = false;  // solved to the tolerance of steps
     };
     [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
                                             const PlannedContacts& contacts);
     [[nodiscard]] Foreseen foresee(double duration, std::span<const Vec3> spins, const PlannedContacts& contacts) const;
+    [[nodiscard]] double lost_in(const SystemStep& step) const;
     void plan_flights(const SystemStep& step);
     [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
     void watch_energy(const SystemStep& step);
@@ -102,6 +105,7 @@ private:
     MutualForces mutual_;
     SystemSolver solver_;
     Integrator integrator_;
+    double time_step_;
     ParticleSystem system_;
     std::vector<std::uint32_t> slots_;    // of every particle: its number among the members
     std::vector<Flight> flights_;         // of the members

@@ -16,6 +16,9 @@ constexpr std::size_t kBlock = 64;
 /// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2).
 constexpr double kRollingShare = 2.0 / 7.0;
 
+/// Of a step: what a force that grows evenly from 0 leads to, over its end and the step's length.
+constexpr double kLedBy = 1.0 / 6.0;
+
 }  // namespace
 
 /// A member on its line.
@@ -24,12 +27,15 @@ struct PlannedContacts::Flown {
     Vec3 velocity;  ///< m/s, along the line
     Vec3 spin;      ///< rad/s
     double radius;
-    double duration;  ///< s
+    double duration;     ///< s
+    double least_yield;  ///< m/s
 };
 
 std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
-                                              std::span<const Vec3> spins, double duration) const {
+                                              std::span<const Vec3> spins, double duration, double least_yield) const {
     std::vector<HeldMotion> result(system.size());
+    double fastest = 0.0;
+    for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
     parallel_for_blocks(system.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         thread_local ContactScratch scratch;
         for (std::size_t k = begin; k < end; ++k) {
@@ -40,14 +46,46 @@ std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std:
             const SurfaceGeometry geometry(world_, scratch.plane_cache);
             const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
             if (contact)
-                result[k] = held({system.velocities()[k], velocities[k], spins[k], radius, duration}, *contact);
+                result[k] =
+                    held({system.velocities()[k], velocities[k], spins[k], radius, duration, least_yield * fastest},
+                         *contact);
         }
     });
     return result;
 }
 
-/// Along the normals it gets as far as the surface, and where it rebounds back from there; friction stops a point, and
-/// lets a sphere roll, as far as it can.
+std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const SystemStep& step,
+                                         std::span<const HeldMotion> held) const {
+    std::vector<Vec3> result(system.size());
+    parallel_for_blocks(system.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        thread_local ContactScratch scratch;
+        for (std::size_t k = begin; k < end; ++k) {
+            if (held[k].count != 1) continue;
+            const Vec3& n = held[k].directions[0];
+            const Vec3& at = step.positions[k];
+            const double pressing = dot(step.velocities[k] - step.free_velocities[k], n);  // m/s
+            const double reach = step.duration * length(held[k].across(step.velocities[k]));
+            const Vec3 turned_over = (-pressing * step.duration * kLedBy) * n;
+            result[k] = turned_over;
+            if (!(reach > 2.0 * contact_offset(at))) {
+                result[k] = {};
+                continue;
+            }
+            const double radius = system.input(k, 0.0, at, {}).radius;
+            const Path path = line_path(at + reach * n, -2.0 * reach * n, 1.0);
+            const SurfaceGeometry geometry(world_, scratch.plane_cache);
+            const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
+            if (!contact) continue;
+            const Vec3& turned = contact->first().normal;
+            result[k] = path.position(contact->time) - at + turned_over - dot(turned_over, turned) * turned;
+        }
+    });
+    return result;
+}
+
+/// Along the normals it gets as far as the surface, and where it rebounds back from there. Friction stops a point, and
+/// lets a sphere roll, from the impact on, as far as it can: it takes a share of the slip that the member would have,
+/// so that in proportion to what is left of it.
 HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) const {
     HeldMotion held;
     const double part = contact.time / flown.duration;
@@ -71,18 +109,13 @@ HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) con
         pressed += approach + rebound;
         friction = std::max(friction, material.friction);
     }
-    if (held.count == 0 || friction == 0.0) return held;
-    const Vec3& normal = contact.first().normal;
-    const Vec3 slip = held.across(v - cross(flown.spin, flown.radius * normal));
-    const double speed = length(slip);
-    if (!(speed > 0.0)) return held;
+    if (held.count == 0) return held;
     const bool is_point = flown.radius == 0.0;
-    if (is_point && friction * pressed >= speed) {
-        held.hold_all(part * held.across(flown.before));
-        return held;
-    }
-    const double taken = std::min(friction * pressed, is_point ? speed : kRollingShare * speed);
-    held.push = (-(1.0 - part) * taken / speed) * slip;
+    held.grip = (1.0 - part) * friction * pressed;
+    if (!(held.grip > 0.0)) return held;
+    held.spin_slip = held.across(cross(flown.spin, flown.radius * contact.first().normal));
+    const double share = (1.0 - part) * (is_point ? 1.0 : kRollingShare);
+    held.yield = std::max(held.grip * (1.0 - share) / share, flown.least_yield);
     return held;
 }
 

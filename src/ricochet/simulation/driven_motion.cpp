@@ -75,14 +75,14 @@ public:
         const double change = std::fabs(at(time).energy_by(wrench_, about_) - alone_) + doubt * size_;
         return change > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_;
     }
-    /// True when what was added before, an impulse about the same point, would change the body's velocity where one
-    /// hits by much of what that changes.
-    [[nodiscard]] bool changes_velocity(const ColliderLoad& last, Wrench before) const {
-        const Mobility body = at(last.time).mobility;
-        before.moment += cross(about_ - body.center, before.impulse);
-        const Vec3 change = body.change_at(last.place, before);
-        return length(change) > kMostBodyChange * length(last.impulse) / last.mass;
+    /// m/s, by which an impulse with its moment about the same point as wrench() changes the velocity of the body where
+    /// a load is, at its time.
+    [[nodiscard]] double speed_by(Wrench wrench, const ColliderLoad& load) const {
+        const Mobility body = at(load.time).mobility;
+        wrench.moment += cross(about_ - body.center, wrench.impulse);
+        return length(body.change_at(load.place, wrench));
     }
+    /// All of them.
     [[nodiscard]] const Wrench& wrench() const { return wrench_; }
 
 private:
@@ -104,6 +104,21 @@ private:
     double size_ = 0.0;   // J, of what was added up
 };
 
+/// True when what a body has been given before changes its velocity where an impact is by much of what that changes.
+/// Not where a particle comes back to a body that it has touched of late, not much faster than that has been changed in
+/// this step: what lies on a body is let go by each jump of its velocity and lands again, and would cut the step each
+/// time.
+bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const Tally& tally,
+                      const BodyContacts& contacts) {
+    constexpr double kLandsAgain = 2.0;
+    const double change = tally.speed_by(before, impact);
+    if (!(change > kMostBodyChange * length(impact.impulse) / impact.mass)) return false;
+    if (!contacts.has(impact.particle)) return true;
+    Wrench since = contacts.taken;
+    since += before;
+    return impact.approach > kLandsAgain * tally.speed_by(since, impact);
+}
+
 /// When a part ends, s, in which these impacts have come, the last one at a time, before the next one: soon after it,
 /// by a power of kPartAfterImpact, and the sooner the less they take off. Till then the bodies go on as if nothing had
 /// hit them, and what has pushed one away goes along or waits. begin, shortest: when it begins, and how long it lasts
@@ -124,6 +139,17 @@ double end_after(const std::vector<Tally>& taken, double time, double next, doub
 }
 
 }  // namespace
+
+void BodyContacts::add(const std::vector<std::uint64_t>& ids) {
+    now.insert(now.end(), ids.begin(), ids.end());
+    std::sort(now.begin(), now.end());
+    now.erase(std::unique(now.begin(), now.end()), now.end());
+}
+
+void BodyContacts::begin_step() {
+    before = std::exchange(now, {});
+    taken = {};
+}
 
 DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
                            const ForceField& forces, const ResponseSettings& settings)
@@ -147,6 +173,7 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
     paths_.resize(bodies_.size());
     loads_.resize(bodies_.size());
     lying_.resize(bodies_.size());
+    contacts_.resize(bodies_.size());
 }
 
 void DrivenMotion::begin_step() {
@@ -156,6 +183,7 @@ void DrivenMotion::begin_step() {
         lying_[k] = {};
     }
     lying_for_ = 0.0;
+    for (BodyContacts& contacts : contacts_) contacts.begin_step();
 }
 
 double DrivenMotion::yielded(const ColliderLoad& load) const {
@@ -240,7 +268,7 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
             first > 0 && std::any_of(preview.begin() + first, preview.begin() + next, [&](const ColliderLoad& load) {
                 const std::size_t body = *body_of(load);
                 return tallies[body].changes_energy(load.time) ||
-                       tallies[body].changes_velocity(load, before[body].wrench());
+                       changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
     }
@@ -257,11 +285,21 @@ std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> load
 
 void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
     const std::vector<Wrench> wrenches = wrenches_of(loads);
+    std::vector<std::vector<std::uint64_t>> touching(bodies_.size());
     for (const ColliderLoad& load : loads) {
-        const auto body = load.impact ? std::nullopt : body_of(load);
-        if (body) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
+        const auto body = body_of(load);
+        if (!body) continue;
+        touching[*body].push_back(load.particle);
+        if (!load.impact) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
-    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].follow(paths_[k].back(), loads_[k], wrenches[k]);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const BodyPath& path = paths_[k].back();
+        const double lain = path.end - path.begin;
+        contacts_[k].add(touching[k]);
+        contacts_[k].taken += wrenches[k];
+        contacts_[k].taken += {-lain * loads_[k].impulse, -lain * loads_[k].moment};
+        bodies_[k].follow(path, loads_[k], wrenches[k]);
+    }
     if (!bodies_.empty()) lying_for_ += paths_.front().back().end - paths_.front().back().begin;
     is_planned_ = false;
 }

@@ -6,16 +6,34 @@
 /// them together put no energy in, the part is cut before the first impact that would: a preview says when that is.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/frame_tree.h"
+#include "ricochet/core/mobility.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
+
+/// What has come to a body of late.
+struct BodyContacts {
+    std::vector<std::uint64_t> before;  ///< ids of the particles that pushed it in the last step, in their order
+    std::vector<std::uint64_t> now;     ///< of those that have pushed it in this one
+    Wrench taken;  ///< N s, N m s about its moment_center(), that it has taken at the ends of parts of this step
+
+    [[nodiscard]] bool has(std::uint64_t particle) const {
+        return std::binary_search(before.begin(), before.end(), particle) ||
+               std::binary_search(now.begin(), now.end(), particle);
+    }
+    /// ids: in any order.
+    void add(const std::vector<std::uint64_t>& ids);
+    void begin_step();
+};
 
 class DrivenMotion {
 public:
@@ -53,6 +71,7 @@ public:
             archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
         }
         for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
+        for (BodyContacts& contacts : contacts_) archive_entries(a, contacts.now, [&](std::uint64_t& id) { a(id); });
         a(lying_for_);
         a(is_planned_);
     }
@@ -74,9 +93,10 @@ private:
     double shortest_part_;                      // s
     std::vector<std::vector<BodyPath>> paths_;  // of each body, as far back as may be asked for; the last is planned
     std::vector<Wrench> loads_;                 // of each body, N and N m: what lies on it
-    std::vector<Wrench> lying_;  // of each body, N s and N m s, of contact that lasted in this step so far
-    double lying_for_ = 0.0;     // s, of this step so far
-    bool is_planned_ = false;    // the last of them has not been followed
+    std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
+    double lying_for_ = 0.0;              // s, of this step so far
+    std::vector<BodyContacts> contacts_;  // of each body
+    bool is_planned_ = false;             // the last of them has not been followed
 };
 
 }  // namespace ricochet

@@ -309,8 +309,8 @@ inline constexpr double kFoldedRope = 1e-9;
 inline constexpr double kMostBodyChange = 0.1;
 
 /// Parts of the time to the next impact, or to the step's end, after which a part of a step ends: bodies take impulses
-/// there. Larger: they go on longer as if nothing had hit them. Much smaller: an impact that is found again later by
-/// rounding falls into the next part, where it is as good.
+/// there; its square or cube where impacts take little energy off. Larger: bodies go on longer as if nothing had hit
+/// them. Much smaller: grains that settle on a body make many parts.
 inline constexpr double kPartAfterImpact = 1e-3;
 
 /// Parts of the time step that a part of a step lasts at least. Smaller: bodies between many impacts take longer.

@@ -301,15 +301,6 @@ Mobility DrivenBody::mobility() const {
     return {diagonal_matrix(1.0 / description_.mass), inverse_inertia_, description_.center};
 }
 
-double DrivenBody::quadratic_energy(const Wrench& wrench) const {
-    const Mobility by = mobility().seen_by(map_);
-    return 0.5 * (dot(wrench.impulse, by.of_mass * wrench.impulse) + dot(wrench.moment, by.of_inertia * wrench.moment));
-}
-
-Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {
-    return mobility().seen_by(map_).change_at(where, wrench);
-}
-
 Vec3 DrivenBody::velocity() const {
     switch (description_.joint) {
         case JointKind::free:

@@ -323,6 +323,7 @@ PairBody PairIsland::body_of(const IslandMember& member) {
 void PairIsland::take_over(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
     if (member.is_fixed || member.is_cut_off) return;
+    member.is_free = false;  // also where it is hit at the begin of the step, and has not been brought anywhere
     MovingParticle& moving = member.moving;
     const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
     moving.state.velocity = body.velocity;

@@ -205,29 +205,36 @@ void leave_checkpoint(const Simulation& simulation, RunWriter& writer, const Run
     writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
 }
 
-void print_warnings(const SimulationStatistics& statistics) {
-    const auto warn = [](std::uint64_t count, const char* what) {
-        if (count > 0) cli::print("  note: {} {}\n", count, what);
+// What makes results wrong or files incomplete: also where nothing else is told.
+void print_losses(const std::string& scene, const SimulationStatistics& statistics) {
+    const auto warn = [&scene](std::uint64_t count, const char* what) {
+        if (count > 0) cli::print(stderr, "ricochet: {}: warning: {}: {}\n", scene, what, count);
     };
-    warn(statistics.frozen, "particles were stopped because their state was not finite or absurdly large (frozen)");
-    warn(statistics.springs_broken, "springs broke (springs_broken)");
-    warn(statistics.springs_lost, "springs lost a particle at an end (springs_lost)");
-    warn(statistics.unsolved_steps, "steps were not solved to the tolerance by the implicit method (unsolved_steps)");
-    warn(statistics.budget_exhausted, "times a particle spent its bounces of a step (budget_exhausted)");
-    warn(statistics.squeezed, "times surfaces that close left a particle no room: it waits for some (squeezed)");
-    warn(statistics.started_inside - statistics.started_in_overlap,
-         "points were born exactly on a surface (started_inside)");
-    warn(statistics.started_in_overlap, "spheres were born in overlap with a surface (started_in_overlap)");
-    warn(statistics.stayed, "impacts left the particle where it was (stayed)");
-    warn(statistics.births_refused_by_depth, "births were refused beyond max_depth (births_refused_by_depth)");
-    warn(statistics.births_refused_by_population,
-         "births were refused beyond most_particles (births_refused_by_population)");
-    warn(statistics.births_refused_by_overlap,
-         "births were refused: no free position for the sphere was found (births_refused_by_overlap)");
+    warn(statistics.frozen, "particles stopped because their state was not finite or absurdly large (frozen)");
     warn(statistics.lost_impulses,
-         "impulses are not in the totals of the collider files: they have 6.7e7 N s and more along an axis, beyond "
-         "what a "
-         "total can hold; the motion itself is right (lost_impulses)");
+         "impulses that are not in the totals of the collider files, since they have 6.7e7 N s and more along an axis, "
+         "beyond what a total can hold; the motion itself is right (lost_impulses)");
+}
+
+void print_notes(const SimulationStatistics& statistics) {
+    const auto warn = [](std::uint64_t count, const char* what) {
+        if (count > 0) cli::print("  note: {}: {}\n", what, count);
+    };
+    warn(statistics.springs_broken, "springs that broke (springs_broken)");
+    warn(statistics.springs_lost, "springs that lost a particle at an end (springs_lost)");
+    warn(statistics.unsolved_steps, "steps not solved to the tolerance by the implicit method (unsolved_steps)");
+    warn(statistics.budget_exhausted, "times that a particle spent its bounces of a step (budget_exhausted)");
+    warn(statistics.squeezed,
+         "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
+    warn(statistics.started_inside - statistics.started_in_overlap,
+         "points born exactly on a surface (started_inside)");
+    warn(statistics.started_in_overlap, "spheres born in overlap with a surface (started_in_overlap)");
+    warn(statistics.stayed, "impacts that left the particle where it was (stayed)");
+    warn(statistics.births_refused_by_depth, "births refused beyond max_depth (births_refused_by_depth)");
+    warn(statistics.births_refused_by_population,
+         "births refused beyond most_particles (births_refused_by_population)");
+    warn(statistics.births_refused_by_overlap,
+         "births refused, since no free position for the sphere was found (births_refused_by_overlap)");
 }
 
 void print_report(const RunSummary& summary, const std::string& output) {
@@ -242,7 +249,7 @@ void print_report(const RunSummary& summary, const std::string& output) {
                statistics.emitted, summary.particles_alive, statistics.particle_steps,
                rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
                statistics.bounces_per_step_max);
-    print_warnings(statistics);
+    print_notes(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;
         cli::print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
@@ -362,6 +369,7 @@ int cli::run_scene(const RunArguments& arguments) {
     // Only now: until all is on disk the run can go on from there.
     if (!diverged && !is_interrupted) writer.remove_checkpoint();
     if (!arguments.quiet) print_report(summary, arguments.output);
+    print_losses(summary.scene, summary.statistics);
     if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
     if (print_violations(simulation)) return 1;
     return summary.interrupted ? cli::kSignalled + InterruptGuard::signal() : 0;

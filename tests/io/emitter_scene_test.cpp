@@ -80,6 +80,10 @@ struct Spoiled {
 const Spoiled kSpoiled[] = {
     {R"("plain": {})", R"("mass": {})", "attributes.mass: the name is one of the particles' own"},
     {R"("plain": {})", R"("color": {})", "attributes.color: the name is one of the particles' own"},
+    {R"("plain": {})", R"("spin_x": {})", "attributes.spin_x: the name is one of the particles' own"},
+    {R"("plain": {})", R"("a,b": {})", "the name has control characters, commas or quotes"},
+    {R"("plain": {})", R"("a\u001b": {})", "contains a control character"},
+    {R"("plain": {})", R"("t": {"components": 3}, "t_y": {})", "\"t\" would share a column of tables"},
     {R"("components": 1, "default": 300)", R"("components": 2, "default": 300)",
      "attributes.temperature.components: found 2, expected 1 or 3"},
     {R"("default": [1, 2, 3])", R"("default": 4)", "attributes.tint.default: found 4, expected [x, y, z]"},

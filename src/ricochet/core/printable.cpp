@@ -61,4 +61,8 @@ std::string printable(std::string_view text, std::size_t longest) {
     return at < text.size() ? result + "..." : result;
 }
 
+bool is_column_name(std::string_view text) {
+    return text.find_first_of(",\"") == std::string_view::npos && printable(text) == text;
+}
+
 }  // namespace ricochet

@@ -12,4 +12,7 @@ namespace ricochet {
 /// \u202e), which no terminal obeys. Text that is longer than `longest` bytes then is cut, and ends in "...".
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
 
+/// True for text that is printable as it is, and that a column of a table may be named: without commas and quotes.
+[[nodiscard]] bool is_column_name(std::string_view text);
+
 }  // namespace ricochet

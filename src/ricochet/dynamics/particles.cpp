@@ -9,16 +9,18 @@
 
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/printable.h"
 
 namespace ricochet {
 
 namespace {
 
 // Arrays of frames, columns of tables, and what pictures make of them.
-constexpr std::array<std::string_view, 22> kOwnArrays = {
-    "id",       "x",     "y",        "z",      "vx",       "vy",       "vz",     "position",
-    "velocity", "mass",  "radius",   "age",    "contacts", "resting",  "frozen", "unsimulated_time",
-    "spin",     "speed", "lifetime", "pinned", "Points",   "TimeValue"};
+constexpr std::array<std::string_view, 28> kOwnArrays = {
+    "id",       "x",       "y",        "z",      "vx",       "vy",        "vz",     "position",
+    "velocity", "mass",    "radius",   "age",    "contacts", "resting",   "frozen", "unsimulated_time",
+    "spin",     "speed",   "lifetime", "pinned", "Points",   "TimeValue", "spin_x", "spin_y",
+    "spin_z",   "color_x", "color_y",  "color_z"};
 
 void require(bool condition, const AttributeDescription& column, const char* what) {
     if (!condition) throw InputError(fmt::format("attribute '{}': {}", column.name, what));
@@ -44,9 +46,14 @@ AttributeTable::AttributeTable(std::vector<AttributeDescription> columns)
     for (std::size_t k = 0; k < columns_.size(); ++k) {
         const AttributeDescription& column = columns_[k];
         require(!column.name.empty(), column, "the name is empty");
+        require(is_column_name(column.name), column, "the name has control characters, commas or quotes");
         require(!is_own_array(column.name), column, "the name is one of the particles' own arrays");
         require(find(column.name) == k, column, "the name is taken by another attribute");
         require(column.components == 1 || column.components == 3, column, "components must be 1 or 3");
+        for (const char* const axis : {"_x", "_y", "_z"}) {
+            require(column.components == 1 || !find(column.name + axis), column,
+                    "its column _x, _y or _z is another attribute");
+        }
         require(is_finite(column.fallback), column, "the default must be finite");
         const auto appearance = looks_attribute(column.name);
         require(!appearance || appearance->components == column.components, column,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "ricochet/core/printable.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -98,13 +99,34 @@ std::string shape_words(int components, bool spread) {
     return spread ? "[x, y, z] or [[x, y, z], [spread, spread, spread]]" : "[x, y, z]";
 }
 
+/// One of the columns that tables give to a vector.
+bool is_column_of(const AttributeDescription& vector, const std::string& name) {
+    return vector.components == 3 && name.size() == vector.name.size() + 2 && name.starts_with(vector.name) &&
+           (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"));
+}
+
+/// Why an attribute cannot be named so beside others; empty where it can.
+std::string name_problem(const AttributeDescription& attribute, const std::vector<AttributeDescription>& others) {
+    if (!is_column_name(attribute.name)) {
+        return "the name has control characters, commas or quotes, expected that of a column";
+    }
+    if (is_own_array(attribute.name) || looks_attribute(attribute.name)) {
+        return "the name is one of the particles' own, expected another one";
+    }
+    for (const AttributeDescription& other : others) {
+        if (!is_column_of(other, attribute.name) && !is_column_of(attribute, other.name)) continue;
+        return fmt::format("the attribute and \"{}\" would share a column of tables, expected another name",
+                           other.name);
+    }
+    return {};
+}
+
 void build_declared(const SceneContext& context, const NamedObject& named, SimulationSetup& setup) {
     const ObjectView& view = named.view;
     auto attribute = view.read<AttributeDescription>();
     attribute.name = named.name;
-    if (is_own_array(named.name) || looks_attribute(named.name)) {
-        context.diagnostics().error(named.name_location, view.path(),
-                                    "the name is one of the particles' own, expected another one");
+    if (const std::string problem = name_problem(attribute, setup.attributes); !problem.empty()) {
+        context.diagnostics().error(named.name_location, view.path(), problem);
         return;
     }
     if (attribute.components != 3 && attribute.components != 1) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/io/scene/context.h"
@@ -128,13 +129,17 @@ Problem integers_problem(const JsonNode& node, const KeySpec& key) {
     return std::nullopt;
 }
 
+bool has_control_character(const std::string& text) {
+    return std::any_of(text.begin(), text.end(), [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
+    });
+}
+
 Problem text_problem(const JsonNode& node, const KeySpec& key) {
     const std::string* text = node.text();
     if (text == nullptr || text->empty()) return found_expected(node, key);
-    const bool control = std::any_of(text->begin(), text->end(), [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
-    });
-    if (control) return fmt::format("{} contains a control character, expected plain text", described(node));
+    if (has_control_character(*text))
+        return fmt::format("{} contains a control character, expected plain text", described(node));
     return std::nullopt;
 }
 
@@ -297,6 +302,11 @@ private:
         for (JsonMember& member : *members) {
             if (member.key.empty())
                 diagnostics_.error(member.key_location, path, "found an empty name, expected a name");
+            if (has_control_character(member.key)) {
+                diagnostics_.error(member.key_location, path,
+                                   fmt::format("the name \"{}\" contains a control character, expected plain text",
+                                               printable(member.key, 60)));
+            }
             const std::string member_path = path_of_key(path, member.key);
             if (key.type == ValueType::table) {
                 check_object(member.value, *key.content, member_path);

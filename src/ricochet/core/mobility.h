@@ -29,6 +29,10 @@ struct Mobility {
     [[nodiscard]] Mobility seen_by(const AffineMap& map) const {
         return {congruent(map, of_mass), congruent(map, of_inertia), map.point(center)};
     }
+    /// Kinetic energy, J, that a wrench about the center would give the body, were it at rest.
+    [[nodiscard]] double energy_by(const Wrench& wrench) const {
+        return 0.5 * (dot(wrench.impulse, of_mass * wrench.impulse) + dot(wrench.moment, of_inertia * wrench.moment));
+    }
     /// The change of velocity, m/s, of the body's point at `where` by an impulse there, N s.
     [[nodiscard]] Vec3 change_at(const Vec3& where, const Vec3& impulse) const {
         const Vec3 arm = where - center;

@@ -308,6 +308,21 @@ inline constexpr double kFoldedRope = 1e-9;
 /// parts of steps.
 inline constexpr double kMostBodyChange = 0.1;
 
+/// Mass of what lies on a body, over that with which the body yields to it, above which the part of a step is planned
+/// again until its load fits. Larger: from 1 on energy grows. Smaller: more work for what converges by itself from step
+/// to step.
+inline constexpr double kHeavyLoad = 0.5;
+
+/// Parts of the change of velocity that a part of a step may have by what lies on a body, by which the load of its plan
+/// may differ from that which comes. Larger: energy comes in, or is lost. Smaller: the part is planned more often.
+inline constexpr double kLoadFits = 1e-3;
+
+/// How often a part of a step is planned for one length of it. Smaller: parts get shorter where loads begin and end
+/// within them. Larger: these cost more before they do.
+inline constexpr int kMostLoadRounds = 8;
+/// As many where it cannot be shorter.
+inline constexpr int kFewLoadRounds = 3;
+
 /// Parts of the time to the next impact, or to the step's end, after which a part of a step ends: bodies take impulses
 /// there; its square or cube where impacts take little energy off. Larger: bodies go on longer as if nothing had hit
 /// them. Much smaller: grains that settle on a body make many parts.

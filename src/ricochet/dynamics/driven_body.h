@@ -76,6 +76,11 @@ public:
     /// How it yields, in the frame's coordinates, at all times.
     [[nodiscard]] Mobility mobility() const;
 
+    /// Kinetic energy, J, that a wrench about moment_center() would give it, were it at rest.
+    [[nodiscard]] double quadratic_energy(const Wrench& wrench) const;
+    /// By how much it would change the velocity, m/s, of its point at `where` in the world.
+    [[nodiscard]] Vec3 velocity_change(const Wrench& wrench, const Vec3& where) const;
+
     [[nodiscard]] double kinetic_energy() const;                                    ///< J
     [[nodiscard]] const AffineMap& world_from_frame() const { return map_; }        ///< where its frame is
     [[nodiscard]] const Vec3& center() const { return center_; }                    ///< of mass, m

@@ -63,6 +63,7 @@ private:
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] bool is_let_go_by_jump() const;
+    [[nodiscard]] double weight_on(BodyId body) const;
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
@@ -149,7 +150,22 @@ bool ParticleMover::is_let_go_by_jump() const {
     const RecordedMotion motion{particle_.state.position, particle_.state.velocity, particle_.spin};
     HomeFrame frame(rules_.bodies);
     frame.set(rules_.bodies->body_of(held[0]));
-    return length(frame.in_frame(motion, particle_.state.time).velocity) > rules_.settings.resting_speed;
+    const double jump = length(frame.in_frame(motion, particle_.state.time).velocity);
+    return jump * weight_on(frame.body()) > rules_.settings.resting_speed;
+}
+
+/// Its mass over that with which a body yields to it, where that is above 1: what it pays to go along is a jump of a
+/// lighter body by so much more.
+double ParticleMover::weight_on(BodyId body) const {
+    if (!rules_.bodies->yields(body)) return 1.0;
+    const double time = particle_.state.time;
+    const Mobility mobility = rules_.bodies->mobility(body, time);
+    const Vec3 along =
+        rules_.bodies->world(body)
+            .nearest(particle_.contact.surfaces[0], rules_.bodies->pose(body, time).image(particle_.state.position))
+            .normal;
+    const Vec3 push = rules_.bodies->pose(body, time).world_from_frame.direction(along);
+    return std::max(1.0, particle_.state.mass * dot(mobility.change_at(particle_.state.position, push), push));
 }
 
 std::optional<Contact> ParticleMover::resume_among_bodies() {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/core/mobility.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -23,133 +22,7 @@ bool jumps(const BodyPath& before, const BodyPath& after) {
     return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
 }
 
-/// A time after one by a part of the time to another, or by more than rounding where that is no more; not after the
-/// other.
-double soon_after(double time, double next, double part) {
-    constexpr double kRounding = 16.0;  // units in the last place
-    return std::min(next, time + std::max(part * (next - time), kRounding * ulp(time)));
-}
-
-/// Kinetic energy, J, that a wrench about its center would give a body, were it at rest.
-double energy_of(const Mobility& body, const Wrench& wrench) {
-    return 0.5 *
-           (dot(wrench.impulse, body.of_mass * wrench.impulse) + dot(wrench.moment, body.of_inertia * wrench.moment));
-}
-
-/// The impulse of a load, with its moment about a point.
-Wrench wrench_of(const ColliderLoad& load, const Vec3& center) {
-    return {load.impulse, cross(load.place - center, load.impulse) + load.couple};
-}
-
-/// A body on its planned path, as it yields and moves at a time.
-struct BodyOnPath {
-    Mobility mobility;
-    Vec3 velocity;          ///< of the center of that, m/s
-    Vec3 angular_velocity;  ///< rad/s
-
-    /// J, that it takes of a wrench about `center`, m.
-    [[nodiscard]] double energy_by(Wrench wrench, const Vec3& center) const {
-        wrench.moment += cross(center - mobility.center, wrench.impulse);
-        return dot(wrench.impulse, velocity) + dot(wrench.moment, angular_velocity) + energy_of(mobility, wrench);
-    }
-};
-
-/// What a list of impacts would do to a body, as they are added one after the other.
-class Tally {
-public:
-    /// id: that of its colliders; kAtRest where it has none. All must outlive it.
-    Tally(const DrivenBody& body, const BodyPath& path, const MovingColliders* colliders, BodyId id)
-        : body_(body), path_(path), colliders_(colliders), id_(id), about_(body.moment_center()) {}
-
-    void add(const ColliderLoad& load) {
-        const Wrench wrench = wrench_of(load, about_);
-        const BodyOnPath body = at(load.time);
-        wrench_ += wrench;
-        alone_ += body.energy_by(wrench, about_);
-        lost_ += load.lost_energy - load.work - energy_of(body.mobility, wrench_of(load, body.mobility.center));
-        size_ += std::fabs(load.work) + std::fabs(load.lost_energy);
-    }
-    /// True when all of them, taken together at a time, s, would change the energy by much of what each by itself takes
-    /// off. doubt: such a part of the energies that are exchanged counts as a change, too.
-    [[nodiscard]] bool changes_energy(double time, double doubt = 0.0) const {
-        const double change = std::fabs(at(time).energy_by(wrench_, about_) - alone_) + doubt * size_;
-        return change > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_;
-    }
-    /// m/s, by which an impulse with its moment about the same point as wrench() changes the velocity of the body where
-    /// a load is, at its time.
-    [[nodiscard]] double speed_by(Wrench wrench, const ColliderLoad& load) const {
-        const Mobility body = at(load.time).mobility;
-        wrench.moment += cross(about_ - body.center, wrench.impulse);
-        return length(body.change_at(load.place, wrench));
-    }
-    /// All of them.
-    [[nodiscard]] const Wrench& wrench() const { return wrench_; }
-
-private:
-    [[nodiscard]] BodyOnPath at(double time) const {
-        const MovingPose pose = path_.at(time);
-        const Mobility local = body_.mobility();
-        const Vec3 beside = id_ == kAtRest ? Vec3{} : colliders_->turning_beside_path(id_, time);
-        return {local.seen_by(pose.world_from_frame), pose.velocity_of(local.center), pose.angular_velocity + beside};
-    }
-
-    const DrivenBody& body_;
-    const BodyPath& path_;
-    const MovingColliders* colliders_;
-    BodyId id_;
-    Vec3 about_;  // m, that moments are about
-    Wrench wrench_;
-    double alone_ = 0.0;  // J, that the body would take from each by itself, at its time
-    double lost_ = 0.0;   // J, that each by itself takes off
-    double size_ = 0.0;   // J, of what was added up
-};
-
-/// True when what a body has been given before changes its velocity where an impact is by much of what that changes.
-/// Not where a particle comes back to a body that it has touched of late, not much faster than that has been changed in
-/// this step: what lies on a body is let go by each jump of its velocity and lands again, and would cut the step each
-/// time.
-bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const Tally& tally,
-                      const BodyContacts& contacts) {
-    constexpr double kLandsAgain = 2.0;
-    const double change = tally.speed_by(before, impact);
-    if (!(change > kMostBodyChange * length(impact.impulse) / impact.mass)) return false;
-    if (!contacts.has(impact.particle)) return true;
-    Wrench since = contacts.taken;
-    since += before;
-    return impact.approach > kLandsAgain * tally.speed_by(since, impact);
-}
-
-/// When a part ends, s, in which these impacts have come, the last one at a time, before the next one: soon after it,
-/// by a power of kPartAfterImpact, and the sooner the less they take off. Till then the bodies go on as if nothing had
-/// hit them, and what has pushed one away goes along or waits. begin, shortest: when it begins, and how long it lasts
-/// at least where much is taken off, s.
-double end_after(const std::vector<Tally>& taken, double time, double next, double begin, double shortest) {
-    constexpr int kMostPowers = 3;
-    constexpr double kShorter = 0.1;
-    double end = next;
-    double part = 1.0;
-    for (int power = 1; power <= kMostPowers; ++power) {
-        part *= kPartAfterImpact;
-        end = std::max(soon_after(time, next, part), begin + shortest);
-        shortest *= kShorter;
-        const auto is_late = [&](const Tally& tally) { return tally.changes_energy(end, part); };
-        if (std::none_of(taken.begin(), taken.end(), is_late)) break;
-    }
-    return end;
-}
-
 }  // namespace
-
-void BodyContacts::add(const std::vector<std::uint64_t>& ids) {
-    now.insert(now.end(), ids.begin(), ids.end());
-    std::sort(now.begin(), now.end());
-    now.erase(std::unique(now.begin(), now.end()), now.end());
-}
-
-void BodyContacts::begin_step() {
-    before = std::exchange(now, {});
-    taken = {};
-}
 
 DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
                            const ForceField& forces, const ResponseSettings& settings)
@@ -174,6 +47,8 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
     loads_.resize(bodies_.size());
     lying_.resize(bodies_.size());
     contacts_.resize(bodies_.size());
+    relaxations_.resize(bodies_.size());
+    shares_.resize(bodies_.size(), 1.0);
 }
 
 void DrivenMotion::begin_step() {
@@ -191,15 +66,46 @@ double DrivenMotion::yielded(const ColliderLoad& load) const {
     if (!body) return 0.0;
     const AffineMap map = paths_[*body].back().at(load.time).world_from_frame;
     const Mobility mobility = bodies_[*body].mobility().seen_by(map);
-    return energy_of(mobility, wrench_of(load, mobility.center));
+    return mobility.energy_by(wrench_of(load, mobility.center));
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
+    oldest_ = oldest;
+    set_shares({});
+    plan_paths(begin, end);
+}
+
+/// What impacts at one time, or too near to be told apart, do to a body is shared: it yields to each as to all of them.
+void DrivenMotion::set_shares(std::vector<double> shares) {
+    shares.resize(bodies_.size(), 1.0);
+    if (shares == shares_) return;
+    shares_ = std::move(shares);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (collider_of_[k] == kAtRest) continue;
+        Mobility mobility = bodies_[k].mobility();
+        mobility.of_mass = shares_[k] * mobility.of_mass;
+        mobility.of_inertia = shares_[k] * mobility.of_inertia;
+        colliders_->set_mobility(collider_of_[k], mobility);
+    }
+}
+
+std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> preview, double end) const {
+    std::vector<ImpactTally> tallies = no_impacts();
+    for (const ColliderLoad& load : preview) {
+        const auto body = load.impact && load.time <= end ? body_of(load) : std::nullopt;
+        if (body) tallies[*body].add(load);
+    }
+    std::vector<double> shares;
+    for (const ImpactTally& tally : tallies) shares.push_back(tally.changes_energy(end) ? tally.share(end) : 1.0);
+    return shares;
+}
+
+void DrivenMotion::plan_paths(double begin, double end) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         std::vector<BodyPath>& paths = paths_[k];
         if (is_planned_) paths.pop_back();
         const auto first_needed =
-            std::find_if(paths.begin(), paths.end(), [&](const BodyPath& path) { return path.end >= oldest; });
+            std::find_if(paths.begin(), paths.end(), [&](const BodyPath& path) { return path.end >= oldest_; });
         paths.erase(paths.begin(), first_needed);
         paths.push_back(bodies_[k].plan(forces_, loads_[k], begin, end));
         const BodyPath& next = paths.back();
@@ -243,6 +149,14 @@ std::optional<std::size_t> DrivenMotion::body_of(const ColliderLoad& load) const
     return static_cast<std::size_t>(found - collider_of_.begin());
 }
 
+std::vector<ImpactTally> DrivenMotion::no_impacts() const {
+    std::vector<ImpactTally> tallies;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        tallies.emplace_back(bodies_[k], paths_[k].back(), colliders_, collider_of_[k]);
+    }
+    return tallies;
+}
+
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     // What lies on a body lands on it anew, slowly, at every change of its velocity.
     std::erase_if(preview,
@@ -252,15 +166,12 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     });
     const double end = paths_.front().back().end;
     const double begin = paths_.front().back().begin;
-    const auto end_of = [&](const std::vector<Tally>& taken, double time, double next) {
+    const auto end_of = [&](const std::vector<ImpactTally>& taken, double time, double next) {
         return std::min(end, end_after(taken, time, next, begin, shortest_part_));
     };
-    std::vector<Tally> tallies;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        tallies.emplace_back(bodies_[k], paths_[k].back(), colliders_, collider_of_[k]);
-    }
+    std::vector<ImpactTally> tallies = no_impacts();
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
-        const std::vector<Tally> before = tallies;
+        const std::vector<ImpactTally> before = tallies;
         for (; next < preview.size() && preview[next].time == preview[first].time; ++next) {
             tallies[*body_of(preview[next])].add(preview[next]);
         }
@@ -273,6 +184,82 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
     }
     return preview.empty() ? end : end_of(tallies, preview.back().time, end);
+}
+
+LyingLoad DrivenMotion::lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
+    LyingLoad lying;
+    std::optional<std::uint64_t> last;
+    for (const ColliderLoad& load : preview) {
+        const bool lies = !load.impact || load.approach <= slow_;
+        if (!lies || load.time > until || body_of(load) != body) continue;
+        const Wrench wrench = wrench_of(load, bodies_[body].moment_center());
+        lying.wrench += wrench;
+        const double size = dot(load.impulse, load.impulse);
+        if (last == load.particle || !(size > 0.0)) continue;
+        last = load.particle;
+        lying.heaviness += load.mass * dot(bodies_[body].velocity_change(wrench, load.place), load.impulse) / size;
+    }
+    return lying;
+}
+
+/// m/s, that a wrench (N, N m) changes a body's velocity by in a time, s; of one that turns, at its radius of gyration.
+double DrivenMotion::change_by(std::size_t body, const Wrench& load, double duration) const {
+    const Wrench whole{duration * load.impulse, duration * load.moment};
+    return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
+}
+
+DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const LyingLoad& lying, double duration) const {
+    const Wrench& planned = loads_[body];
+    const Wrench back{lying.wrench.impulse / duration, lying.wrench.moment / duration};
+    const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
+    const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
+    const double most = std::max(slow_, kMostBodyChange * speed);
+    const Wrench varies = relaxations_[body].variation(planned, back, lying.heaviness);
+    const double change = change_by(body, varies, duration);
+    return {back, change > 1.1 * most ? most / change : 1.0, change_by(body, lacks, duration) <= kLoadFits * most};
+}
+
+bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut, int round) {
+    const double begin = paths_.front().back().begin;
+    // A part that has been cut once is not cut again at the same impact.
+    double end = round == 0 || cut < begin + 0.5 * (planned_end() - begin) ? cut : planned_end();
+    const double duration = end - begin;
+    const bool can_shorten = duration > 1.5 * shortest_part_;
+    const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
+    const bool is_last = round % kMostLoadRounds >= most_rounds - 1;
+    double longest = 1.0;  // part of the duration
+    bool fits = true;
+    if (round == 0) {
+        const std::vector<double> shares = shares_of(preview, end);
+        fits = shares == shares_;
+        set_shares(shares);
+    }
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
+        if (round == 0) relaxations_[k].begin_part(loads_[k]);
+        const LyingLoad lying = lying_on(k, preview, end);
+        if (!relaxations_[k].concerns(lying)) continue;
+        const Fit fit = fit_of(k, lying, duration);
+        // DBG
+        if (can_shorten) longest = std::min(longest, fit.longest);
+        if (!fit.fits || longest < 1.0)
+            loads_[k] = relaxations_[k].next(bodies_[k], loads_[k], fit.back, lying.heaviness);
+        fits = fits && fit.fits;
+    }
+    if (!fits && is_last && can_shorten) longest = std::min(longest, 0.25);
+    if ((fits && longest == 1.0) || (is_last && !can_shorten)) {
+        for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
+        end_at(end);
+        return false;
+    }
+    if (longest < 1.0) {
+        end = begin + std::max(shortest_part_, longest * duration);
+        for (std::size_t k = 0; k < bodies_.size(); ++k) {
+            if (relaxations_[k].is_searching()) loads_[k] = relaxations_[k].shortened((end - begin) / duration);
+        }
+    }
+    plan_paths(begin, end);
+    return true;
 }
 
 std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> loads) const {
@@ -310,6 +297,7 @@ void DrivenMotion::take(std::span<const ColliderLoad> loads) {
 }
 
 double DrivenMotion::begin_part_again(double time) {
+    set_shares({});
     const std::vector<BodyPath>& paths = paths_.front();
     std::size_t path = 0;
     while (path + 1 < paths.size() && paths[path + 1].begin <= time) ++path;

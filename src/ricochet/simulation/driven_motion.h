@@ -17,23 +17,10 @@
 #include "ricochet/core/mobility.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/response/response.h"
+#include "ricochet/simulation/impact_tally.h"
+#include "ricochet/simulation/load_relaxation.h"
 
 namespace ricochet {
-
-/// What has come to a body of late.
-struct BodyContacts {
-    std::vector<std::uint64_t> before;  ///< ids of the particles that pushed it in the last step, in their order
-    std::vector<std::uint64_t> now;     ///< of those that have pushed it in this one
-    Wrench taken;  ///< N s, N m s about its moment_center(), that it has taken at the ends of parts of this step
-
-    [[nodiscard]] bool has(std::uint64_t particle) const {
-        return std::binary_search(before.begin(), before.end(), particle) ||
-               std::binary_search(now.begin(), now.end(), particle);
-    }
-    /// ids: in any order.
-    void add(const std::vector<std::uint64_t>& ids);
-    void begin_step();
-};
 
 class DrivenMotion {
 public:
@@ -52,6 +39,12 @@ public:
     [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
     /// What is planned ends at an earlier time, s.
     void end_at(double time);
+    /// Where what lies on a body is heavy beside it: plans the part once more with the load that a preview of it shows,
+    /// and ends it earlier where that load would change the body's velocity by much. cut: of cut_by(); round: how often
+    /// this part has been planned again. False when the plan fits; it ends at the cut then.
+    [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
+    /// When what is planned ends, s.
+    [[nodiscard]] double planned_end() const { return paths_.front().back().end; }
     /// The bodies go along their paths, and take the loads of that time.
     void follow(std::span<const ColliderLoad> loads);
     /// They take loads of an earlier part of the step.
@@ -73,15 +66,30 @@ public:
         for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
         for (BodyContacts& contacts : contacts_) archive_entries(a, contacts.now, [&](std::uint64_t& id) { a(id); });
         a(lying_for_);
+        for (LoadRelaxation& relaxation : relaxations_) relaxation.archive(a);
         a(is_planned_);
     }
     /// After it was restored.
     void show();
 
 private:
+    /// How the load of a plan fits to what came back from it.
+    struct Fit {
+        Wrench back;           // N, N m
+        double longest = 1.0;  // part of the duration in which the load changes the body's motion by little
+        bool fits = true;
+    };
+
+    [[nodiscard]] std::vector<ImpactTally> no_impacts() const;
+    void plan_paths(double begin, double end);
+    void set_shares(std::vector<double> shares);
+    [[nodiscard]] std::vector<double> shares_of(std::span<const ColliderLoad> preview, double end) const;
     void tell_of_jump(std::size_t body, std::size_t path) const;
     [[nodiscard]] std::optional<std::size_t> body_of(const ColliderLoad& load) const;
     [[nodiscard]] std::vector<Wrench> wrenches_of(std::span<const ColliderLoad> loads) const;
+    [[nodiscard]] LyingLoad lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const;
+    [[nodiscard]] double change_by(std::size_t body, const Wrench& load, double duration) const;
+    [[nodiscard]] Fit fit_of(std::size_t body, const LyingLoad& lying, double duration) const;
 
     std::vector<DrivenBody> bodies_;
     std::vector<std::size_t> frame_of_;  // of each body
@@ -96,7 +104,10 @@ private:
     std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
     double lying_for_ = 0.0;              // s, of this step so far
     std::vector<BodyContacts> contacts_;  // of each body
-    bool is_planned_ = false;             // the last of them has not been followed
+    std::vector<LoadRelaxation> relaxations_;  // of each body
+    std::vector<double> shares_;               // of each body: how many times as much it yields in this part
+    double oldest_ = 0.0;                      // s, of plan()
+    bool is_planned_ = false;                  // the last of them has not been followed
 };
 
 }  // namespace ricochet

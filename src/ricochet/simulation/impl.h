@@ -49,6 +49,7 @@ struct Simulation::Impl {
     [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
     [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest);
     [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
+    [[nodiscard]] double settle_driven_motion(const ParticleRange& batch, TimeSpan part);
     void record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks);
     [[nodiscard]] double oldest_position() const;
     void wake_sleepers(const TimeSpan& part);

@@ -111,16 +111,23 @@ TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& batch, const 
     TimeSpan part = rest;
     if (batch.begin == 0) {
         driven.plan(part.begin, part.end, oldest_position());
-        if (bodies) {
-            bodies->begin_step(part.begin, part.end);
-            part.end = driven.cut_by(mover.preview(batch, part));
-            driven.end_at(part.end);
-        }
+        if (bodies) part.end = settle_driven_motion(batch, part);
     } else {
         part.end = driven.begin_part_again(part.begin);
     }
     if (bodies) bodies->begin_step(part.begin, part.end);
     return part;
+}
+
+// Returns the end, s, of the part that is planned, with loads that fit to what the particles do in it.
+double Simulation::Impl::settle_driven_motion(const ParticleRange& batch, TimeSpan part) {
+    for (int round = 0;; ++round) {
+        bodies->begin_step(part.begin, part.end);
+        const std::vector<ColliderLoad> preview = mover.preview(batch, part);
+        const bool goes_on = driven.plan_again(preview, driven.cut_by(preview), round);
+        part.end = driven.planned_end();
+        if (!goes_on) return part.end;
+    }
 }
 
 // s, the earliest time at which a stored position is that of a particle; not after the step's begin, at which children

@@ -1,0 +1,109 @@
+#include "ricochet/simulation/impact_tally.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// A time after one by a part of the time to another, or by more than rounding where that is no more; not after the
+/// other.
+double soon_after(double time, double next, double part) {
+    constexpr double kRounding = 16.0;  // units in the last place
+    return std::min(next, time + std::max(part * (next - time), kRounding * ulp(time)));
+}
+
+}  // namespace
+
+/// A body on its planned path, as it yields and moves at a time.
+struct ImpactTally::BodyOnPath {
+    Mobility mobility;
+    Vec3 velocity;          ///< of the center of that, m/s
+    Vec3 angular_velocity;  ///< rad/s
+
+    [[nodiscard]] Wrench about_center(Wrench wrench, const Vec3& center) const {
+        wrench.moment += cross(center - mobility.center, wrench.impulse);
+        return wrench;
+    }
+    /// J, that it takes of a wrench about `center`, m.
+    [[nodiscard]] double energy_by(const Wrench& given, const Vec3& center) const {
+        const Wrench wrench = about_center(given, center);
+        return dot(wrench.impulse, velocity) + dot(wrench.moment, angular_velocity) + mobility.energy_by(wrench);
+    }
+};
+
+ImpactTally::BodyOnPath ImpactTally::at(double time) const {
+    const MovingPose pose = path_->at(time);
+    const Mobility local = body_->mobility();
+    const Vec3 beside = id_ == kAtRest ? Vec3{} : colliders_->turning_beside_path(id_, time);
+    return {local.seen_by(pose.world_from_frame), pose.velocity_of(local.center), pose.angular_velocity + beside};
+}
+
+void ImpactTally::add(const ColliderLoad& load) {
+    const Wrench wrench = wrench_of(load, about_);
+    const BodyOnPath body = at(load.time);
+    const double yields = body.mobility.energy_by(wrench_of(load, body.mobility.center));
+    wrench_ += wrench;
+    alone_ += body.energy_by(wrench, about_);
+    yielding_ += yields;
+    lost_ += load.lost_energy - load.work - yields;
+    size_ += std::fabs(load.work) + std::fabs(load.lost_energy);
+}
+
+bool ImpactTally::changes_energy(double time, double doubt) const {
+    const double change = std::fabs(at(time).energy_by(wrench_, about_) - alone_) + doubt * size_;
+    return change > kMostBodyChange * std::max(0.0, lost_) + kImpactEnergyRounding * size_;
+}
+
+double ImpactTally::speed_by(Wrench wrench, const ColliderLoad& load) const {
+    const Mobility body = at(load.time).mobility;
+    wrench.moment += cross(about_ - body.center, wrench.impulse);
+    return length(body.change_at(load.place, wrench));
+}
+
+double ImpactTally::share(double time) const {
+    const BodyOnPath body = at(time);
+    return std::max(1.0, body.mobility.energy_by(body.about_center(wrench_, about_)) / yielding_);
+}
+
+bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const ImpactTally& tally,
+                      const BodyContacts& contacts) {
+    constexpr double kLandsAgain = 2.0;
+    const double change = tally.speed_by(before, impact);
+    if (!(change > kMostBodyChange * length(impact.impulse) / impact.mass)) return false;
+    if (!contacts.has(impact.particle)) return true;
+    Wrench since = contacts.taken;
+    since += before;
+    return impact.approach > kLandsAgain * tally.speed_by(since, impact);
+}
+
+void BodyContacts::add(const std::vector<std::uint64_t>& ids) {
+    now.insert(now.end(), ids.begin(), ids.end());
+    std::sort(now.begin(), now.end());
+    now.erase(std::unique(now.begin(), now.end()), now.end());
+}
+
+void BodyContacts::begin_step() {
+    before = std::exchange(now, {});
+    taken = {};
+}
+
+double end_after(std::span<const ImpactTally> taken, double time, double next, double begin, double shortest) {
+    constexpr int kMostPowers = 3;
+    constexpr double kShorter = 0.1;
+    double end = next;
+    double part = 1.0;
+    for (int power = 1; power <= kMostPowers; ++power) {
+        part *= kPartAfterImpact;
+        end = std::max(soon_after(time, next, part), begin + shortest);
+        shortest *= kShorter;
+        const auto is_late = [&](const ImpactTally& tally) { return tally.changes_energy(end, part); };
+        if (std::none_of(taken.begin(), taken.end(), is_late)) break;
+    }
+    return end;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,70 @@
+#include "ricochet/simulation/load_relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+Wrench sum(const Wrench& a, double factor, const Wrench& b) {
+    return {a.impulse + factor * b.impulse, a.moment + factor * b.moment};
+}
+
+/// Of two wrenches, by how the body yields to them.
+double product(const DrivenBody& body, const Wrench& a, const Wrench& b) {
+    return 0.5 * (body.quadratic_energy(sum(a, 1.0, b)) - body.quadratic_energy(sum(a, -1.0, b)));
+}
+
+}  // namespace
+
+// What is lacking of the first load is the direction in which loads are too small.
+void LoadRelaxation::keep(const DrivenBody& body, const Wrench& planned, const Wrench& lacks) {
+    const Tried tried{planned, lacks, std::sqrt(product(body, lacks, lacks))};
+    const bool is_low = !low_ || product(body, lacks, low_->lacks) >= 0.0;
+    std::optional<Tried>& replaced = is_low ? low_ : high_;
+    std::optional<Tried>& other = is_low ? high_ : low_;
+    if (replaced && other) other->size *= 0.5;
+    replaced = last_ = tried;
+}
+
+Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const Wrench& back, double heaviness) {
+    if (heaviness > 0.0) heaviness_ = heaviness;
+    const Wrench lacks = sum(back, -1.0, planned);
+    const std::optional<Tried> before = last_;
+    fitting_ = sum(planned, 1.0 / (1.0 + heaviness_), lacks);
+    keep(body, planned, lacks);
+    if (low_ && high_) {
+        const double part = low_->size / (low_->size + high_->size);
+        return sum(low_->load, part, sum(high_->load, -1.0, low_->load));
+    }
+    if (!(heaviness > 0.0)) return {};  // the body runs away from it
+    double factor = 1.0 / (1.0 + heaviness_);
+    if (before) {  // Aitken's: along the line through the last two
+        const Wrench change = sum(lacks, -1.0, before->lacks);
+        const double size = product(body, change, change);
+        const double step =
+            std::sqrt(product(body, sum(planned, -1.0, before->load), sum(planned, -1.0, before->load)));
+        if (size > 0.0) factor = std::clamp(step / std::sqrt(size), factor, 1.0);
+    }
+    return sum(planned, factor, lacks);
+}
+
+// It grows from what it was before.
+Wrench LoadRelaxation::shortened(double part) {
+    begin_search();
+    return sum(first_, part, sum(fitting_, -1.0, first_));
+}
+
+Wrench LoadRelaxation::variation(const Wrench& planned, const Wrench& back, double heaviness) const {
+    const double weight = heaviness > 0.0 ? heaviness : heaviness_;
+    const Wrench fitting = sum(planned, 1.0 / (1.0 + weight), sum(back, -1.0, planned));
+    return sum(fitting, -1.0, first_);
+}
+
+void LoadRelaxation::end_part(const LyingLoad& lying) {
+    if (lying.heaviness > 0.0) heaviness_ = lying.heaviness;
+    is_heavy_ = lying.heaviness > kHeavyLoad;
+}
+
+}  // namespace ricochet

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/random.h"
+#include "ricochet/dynamics/particles_force.h"
 #include "ricochet/simulation.h"
 #include "support/simulations.h"
 
@@ -48,6 +51,50 @@ inline double momentum_scale(const Particles& particles) {
 
 inline double energy(const Simulation& simulation) {
     return simulation.kinetic_energy() + simulation.potential_energy().value();
+}
+
+inline GravitySettings gravity_of(double constant, double softening = 0.0, SumMethod method = SumMethod::automatic) {
+    GravitySettings settings;
+    settings.constant = constant;
+    settings.softening = softening;
+    settings.method = method;
+    return settings;
+}
+
+inline ChargeSettings unit_coulomb() {
+    ChargeSettings settings;
+    settings.constant = 1.0;
+    return settings;
+}
+
+/// Of the orbit of two_bodies().
+inline constexpr double kEccentricity = 0.3;
+
+/// Of masses 3 and 1 with G (m1 + m2) = 1, on an ellipse of semi-axis 1, at pericentre.
+inline SimulationSetup two_bodies(double time_step, double duration) {
+    SimulationSetup setup = testing::setup_of(time_step, duration);
+    const double distance = 1.0 - kEccentricity;
+    const double speed = std::sqrt((1.0 + kEccentricity) / (1.0 - kEccentricity));
+    setup.particles = {body({-0.25 * distance, 0, 0}, {0, -0.25 * speed, 0}, 3.0),
+                       body({0.75 * distance, 0, 0}, {0, 0.75 * speed, 0}, 1.0)};
+    setup.particles_forces.push_back({make_mutual_gravity(gravity_of(0.25))});
+    return setup;
+}
+
+/// Like charges in a ball.
+inline SimulationSetup charged_gas(std::size_t count, double time_step, double duration) {
+    SimulationSetup setup = testing::setup_of(time_step, duration);
+    setup.attributes = {{"charge", 1, {}}};
+    RandomSequence draws(11, 4, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3 at = 0.8 * draws.in_unit_ball();
+        const Vec3 velocity = draws.unit_vector();
+        setup.particles.push_back(body(at, velocity, 0.5 + draws.uniform(), {{k % 3 == 0 ? 0.2 : 0.1, 0, 0}}));
+    }
+    ChargeSettings settings = unit_coulomb();
+    settings.softening = 0.05;
+    setup.particles_forces.push_back({make_coulomb_force(settings)});
+    return setup;
 }
 
 }  // namespace ricochet::test

@@ -57,11 +57,11 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
     std::erase_if(particles, [&](std::uint32_t k) {
         if (freedom_[k] != Freedom::unknown) return true;
         freedom_[k] = Freedom::bound;  // until it says otherwise
-        return !decides_ || boxes_[k].empty() || !moves(k);
+        return !parts_.may_be_dense() || boxes_[k].empty() || !moves(k);
     });
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
-        mover_.prepare(scratch);
+        parts_.mover.prepare(scratch);
         for (std::size_t n = begin; n < end; ++n) {
             const std::uint32_t k = particles[n];
             if (!flies_freely(k, scratch)) continue;
@@ -73,21 +73,21 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
 
 /// Held by walls alone, for as long as nothing comes: where single particles may sleep it does.
 bool PairPlans::lies(std::size_t i) const {
-    const Particles& particles = store_.particles();
-    if (particles.held[i] == 0 || !response_.rules().forces.is_steady()) return false;
-    const MovingColliders* const bodies = response_.rules().bodies;
+    const Particles& particles = parts_.store.particles();
+    if (particles.held[i] == 0 || !parts_.response.rules().forces.is_steady()) return false;
+    const MovingColliders* const bodies = parts_.response.rules().bodies;
     const Box3 near = ball_box(particles.position[i], (1.0 + kDisturbed) * particles.radius[i]);
     return bodies == nullptr || bodies->all_stay_out(near);
 }
 
 bool PairPlans::moves(std::uint32_t k) const {
     const std::size_t i = first_ + k;
-    return store_.particles().pinned[i] == 0 && !is_asleep(k) && !lies(i);
+    return parts_.store.particles().pinned[i] == 0 && !is_asleep(k) && !lies(i);
 }
 
 /// Whether reach() is all that spheres may come.
 bool PairPlans::is_bounded() const {
-    const ResponseRules& rules = response_.rules();
+    const ResponseRules& rules = parts_.response.rules();
     const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
     return rules.forces.is_uniform() && rules.bodies == nullptr &&
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
@@ -96,17 +96,18 @@ bool PairPlans::is_bounded() const {
 /// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force
 /// does: its spin may turn into speed.
 double PairPlans::reach(std::size_t i, double duration) const {
-    const Particles& particles = store_.particles();
+    const Particles& particles = parts_.store.particles();
     const double turning = particles.radius[i] * length(particles.spin[i]);
     const double speed = std::sqrt(length_squared(particles.velocity[i]) + 0.4 * turning * turning);
-    const double change = duration * length(response_.rules().forces.acceleration(store_.force_input(i, 0.0)));
+    const double change =
+        duration * length(parts_.response.rules().forces.acceleration(parts_.store.force_input(i, 0.0)));
     return kPairBoxSlack * duration * (speed + change);
 }
 
 /// Of one that may touch walls; empty where it meets nobody. Those that sleep are in a grid of their own.
 Box3 PairPlans::reachable_box(std::uint32_t k) const {
     const std::size_t i = first_ + k;
-    const Particles& particles = store_.particles();
+    const Particles& particles = parts_.store.particles();
     const double radius = particles.radius[i];
     if (radius == 0.0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0 || is_asleep(k)) return {};
     const Vec3& x = particles.position[i];
@@ -117,38 +118,39 @@ Box3 PairPlans::reachable_box(std::uint32_t k) const {
 }
 
 FlownPiece PairPlans::way_of_free(std::uint32_t k) const {
-    return free_way(response_.rules(), store_.force_input(first_ + k, step_.begin), step_.end);
+    return free_way(parts_.response.rules(), parts_.store.force_input(first_ + k, step_.begin), step_.end);
 }
 
 Box3 PairPlans::box_of_free(std::uint32_t k) const {
     const Path path = way_of_free(k).path;
-    return grown(box_of(path, path.duration), kPairBoxSlack * store_.particles().radius[first_ + k]);
+    return grown(box_of(path, path.duration), kPairBoxSlack * parts_.store.particles().radius[first_ + k]);
 }
 
 bool PairPlans::lives_through(std::size_t i) const {
-    const Particles& particles = store_.particles();
+    const Particles& particles = parts_.store.particles();
     return particles.birth_time[i] <= step_.begin && particles.birth_time[i] + particles.lifetime[i] >= step_.end;
 }
 
 /// By what has been looked at ahead. Where nothing depends on it no more is asked for.
 bool PairPlans::is_known_free(std::uint32_t k) const {
     const std::size_t i = first_ + k;
-    if (store_.particles().radius[i] == 0.0 || is_asleep(k) || !schedule_.is_in_free_flight(i)) return false;
-    return !decides_ || (traces_->presses[k] == 0 && lives_through(i));
+    if (parts_.store.particles().radius[i] == 0.0 || is_asleep(k) || !parts_.schedule.is_in_free_flight(i))
+        return false;
+    return !parts_.may_be_dense() || (traces_->presses[k] == 0 && lives_through(i));
 }
 
 /// By going its way, as if nobody were there.
 bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     const std::size_t i = first_ + k;
-    const bool touches = store_.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
+    const bool touches = parts_.store.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
     if (touches || !lives_through(i)) return false;
-    std::optional<IslandMember> member = mover_.member_of(i, step_);
+    std::optional<IslandMember> member = parts_.mover.member_of(i, step_);
     if (!member || member->is_fixed || member->moving.state.time > step_.begin) return false;
     MovingParticle& moving = member->moving;
     moving.step_end = member->end;
     scratch.segments.clear();
     scratch.records.clear();
-    const MoveOutcome outcome = response_.move(moving, member->end - moving.state.time, scratch);
+    const MoveOutcome outcome = parts_.response.move(moving, member->end - moving.state.time, scratch);
     scratch.hits.clear();
     scratch.loads.clear();
     scratch.motions.clear();
@@ -162,7 +164,7 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
     const FlownPiece first = way_of_free(pair.first);
     const FlownPiece second = way_of_free(pair.second);
-    const std::vector<double>& radius = store_.particles().radius;
+    const std::vector<double>& radius = parts_.store.particles().radius;
     const double distance = radius[first_ + pair.first] + radius[first_ + pair.second];
     return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
 }
@@ -171,7 +173,7 @@ bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     if (!overlap(member.swept, place_of(k))) return false;
     if (!is_free(k) || member.way.empty()) return true;
     const FlownPiece way = way_of_free(k);
-    const double distance = member.radius() + store_.particles().radius[first_ + k];
+    const double distance = member.radius() + parts_.store.particles().radius[first_ + k];
     return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
 }
 
@@ -183,7 +185,7 @@ void PairPlans::add_pairs_with_sleepers() {
         for (std::size_t k = 0; k < asleep.size(); ++k) {
             const std::size_t i = first_ + k;
             if (asleep[k] != 0)
-                sleeper_boxes_[k] = ball_box(store_.particles().position[i], store_.particles().radius[i]);
+                sleeper_boxes_[k] = ball_box(parts_.store.particles().position[i], parts_.store.particles().radius[i]);
         }
         static_cast<void>(sleeper_grid_.find_pairs(sleeper_boxes_));
         in_grid_ = asleep;

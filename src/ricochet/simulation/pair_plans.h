@@ -14,7 +14,7 @@
 
 #include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/response/pair_island.h"
-#include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/pair_parts.h"
 
 namespace ricochet {
 
@@ -27,10 +27,7 @@ struct PairTraces {
 
 class PairPlans {
 public:
-    /// All must outlive it. decides: results depend on who may meet whom, since islands may be dense.
-    PairPlans(const ParticleStore& store, const QuerySchedule& schedule, ActiveMover& mover, const Response& response,
-              bool decides)
-        : store_(store), schedule_(schedule), mover_(mover), response_(response), decides_(decides) {}
+    explicit PairPlans(const PairParts& parts) : parts_(parts) {}
 
     /// What those of a range declare for a step, and which of them may meet. traces must live as long as the plans are
     /// asked. Particles are called by their numbers in the range from here on.
@@ -74,11 +71,7 @@ private:
     void add_pairs_with_sleepers();
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 
-    const ParticleStore& store_;
-    const QuerySchedule& schedule_;
-    ActiveMover& mover_;
-    const Response& response_;
-    const bool decides_;
+    PairParts parts_;
     std::size_t first_ = 0;  // of the range
     TimeSpan step_;
     bool is_bounded_ = true;

@@ -245,7 +245,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
       pairs(options.particle_contacts
-                ? std::make_unique<PairMotion>(store, schedule, mover, *response, *options.particle_contacts)
+                ? std::make_unique<PairMotion>(PairParts{store, schedule, mover, *response, *options.particle_contacts})
                 : nullptr),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);

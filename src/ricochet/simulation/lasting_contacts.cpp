@@ -1,10 +1,10 @@
-// Spheres that lie still on each other fall asleep; what wakes them.
+#include "ricochet/simulation/lasting_contacts.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/simulation/pair_motion.h"
 
 namespace ricochet {
 namespace {
@@ -25,10 +25,15 @@ constexpr double kWakingFall = 0.01;
 constexpr double kMorePressed = 4.0;
 constexpr double kWeights = 2.0;
 
+bool is_at_rest(const NetworkMember& member, const NetworkBody& planned) {
+    const double way = member.duration * (length(planned.velocity) + member.radius * length(planned.spin));
+    return way < kStillWay * member.radius;
+}
+
 }  // namespace
 
-std::optional<std::size_t> PairMotion::index_of(std::uint64_t particle) const {
-    const std::vector<std::uint64_t>& ids = store_.particles().id;
+std::optional<std::size_t> LastingContacts::index_of(std::uint64_t particle) const {
+    const std::vector<std::uint64_t>& ids = parts_.store.particles().id;
     if (ids.empty() || particle < ids.front()) return std::nullopt;
     const std::size_t guess = particle - ids.front();  // while nobody has gone
     if (guess < ids.size() && ids[guess] == particle) return guess;
@@ -37,84 +42,85 @@ std::optional<std::size_t> PairMotion::index_of(std::uint64_t particle) const {
     return static_cast<std::size_t>(at - ids.begin());
 }
 
-/// Marks who sleeps; wakes piles that have lost a sphere, and those that colliders come near.
-void PairMotion::find_sleepers(const ParticleRange& range, const TimeSpan& step) {
+void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
+    first_ = range.begin;
     traces_.is_asleep.assign(range.size(), 0);
     if (range.begin != 0 || piles_.empty()) return;
     std::vector<std::uint64_t> disturbed;
-    const MovingColliders* const bodies = response_.rules().bodies;
+    const MovingColliders* const bodies = parts_.response.rules().bodies;
     for (const std::uint64_t particle : piles_.particles()) {
         const std::optional<std::size_t> i = index_of(particle);
-        if (!i || store_.is_fixed(*i)) {
+        if (!i || parts_.store.is_fixed(*i)) {
             disturbed.push_back(particle);
             continue;
         }
         traces_.is_asleep[*i] = 1;
-        schedule_.leave_alone(*i);
-        const Particles& particles = store_.particles();
+        parts_.schedule.leave_alone(*i);
+        const Particles& particles = parts_.store.particles();
         const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
         if (bodies != nullptr && !bodies->all_stay_out(near)) disturbed.push_back(particle);
     }
     for (const std::uint64_t particle : disturbed) wake_pile(particle, step.begin);
 }
 
-void PairMotion::wake_pile(std::uint64_t particle, double time) {
+void LastingContacts::wake_pile(std::uint64_t particle, double time) {
     const std::vector<std::uint64_t> pile = piles_.pile_of(particle);
     if (pile.empty()) return;
     for (const std::uint64_t member : pile) {
         const std::optional<std::size_t> i = index_of(member);
         if (!i) continue;
-        mover_.wake(*i, time);
+        parts_.mover.wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     piles_.wake(pile, memory_);
 }
 
-void PairMotion::wake_all(double time) {
+void LastingContacts::wake_all(double time) {
     while (!piles_.empty()) wake_pile(piles_.particles().front(), time);
 }
 
-/// What the plans of a step depend on.
-void PairMotion::find_traces(const ParticleRange& range) {
+const PairTraces& LastingContacts::find_traces() {
+    const std::size_t size = traces_.is_asleep.size();
     traces_.version = piles_.version();
-    traces_.presses.assign(range.size(), 0);
+    traces_.presses.assign(size, 0);
     const auto mark = [&](std::uint64_t particle) {
         const std::optional<std::size_t> i = index_of(particle);
-        if (i && *i >= range.begin && *i < range.end) traces_.presses[*i - range.begin] = 1;
+        if (i && *i >= first_ && *i - first_ < size) traces_.presses[*i - first_] = 1;
     };
     for (const NetworkMemory::Entry& entry : memory_.entries()) {
         mark(entry.key.particle);
         if (!entry.key.is_wall()) mark(entry.key.other);
     }
+    return traces_;
 }
 
 /// Slow ones do not: their contacts say whether they press.
-bool PairMotion::hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const {
+bool LastingContacts::hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const {
     if (is_asleep(pair.first) == is_asleep(pair.second)) return false;
     const std::size_t i = first_ + (is_asleep(pair.first) ? pair.second : pair.first);
-    const Particles& particles = store_.particles();
-    const double pull = length(response_.rules().forces.acceleration(store_.force_input(i, step.begin)));
-    const double slow =
-        std::max(response_.rules().settings.resting_speed, std::sqrt(2.0 * pull * kWakingFall * particles.radius[i]));
+    const Particles& particles = parts_.store.particles();
+    const double pull = length(parts_.response.rules().forces.acceleration(parts_.store.force_input(i, step.begin)));
+    const double slow = std::max(parts_.response.rules().settings.resting_speed,
+                                 std::sqrt(2.0 * pull * kWakingFall * particles.radius[i]));
     return length(particles.velocity[i]) > slow;
 }
 
-bool PairMotion::wake_those_hit(const TimeSpan& step) {
+bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& step) {
     if (piles_.empty() || first_ != 0) return false;
     std::vector<std::uint64_t> hit;
-    for (std::size_t n = 0; n < plans_.pairs().size(); ++n) {
-        const NeighbourPair& pair = plans_.pairs()[n];
-        if (!plans_.may_meet(n) || !hits_sleeper(pair, step)) continue;
+    for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
+        const NeighbourPair& pair = plans.pairs()[n];
+        if (!plans.may_meet(n) || !hits_sleeper(pair, step)) continue;
         const std::uint32_t k = is_asleep(pair.first) ? pair.first : pair.second;
-        hit.push_back(store_.particles().id[first_ + k]);
+        hit.push_back(parts_.store.particles().id[first_ + k]);
     }
     for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);
     return !hit.empty();
 }
 
 /// What belts and the like drive is pushed by them for good.
-bool PairMotion::is_carried_by_material(const NetworkIsland& network, std::size_t index) const {
-    const ResponseRules& rules = response_.rules();
+bool LastingContacts::is_carried_by_material(const NetworkIsland& network, std::size_t index) const {
+    const ResponseRules& rules = parts_.response.rules();
     const std::vector<WallPush> pushes = network.pushes_of(index);
     return std::any_of(pushes.begin(), pushes.end(), [&](const WallPush& push) {
         return rules.materials[rules.world.material_of(push.surface)].drives();
@@ -122,22 +128,16 @@ bool PairMotion::is_carried_by_material(const NetworkIsland& network, std::size_
 }
 
 /// It lives through the whole step, and nothing that moves is near.
-bool PairMotion::may_lie(const NetworkMember& member, const TimeSpan& step) const {
+bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step) const {
     if (member.is_fixed || member.is_squeezed || member.duration != step.end - step.begin) return false;
-    const MovingColliders* const bodies = response_.rules().bodies;
+    const MovingColliders* const bodies = parts_.response.rules().bodies;
     const Box3 near = ball_box(member.moving->state.position, (1.0 + kWakingFall) * member.radius);
     return bodies == nullptr || bodies->all_stay_out(near);
 }
 
-bool PairMotion::is_at_rest(const NetworkMember& member, const NetworkBody& planned) const {
-    const double way = member.duration * (length(planned.velocity) + member.radius * length(planned.spin));
-    return way < kStillWay * member.radius;
-}
-
-/// Those that have lain still for long, and that nobody else pushes or rests on, lie from now on.
-void PairMotion::let_lie(Island& island, std::vector<NetworkMember>& members, NetworkIsland& network,
-                         const TimeSpan& step) {
-    if (first_ != 0 || !response_.rules().forces.is_steady()) return;
+void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
+                              DenseTrace& trace) const {
+    if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
     std::vector<std::pair<std::uint64_t, std::size_t>> by_id;
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -146,7 +146,7 @@ void PairMotion::let_lie(Island& island, std::vector<NetworkMember>& members, Ne
         sleepy[i] = members[i].is_fixed ? 1 : 0;
         if (!may_lie(members[i], step) || !is_at_rest(members[i], network.planned(i))) continue;
         const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, kStepsToSleep);
-        island.still.push_back({id, steps});
+        trace.still.push_back({id, steps});
         sleepy[i] = steps == kStepsToSleep && !is_carried_by_material(network, i) ? 1 : 0;
     }
     std::sort(by_id.begin(), by_id.end());
@@ -154,7 +154,7 @@ void PairMotion::let_lie(Island& island, std::vector<NetworkMember>& members, Ne
         return std::lower_bound(by_id.begin(), by_id.end(), std::pair<std::uint64_t, std::size_t>(id, 0))->second;
     };
     std::vector<std::uint8_t> falls = sleepy;
-    for (const NetworkMemory::Entry& entry : island.pressed) {
+    for (const NetworkMemory::Entry& entry : trace.pressed) {
         if (entry.key.is_wall()) continue;
         const std::size_t a = number_of(entry.key.particle);
         const std::size_t b = number_of(entry.key.other);
@@ -165,74 +165,84 @@ void PairMotion::let_lie(Island& island, std::vector<NetworkMember>& members, Ne
         if (falls[i] == 0 || members[i].is_fixed) continue;
         network.let_rest(i);
         const std::uint64_t id = members[i].moving->id;
-        island.falling_asleep.push_back(id);
+        trace.falling_asleep.push_back(id);
         for (const WallPush& push : network.pushes_of(i)) {
             const double mass = members[i].moving->state.mass;
-            island.weights.push_back({id, push.surface, -(mass / members[i].duration) * push.velocity_change});
+            trace.weights.push_back({id, push.surface, -(mass / members[i].duration) * push.velocity_change});
         }
     }
-    std::sort(island.falling_asleep.begin(), island.falling_asleep.end());
+    std::sort(trace.falling_asleep.begin(), trace.falling_asleep.end());
 }
 
-void PairMotion::put_to_sleep(const TimeSpan& step) {
-    if (first_ != 0) return;
+void LastingContacts::end(std::span<const DenseTrace* const> traces, const TimeSpan& step) {
+    std::vector<NetworkMemory::Entry> pressed;
+    for (const DenseTrace* const trace : traces) {
+        pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
+    }
+    if (first_ == 0) memory_.replace({});
+    memory_.add(pressed);
+    if (first_ == 0) put_to_sleep(traces, step);
+}
+
+void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step) {
     std::vector<SleepingPiles::Still> still;
-    for (const Island& island : islands_) still.insert(still.end(), island.still.begin(), island.still.end());
+    for (const DenseTrace* const trace : traces) still.insert(still.end(), trace->still.begin(), trace->still.end());
     piles_.set_still(std::move(still));
     wake_those_loaded(step);
-    for (const Island& island : islands_) {
-        const std::vector<std::uint64_t>& falling = island.falling_asleep;
+    for (const DenseTrace* const trace : traces) {
+        const std::vector<std::uint64_t>& falling = trace->falling_asleep;
         if (falling.empty()) continue;
         std::vector<NetworkMemory::Entry> contacts;
         const auto falls = [&](std::uint64_t id) { return std::binary_search(falling.begin(), falling.end(), id); };
-        for (const NetworkMemory::Entry& entry : island.pressed) {
+        for (const NetworkMemory::Entry& entry : trace->pressed) {
             if (falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other)))
                 contacts.push_back(entry);
         }
-        piles_.add(falling, contacts, island.weights);
+        piles_.add(falling, contacts, trace->weights);
     }
 }
 
 /// Among colliders that move the verifier follows everybody's time.
-void PairMotion::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
-    if (piles_.empty() || first_ != 0 || response_.rules().bodies == nullptr) return;
+void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
+    if (piles_.empty() || first_ != 0 || parts_.response.rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
-        if (is_asleep(static_cast<std::uint32_t>(k))) mover_.check_sleeper(k, step, record);
+        if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
     }
 }
 
-std::uint64_t PairMotion::sleeper_of(const NetworkKey& key) const {
+std::uint64_t LastingContacts::sleeper_of(const NetworkKey& key) const {
     return piles_.has(key.particle) ? key.particle : key.other;
 }
 
-bool PairMotion::is_at_edge_of_sleep(const NetworkKey& key) const {
+bool LastingContacts::is_at_edge_of_sleep(const NetworkKey& key) const {
     return !key.is_wall() && piles_.has(key.particle) != piles_.has(key.other);
 }
 
-bool PairMotion::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
+bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
     if (!is_at_edge_of_sleep(entry.key)) return false;
     const std::optional<std::size_t> i = index_of(sleeper_of(entry.key));
     if (!i) return false;
     const NetworkImpulse* const before = piles_.contacts().find(entry.key);
-    const ForceInput state = store_.force_input(*i, step.begin);
-    const double weight = state.mass * length(response_.rules().forces.acceleration(state)) * (step.end - step.begin);
+    const ForceInput state = parts_.store.force_input(*i, step.begin);
+    const double weight =
+        state.mass * length(parts_.response.rules().forces.acceleration(state)) * (step.end - step.begin);
     return entry.impulse.normal > kMorePressed * ((before != nullptr ? before->normal : 0.0) + kWeights * weight);
 }
 
 /// The one of two that does not sleep has gone, or there is a gap between them.
-bool PairMotion::has_parted(const NetworkKey& key) const {
+bool LastingContacts::has_parted(const NetworkKey& key) const {
     if (!is_at_edge_of_sleep(key)) return false;
     const std::optional<std::size_t> i = index_of(key.particle);
     const std::optional<std::size_t> k = index_of(key.other);
     if (!i || !k) return true;
-    const Particles& p = store_.particles();
+    const Particles& p = parts_.store.particles();
     const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];
     return gap > kWakingFall * std::min(p.radius[*i], p.radius[*k]);
 }
 
 /// By contacts between those that sleep and those that do not.
-void PairMotion::wake_those_loaded(const TimeSpan& step) {
+void LastingContacts::wake_those_loaded(const TimeSpan& step) {
     if (piles_.empty()) return;
     std::vector<std::uint64_t> loaded;
     for (const NetworkMemory::Entry& entry : memory_.entries()) {

@@ -1,0 +1,52 @@
+/// \file
+/// Private to the simulation: islands of spheres in which contacts last, or in which impact would follow impact. They
+/// are planned together, by the problem of all their contacts (NetworkIsland), and moved each for itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/response/network/network_island.h"
+#include "ricochet/response/pair_island.h"
+#include "ricochet/simulation/lasting_contacts.h"
+#include "ricochet/simulation/pair_parts.h"
+
+namespace ricochet {
+
+class DenseIslands {
+public:
+    /// contacts must outlive it.
+    DenseIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
+
+    /// An island that is dense before anything has been tried. Where spheres pressed on each other in the last step
+    /// they still do; many that lose energy soon will.
+    [[nodiscard]] bool begins_dense(const std::vector<IslandMember>& members) const;
+    /// Moves the members of an island to the step's end. Several threads may run different ones.
+    [[nodiscard]] DenseTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
+
+private:
+    /// What planning an island takes, kept for the next one.
+    struct Work {
+        Work(const ResponseRules& rules, const PairLaw& law) : network(rules, law) {}
+        NetworkIsland network;
+        NeighbourGrid grid;
+        std::vector<Box3> boxes;
+        std::vector<std::array<std::uint32_t, 2>> pairs;
+        std::vector<NetworkMember> members;
+    };
+    [[nodiscard]] std::unique_ptr<Work> take_work();
+    void take_members(std::vector<IslandMember>& members, Work& work) const;
+    [[nodiscard]] NetworkReport plan(Work& work, double duration) const;
+    void move(std::vector<IslandMember>& members, Work& work, const DenseTrace& trace) const;
+
+    PairParts parts_;
+    const LastingContacts& contacts_;
+    std::mutex spare_mutex_;
+    std::vector<std::unique_ptr<Work>> spare_;
+};
+
+}  // namespace ricochet

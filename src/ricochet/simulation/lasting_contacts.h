@@ -1,0 +1,87 @@
+/// \file
+/// Private to the simulation: what lasts from step to step where spheres are planned together in dense islands: what
+/// their contacts did, and which of them sleep.
+///
+/// What has lain still in a dense island for a while sleeps (SleepingPiles): nothing moves it, until it is hit, or
+/// pressed otherwise than when it fell asleep.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ricochet/response/network/network_island.h"
+#include "ricochet/simulation/pair_parts.h"
+#include "ricochet/simulation/pair_plans.h"
+#include "ricochet/simulation/sleeping_piles.h"
+
+namespace ricochet {
+
+/// What a dense island leaves behind; empty for others.
+struct DenseTrace {
+    std::vector<NetworkMemory::Entry> pressed;   ///< what its contacts do
+    std::vector<SleepingPiles::Still> still;     ///< those that have not moved
+    std::vector<std::uint64_t> falling_asleep;   ///< ids, ascending
+    std::vector<SleepingPiles::Weight> weights;  ///< of those
+    bool is_unsolved = false;                    ///< the sweeps did not come to the tolerance
+};
+
+class LastingContacts {
+public:
+    explicit LastingContacts(const PairParts& parts) : parts_(parts) { parts_.mover.set_piles(&piles_); }
+
+    /// A step begins for the particles of a range: says who sleeps; wakes piles that have lost a sphere, and those that
+    /// colliders come near.
+    void begin(const ParticleRange& range, const TimeSpan& step);
+    /// What plans depend on; again after somebody has woken.
+    [[nodiscard]] const PairTraces& find_traces();
+    /// Wakes piles that are hit, by what is planned; false where there are none.
+    [[nodiscard]] bool wake_those_hit(const PairPlans& plans, const TimeSpan& step);
+    /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
+    [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
+    /// Of the contacts of the last step's dense islands.
+    [[nodiscard]] const NetworkMemory& memory() const { return memory_; }
+
+    /// Those of a dense island that have lain still for long, and that nobody else pushes or rests on, lie from now on:
+    /// their plans are changed.
+    void let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
+                 DenseTrace& trace) const;
+
+    /// A step has ended, with these dense islands.
+    void end(std::span<const DenseTrace* const> traces, const TimeSpan& step);
+    /// Shows the verifier, where there is one, that sleepers have stayed where they are.
+    void check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const;
+    /// Wakes all that sleep, at a time, s.
+    void wake_all(double time);
+
+    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    template <class Archive>
+    void archive(Archive& a) {
+        memory_.archive(a);
+        piles_.archive(a);
+    }
+
+private:
+    [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
+    [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t particle) const;
+    void wake_pile(std::uint64_t particle, double time);
+    [[nodiscard]] bool hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const;
+    [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
+    [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;
+    void put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step);
+    void wake_those_loaded(const TimeSpan& step);
+    [[nodiscard]] std::uint64_t sleeper_of(const NetworkKey& key) const;
+    [[nodiscard]] bool is_at_edge_of_sleep(const NetworkKey& key) const;
+    [[nodiscard]] bool is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const;
+    [[nodiscard]] bool has_parted(const NetworkKey& key) const;
+
+    PairParts parts_;
+    std::size_t first_ = 0;  // of the range: numbers count from it
+    PairTraces traces_;
+    NetworkMemory memory_;
+    SleepingPiles piles_;
+};
+
+}  // namespace ricochet

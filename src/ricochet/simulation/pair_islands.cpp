@@ -1,0 +1,237 @@
+#include "ricochet/simulation/pair_islands.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+/// Islands per unit of parallel work.
+constexpr std::size_t kBlock = 16;
+
+/// Impacts per sphere and step beyond which an island is dense.
+constexpr std::size_t kMostImpacts = 4;
+
+bool contains(const Box3& outer, const Box3& inner) {
+    return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
+}
+
+}  // namespace
+
+void PairIslands::work_off(const ParticleRange& range, const TimeSpan& step) {
+    first_ = range.begin;
+    round_ = 0;
+    find_islands(range);
+    run(step);
+    while (join_those_met()) rebuild(step);
+    for (Island& island : islands_) {
+        // Those that have flown as if nobody had been there go the ordinary way.
+        std::erase_if(island.members, [](const IslandMember& member) { return member.is_free; });
+    }
+}
+
+void PairIslands::find_islands(const ParticleRange& range) {
+    parents_.resize(range.size());
+    std::iota(parents_.begin(), parents_.end(), 0U);
+    std::vector<std::uint32_t> involved;
+    for (std::size_t n = 0; n < plans_.pairs().size(); ++n) {
+        if (!plans_.may_meet(n)) continue;
+        const NeighbourPair& pair = plans_.pairs()[n];
+        static_cast<void>(join(pair.first, pair.second));
+        involved.push_back(pair.first);
+        involved.push_back(pair.second);
+    }
+    // Where a sphere may go farther than its box those that meet nobody are watched, too.
+    for (std::uint32_t k = 0; plans_.may_roam() && k < range.size(); ++k) {
+        if (plans_.is_bound(k)) involved.push_back(k);
+    }
+    islands_ = islands_of(std::move(involved));
+}
+
+std::uint32_t PairIslands::root_of(std::uint32_t k) {
+    while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
+    return k;
+}
+
+/// False where they are of one island already.
+bool PairIslands::join(std::uint32_t a, std::uint32_t b) {
+    a = root_of(a);
+    b = root_of(b);
+    if (a == b) return false;
+    parents_[std::max(a, b)] = std::min(a, b);
+    joined_.push_back(a);
+    joined_.push_back(b);
+    return true;
+}
+
+/// Islands in the order of their lowest particles.
+std::vector<PairIslands::Island> PairIslands::islands_of(std::vector<std::uint32_t> involved) {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(involved.size());
+    for (const std::uint32_t k : involved) keys.push_back(std::uint64_t{root_of(k)} << 32U | k);
+    parallel_sort(keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<Island> islands;
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+        if (n == 0 || keys[n] >> 32U != keys[n - 1] >> 32U) islands.emplace_back();
+        islands.back().particles.push_back(static_cast<std::uint32_t>(keys[n]));
+    }
+    return islands;
+}
+
+void PairIslands::run(const TimeSpan& step) {
+    parallel_for_blocks(islands_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        MoveScratch scratch;
+        parts_.mover.prepare(scratch);
+        PairIsland worker(parts_.response, parts_.settings);
+        for (std::size_t n = begin; n < end; ++n) {
+            Island& island = islands_[n];
+            if (!island.members.empty()) continue;  // as before
+            island.round = round_;
+            take_members(island, step);
+            island.is_dense = dense_.begins_dense(island.members);
+            if (!island.is_dense && parts_.settings.method == PairMethod::automatic) {
+                island.is_dense = !worker.run(island.members, scratch, kMostImpacts * island.members.size());
+                if (island.is_dense) take_members(island, step);
+            } else if (!island.is_dense) {
+                worker.run(island.members, scratch);
+            }
+            if (island.is_dense) {
+                island.trace = dense_.run(island.members, step);
+                continue;
+            }
+            island.impacts = worker.impacts();
+            island.meetings = worker.meetings();
+        }
+    });
+}
+
+/// As they are at the step's begin. By place, not by id, so that ids do not decide.
+void PairIslands::take_members(Island& island, const TimeSpan& step) {
+    const std::vector<Vec3>& position = parts_.store.particles().position;
+    std::vector<std::uint32_t> order = island.particles;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Vec3& p = position[first_ + a];
+        const Vec3& q = position[first_ + b];
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+    });
+    island.members.clear();
+    island.members.reserve(order.size());
+    for (const std::uint32_t k : order) {
+        auto member = parts_.mover.member_of(first_ + k, step);
+        if (!member) continue;
+        member->is_fixed = member->is_fixed || contacts_.sleeps(first_ + k);
+        island.members.push_back(std::move(*member));
+    }
+}
+
+/// Who flies freely has declared its way, others how far they may come.
+bool PairIslands::is_off_plan(const Island& island, const IslandMember& member) const {
+    if (member.is_fixed) return false;
+    const auto k = static_cast<std::uint32_t>(member.particle - first_);
+    if (plans_.is_free(k)) return member.impacts > 0 || island.is_dense;
+    return member.impacts > 0 || !contains(plans_.box(k), member.swept);
+}
+
+/// First those of islands of this round, then those of islands that have been joined before.
+PairIslands::OffPlan PairIslands::members_off_plan() const {
+    OffPlan off;
+    std::vector<const IslandMember*> earlier;
+    for (const Island& island : islands_) {
+        const bool is_new = island.round == round_;
+        if (!is_new && island.round == 0) continue;
+        for (const IslandMember& member : island.members) {
+            if (is_off_plan(island, member)) (is_new ? off.members : earlier).push_back(&member);
+        }
+    }
+    off.of_this_round = off.members.size();
+    off.members.insert(off.members.end(), earlier.begin(), earlier.end());
+    for (const IslandMember* member : off.members) off.swept.push_back(member->swept);
+    return off;
+}
+
+/// What those of this round have met of what has done what it has declared, and was off its plan in the first round.
+std::vector<std::vector<std::uint32_t>> PairIslands::met_by(const OffPlan& off) {
+    std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
+    const auto for_each = [&](const auto& body) {
+        parallel_for_blocks(met.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) body(*off.members[n], off.swept[n], met[n]);
+        });
+    };
+    for_each([&](const IslandMember&, const Box3& swept, auto& found) { plans_.find_near(swept, found); });
+    std::vector<std::uint32_t> all;
+    for (const auto& found : met) all.insert(all.end(), found.begin(), found.end());
+    plans_.ask(std::move(all));
+    for_each([&](const IslandMember& member, const Box3& swept, auto& found) {
+        std::erase_if(found, [&](std::uint32_t k) { return !plans_.comes_to(member, k); });
+        if (round_ == 0) return;
+        std::vector<std::uint32_t> near;
+        first_off_plan_grid_.find_near(swept, near);
+        for (const std::uint32_t k : near) {
+            const IslandMember* const other = first_off_plan_[k];  // valid where it has not been run anew
+            if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other))
+                found.push_back(first_numbers_[k]);
+        }
+    });
+    return met;
+}
+
+/// False where both ways are known and do not meet.
+bool PairIslands::may_have_met(const IslandMember& first, const IslandMember& second) {
+    if (first.way.empty() || second.way.empty()) return true;
+    return first_meeting(first.way, second.way, first.radius() + second.radius(), 0.0).has_value();
+}
+
+/// True where members that are off their plans have met particles of other islands, which are joined. What islands of
+/// earlier rounds have to do with each other is known.
+bool PairIslands::join_those_met() {
+    const OffPlan off = members_off_plan();
+    const auto number = [&](const IslandMember& member) {
+        return static_cast<std::uint32_t>(member.particle - first_);
+    };
+    const std::vector<std::vector<std::uint32_t>> met = met_by(off);
+    joined_.clear();
+    for (std::size_t n = 0; n < off.of_this_round; ++n) {
+        for (const std::uint32_t k : met[n]) static_cast<void>(join(number(*off.members[n]), k));
+    }
+    NeighbourGrid& grid = round_ == 0 ? first_off_plan_grid_ : off_plan_grid_;
+    for (const NeighbourPair& pair : grid.find_pairs(off.swept)) {
+        if (pair.first >= off.of_this_round) continue;  // both are of earlier rounds
+        const IslandMember& first = *off.members[pair.first];
+        const IslandMember& second = *off.members[pair.second];
+        if (may_have_met(first, second)) static_cast<void>(join(number(first), number(second)));
+    }
+    if (round_ == 0) {
+        first_off_plan_ = off.members;
+        first_numbers_.clear();
+        for (const IslandMember* member : off.members) first_numbers_.push_back(number(*member));
+    }
+    return !joined_.empty();
+}
+
+/// Islands that have been joined begin anew; the others stay.
+void PairIslands::rebuild(const TimeSpan& step) {
+    std::vector<std::uint32_t> involved = joined_;
+    for (const Island& island : islands_) {
+        involved.insert(involved.end(), island.particles.begin(), island.particles.end());
+    }
+    std::vector<Island> next = islands_of(std::move(involved));
+    auto before = islands_.begin();
+    for (Island& island : next) {
+        while (before != islands_.end() && before->particles.front() < island.particles.front()) ++before;
+        if (before != islands_.end() && before->particles == island.particles) island = std::move(*before++);
+    }
+    islands_ = std::move(next);
+    if (round_++ == 0) has_run_anew_.assign(parents_.size(), 0);
+    run(step);
+    for (const Island& island : islands_) {
+        if (island.round != round_) continue;
+        for (const std::uint32_t k : island.particles) has_run_anew_[k] = 1;
+    }
+}
+
+}  // namespace ricochet

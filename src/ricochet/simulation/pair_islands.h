@@ -1,0 +1,80 @@
+/// \file
+/// Private to the simulation: islands of spheres that meet each other in a step, and what each of them does.
+///
+/// Those that may meet, by what they declare (PairPlans), form islands, which are worked off in parallel: impact by
+/// impact (PairIsland), or by the problem of all contacts (DenseIslands). A member that has done something else than it
+/// has declared may have missed somebody: its island and those that it would have met are joined and worked off again
+/// from the step's begin, in rounds, until there are none.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/response/pair_island.h"
+#include "ricochet/simulation/dense_islands.h"
+#include "ricochet/simulation/lasting_contacts.h"
+#include "ricochet/simulation/pair_parts.h"
+#include "ricochet/simulation/pair_plans.h"
+
+namespace ricochet {
+
+class PairIslands {
+public:
+    struct Island {
+        std::vector<std::uint32_t> particles;  ///< numbers in the range, ascending
+        std::vector<IslandMember> members;     ///< by place
+        std::vector<PairImpactRecord> impacts;
+        std::vector<PairMeeting> meetings;
+        bool is_dense = false;
+        DenseTrace trace;
+        std::size_t round = 0;  ///< in which it has been worked off
+    };
+
+    /// All must outlive it.
+    PairIslands(const PairParts& parts, PairPlans& plans, const LastingContacts& contacts)
+        : parts_(parts), plans_(plans), contacts_(contacts), dense_(parts, contacts) {}
+
+    /// Works off the islands among the particles of a range, whose plans have been found.
+    void work_off(const ParticleRange& range, const TimeSpan& step);
+    /// Those of this step, in the order of their lowest particles, without members that have flown freely.
+    [[nodiscard]] std::vector<Island>& all() { return islands_; }
+
+private:
+    /// Members that may have met others than those of their island.
+    struct OffPlan {
+        std::vector<const IslandMember*> members;
+        std::vector<Box3> swept;        ///< by them
+        std::size_t of_this_round = 0;  ///< so many come first
+    };
+
+    void find_islands(const ParticleRange& range);
+    [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
+    bool join(std::uint32_t a, std::uint32_t b);
+    [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
+    void run(const TimeSpan& step);
+    void take_members(Island& island, const TimeSpan& step);
+    [[nodiscard]] bool is_off_plan(const Island& island, const IslandMember& member) const;
+    [[nodiscard]] OffPlan members_off_plan() const;
+    [[nodiscard]] static bool may_have_met(const IslandMember& first, const IslandMember& second);
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> met_by(const OffPlan& off);
+    [[nodiscard]] bool join_those_met();
+    void rebuild(const TimeSpan& step);
+
+    PairParts parts_;
+    PairPlans& plans_;
+    const LastingContacts& contacts_;
+    DenseIslands dense_;
+    std::size_t first_ = 0;  // of the range: numbers count from it
+    std::vector<Island> islands_;
+    std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
+    std::size_t round_ = 0;               // of joining islands
+    std::vector<std::uint32_t> joined_;   // in the last round
+    NeighbourGrid off_plan_grid_;
+    NeighbourGrid first_off_plan_grid_;  // of the members that were off their plans in the first round
+    std::vector<const IslandMember*> first_off_plan_;
+    std::vector<std::uint32_t> first_numbers_;  // of these
+    std::vector<std::uint8_t> has_run_anew_;    // by number, in a later round
+};
+
+}  // namespace ricochet

@@ -301,9 +301,14 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
         ++(*members_)[contact.first].impacts, ++(*members_)[contact.second].impacts;
         contact.first = number(contact.first), contact.second = number(contact.second);
     }
-    answer_pair_impacts(settings_, response_.rules().settings.resting_speed, bodies, contacts);
-    for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
-    if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
+    // No direction parts those of one centre, as children of one place are.
+    std::erase_if(contacts,
+                  [&](const PairContact& c) { return before[c.first].position == before[c.second].position; });
+    if (!contacts.empty()) {
+        answer_pair_impacts(settings_, response_.rules().settings.resting_speed, bodies, contacts);
+        for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
+        if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
+    }
     for (std::size_t k = 0; k < changed.size(); ++k) {
         if (!(*members_)[changed[k]].is_gone()) take_over(changed[k], bodies[k]);
     }

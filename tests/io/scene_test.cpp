@@ -304,6 +304,8 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:65: particles[0].radius: found 1e+300, expected at most 1e+75 in magnitude"},
     {R"("emitters": [{"type": "point", "burst": 1, "particle_radius": [1, 1e300]}])",
      "s.json:1:79: emitters[0].particle_radius: found the spread 1e+300, expected a smaller one"},
+    {R"("particles": [{"position": [0, 0, 0], "mass": 1e-322}])",
+     "s.json:1:63: particles[0].mass: found 1e-322, expected a number >= 1e-300 (kg)"},
     {R"("particles": [{"position": [0, 0, 0], "mass": 0}])",
      "s.json:1:63: particles[0].mass: found 0, expected a number >= 1e-300 (kg)"},
     {R"("emitters": [{"type": "point", "burst": 1, "mass": [1, 1]}])",

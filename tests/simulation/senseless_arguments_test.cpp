@@ -176,7 +176,7 @@ TEST(SenselessArguments, CollidersAreRefused) {
 }
 
 TEST(SenselessArguments, ParticlesAreRefused) {
-    expect_values_refused("particle 1: mass", {0.0, -1.0, kNan, kInfinity},
+    expect_values_refused("particle 1: mass", {0.0, 1e-322, -1.0, kNan, kInfinity},
                           [](auto& s, double x) { s.particles[1].mass = x; });
     expect_values_refused("particle 1: radius", {-1.0, kNan, kInfinity},
                           [](auto& s, double x) { s.particles[1].radius = x; });
@@ -222,7 +222,7 @@ TEST(SenselessArguments, ForcesSpringsAndEmittersAreRefused) {
     });
     expect_values_refused("source", {1e80}, [](auto& s, double x) { s.emitters[0].shape = SphereShape{{}, x}; });
     expect_refused({"burst", [](auto& s) { s.emitters[0].burst = 1ULL << 32U; }});
-    expect_values_refused("source", {kNan, -1.0}, [](auto& s, double x) { s.emitters[0].mass.mean = x; });
+    expect_values_refused("source", {kNan, 1e-322, -1.0}, [](auto& s, double x) { s.emitters[0].mass.mean = x; });
     expect_values_refused("source", {kNan, -1.0}, [](auto& s, double x) { s.emitters[0].radius.mean = x; });
     expect_values_refused("center", {kNan, kInfinity}, [](auto& s, double x) {
         s.emitters[0].shape = PointShape{{x, 0, 0}};

@@ -125,7 +125,7 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
     const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
     if (!springs_.empty()) watch_energy(step);
-    unsolved_steps_ += step.solved ? 0 : 1;
+    is_unsolved_ = is_unsolved_ || !step.solved;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
     plan_flights(step);
     return step.duration;
@@ -341,6 +341,8 @@ std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, d
 }
 
 void CoupledMotion::settle(const Particles& particles) {
+    unsolved_steps_ += is_unsolved_ ? 1 : 0;
+    is_unsolved_ = false;
     if (!springs_.empty()) springs_.break_overstretched(particles.position);
 }
 

@@ -56,7 +56,7 @@ public:
 
     /// After the move of what was planned: gives members the momentum that the departures of others mean.
     void correct_velocities(Particles& particles);
-    /// After the step: breaks what is overstretched.
+    /// After the step: counts it where a part of it was not solved, and breaks what is overstretched.
     void settle(const Particles& particles);
 
     /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h. Call bind after it.
@@ -113,6 +113,7 @@ private:
     Departures departures_;               // of the members, from the flights
     double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
+    bool is_unsolved_ = false;  // a part of the present step
     std::function<void()> between_;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.

@@ -115,6 +115,7 @@ DenseTrace DenseIslands::run(std::vector<IslandMember>& members, const TimeSpan&
     trace.is_unsolved = !report.is_converged;
     trace.pressed = work->network.entries();
     if (report.is_converged) contacts_.let_lie(work->members, work->network, step, trace);
+    if (!trace.falling_asleep.empty()) trace.touching = work->network.touching();
     move(members, *work, trace);
     const std::lock_guard lock(spare_mutex_);
     spare_.push_back(std::move(work));

@@ -25,6 +25,12 @@ constexpr double kWakingFall = 0.01;
 constexpr double kMorePressed = 4.0;
 constexpr double kWeights = 2.0;
 
+/// The same of what pushes it aside, not onto what holds it: more than what leans on it.
+constexpr double kWeightsAside = 2.0;
+
+/// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
+constexpr double kAlongPull = 0.5;
+
 bool is_at_rest(const NetworkMember& member, const NetworkBody& planned) {
     const double way = member.duration * (length(planned.velocity) + member.radius * length(planned.spin));
     return way < kStillWay * member.radius;
@@ -94,15 +100,22 @@ const PairTraces& LastingContacts::find_traces() {
     return traces_;
 }
 
-/// Slow ones do not: their contacts say whether they press.
-bool LastingContacts::hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const {
-    if (is_asleep(pair.first) == is_asleep(pair.second)) return false;
-    const std::size_t i = first_ + (is_asleep(pair.first) ? pair.second : pair.first);
+/// Slow ones that only press it onto what holds it do not: their contacts say how much. hitting, sleeping: indices.
+bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const {
     const Particles& particles = parts_.store.particles();
-    const double pull = length(parts_.response.rules().forces.acceleration(parts_.store.force_input(i, step.begin)));
-    const double slow = std::max(parts_.response.rules().settings.resting_speed,
-                                 std::sqrt(2.0 * pull * kWakingFall * particles.radius[i]));
-    return length(particles.velocity[i]) > slow;
+    const double pull = length(parts_.response.rules().forces.acceleration(parts_.store.force_input(hitting, time)));
+    const double resting = parts_.response.rules().settings.resting_speed;
+    const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
+    const Vec3& velocity = particles.velocity[hitting];
+    if (length(velocity) > slow) return true;
+    const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
+    return is_aside(sleeping, towards, time) && dot(velocity, towards) > resting * length(towards);
+}
+
+/// Whether a push in a direction moves it where nothing but friction holds it.
+bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
+    const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(sleeping, time));
+    return pull == Vec3{} || dot(direction, pull) < kAlongPull * length(direction) * length(pull);
 }
 
 bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& step) {
@@ -110,12 +123,30 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
     std::vector<std::uint64_t> hit;
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
         const NeighbourPair& pair = plans.pairs()[n];
-        if (!plans.may_meet(n) || !hits_sleeper(pair, step)) continue;
-        const std::uint32_t k = is_asleep(pair.first) ? pair.first : pair.second;
-        hit.push_back(parts_.store.particles().id[first_ + k]);
+        if (!plans.may_meet(n) || is_asleep(pair.first) == is_asleep(pair.second)) continue;
+        const std::uint32_t sleeping = is_asleep(pair.first) ? pair.first : pair.second;
+        const std::uint32_t hitting = is_asleep(pair.first) ? pair.second : pair.first;
+        if (hits_sleeper(first_ + hitting, first_ + sleeping, step.begin))
+            hit.push_back(parts_.store.particles().id[first_ + sleeping]);
     }
     for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);
     return !hit.empty();
+}
+
+bool LastingContacts::wake_those_pushed(std::span<const PairImpactRecord> impacts, const DenseTrace& trace,
+                                        const TimeSpan& step) {
+    if (piles_.empty() || first_ != 0) return false;
+    std::vector<std::uint64_t> pushed;
+    for (const PairImpactRecord& impact : impacts) {
+        if (piles_.has(impact.first) == piles_.has(impact.second)) continue;
+        if (impact.approach > parts_.response.rules().settings.resting_speed)
+            pushed.push_back(piles_.has(impact.first) ? impact.first : impact.second);
+    }
+    for (const NetworkMemory::Entry& entry : trace.pressed) {
+        if (is_pressed_more(entry, step)) pushed.push_back(sleeper_of(entry.key));
+    }
+    for (const std::uint64_t particle : pushed) wake_pile(particle, step.begin);
+    return !pushed.empty();
 }
 
 /// What belts and the like drive is pushed by them for good.
@@ -188,7 +219,7 @@ void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, co
     std::vector<SleepingPiles::Still> still;
     for (const DenseTrace* const trace : traces) still.insert(still.end(), trace->still.begin(), trace->still.end());
     piles_.set_still(std::move(still));
-    wake_those_loaded(step);
+    wake_those_left(step);
     for (const DenseTrace* const trace : traces) {
         const std::vector<std::uint64_t>& falling = trace->falling_asleep;
         if (falling.empty()) continue;
@@ -199,6 +230,7 @@ void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, co
                 contacts.push_back(entry);
         }
         piles_.add(falling, contacts, trace->weights);
+        piles_.join(trace->touching);
     }
 }
 
@@ -227,7 +259,12 @@ bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const T
     const ForceInput state = parts_.store.force_input(*i, step.begin);
     const double weight =
         state.mass * length(parts_.response.rules().forces.acceleration(state)) * (step.end - step.begin);
-    return entry.impulse.normal > kMorePressed * ((before != nullptr ? before->normal : 0.0) + kWeights * weight);
+    const double held = before != nullptr ? before->normal : 0.0;
+    const std::optional<std::size_t> other = index_of(entry.key.particle + entry.key.other - sleeper_of(entry.key));
+    const std::vector<Vec3>& position = parts_.store.particles().position;
+    if (other && is_aside(*i, position[*i] - position[*other], step.begin))
+        return entry.impulse.normal > kMorePressed * held + kWeightsAside * weight;
+    return entry.impulse.normal > kMorePressed * (held + kWeights * weight);
 }
 
 /// The one of two that does not sleep has gone, or there is a gap between them.
@@ -241,17 +278,14 @@ bool LastingContacts::has_parted(const NetworkKey& key) const {
     return gap > kWakingFall * std::min(p.radius[*i], p.radius[*k]);
 }
 
-/// By contacts between those that sleep and those that do not.
-void LastingContacts::wake_those_loaded(const TimeSpan& step) {
+/// Those that have lost what leant on them, or held them.
+void LastingContacts::wake_those_left(const TimeSpan& step) {
     if (piles_.empty()) return;
-    std::vector<std::uint64_t> loaded;
-    for (const NetworkMemory::Entry& entry : memory_.entries()) {
-        if (is_pressed_more(entry, step)) loaded.push_back(sleeper_of(entry.key));
-    }
+    std::vector<std::uint64_t> parted;
     for (const NetworkMemory::Entry& entry : piles_.contacts().entries()) {
-        if (has_parted(entry.key)) loaded.push_back(sleeper_of(entry.key));
+        if (has_parted(entry.key)) parted.push_back(sleeper_of(entry.key));
     }
-    for (const std::uint64_t particle : loaded) wake_pile(particle, step.end);
+    for (const std::uint64_t particle : parted) wake_pile(particle, step.end);
 }
 
 }  // namespace ricochet

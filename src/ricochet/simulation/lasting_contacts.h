@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ricochet/response/network/network_island.h"
+#include "ricochet/response/pair_record.h"
 #include "ricochet/simulation/pair_parts.h"
 #include "ricochet/simulation/pair_plans.h"
 #include "ricochet/simulation/sleeping_piles.h"
@@ -25,6 +26,7 @@ struct DenseTrace {
     std::vector<SleepingPiles::Still> still;     ///< those that have not moved
     std::vector<std::uint64_t> falling_asleep;   ///< ids, ascending
     std::vector<SleepingPiles::Weight> weights;  ///< of those
+    std::vector<NetworkKey> touching;            ///< where some do, pairs that touch, whether they press or not
     bool is_unsolved = false;                    ///< the sweeps did not come to the tolerance
 };
 
@@ -39,6 +41,10 @@ public:
     [[nodiscard]] const PairTraces& find_traces();
     /// Wakes piles that are hit, by what is planned; false where there are none.
     [[nodiscard]] bool wake_those_hit(const PairPlans& plans, const TimeSpan& step);
+    /// Wakes piles of which an island, as it has been worked off, has hit or pushed one; false where there are none.
+    /// Else the step has to begin anew: they were walls to it.
+    [[nodiscard]] bool wake_those_pushed(std::span<const PairImpactRecord> impacts, const DenseTrace& trace,
+                                         const TimeSpan& step);
     /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
     /// Of the contacts of the last step's dense islands.
@@ -67,11 +73,12 @@ private:
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t particle) const;
     void wake_pile(std::uint64_t particle, double time);
-    [[nodiscard]] bool hits_sleeper(const NeighbourPair& pair, const TimeSpan& step) const;
+    [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const;
+    [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
     [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;
     void put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step);
-    void wake_those_loaded(const TimeSpan& step);
+    void wake_those_left(const TimeSpan& step);
     [[nodiscard]] std::uint64_t sleeper_of(const NetworkKey& key) const;
     [[nodiscard]] bool is_at_edge_of_sleep(const NetworkKey& key) const;
     [[nodiscard]] bool is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const;

@@ -16,13 +16,24 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
     contacts_.begin(range, step);
     do {
-        plans_.find(range, step, contacts_.find_traces());
-    } while (contacts_.wake_those_hit(plans_, step));
-    islands_.work_off(range, step);
+        do {
+            plans_.find(range, step, contacts_.find_traces());
+        } while (contacts_.wake_those_hit(plans_, step));
+        islands_.work_off(range, step);
+    } while (wake_those_pushed(step));
     for (const PairIslands::Island& island : islands_.all()) {
         // It leaves the others alone until they are taken over.
         for (const IslandMember& member : island.members) parts_.schedule.leave_alone(member.particle);
     }
+}
+
+/// Whom islands have pushed that was asleep: nothing has been taken over yet.
+bool PairMotion::wake_those_pushed(const TimeSpan& step) {
+    bool have_woken = false;
+    for (const PairIslands::Island& island : islands_.all()) {
+        if (contacts_.wake_those_pushed(island.impacts, island.trace, step)) have_woken = true;
+    }
+    return have_woken;
 }
 
 void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {

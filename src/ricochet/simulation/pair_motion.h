@@ -53,6 +53,7 @@ public:
     }
 
 private:
+    [[nodiscard]] bool wake_those_pushed(const TimeSpan& step);
     void measure_overlaps();
 
     PairParts parts_;

@@ -61,6 +61,10 @@ void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::
     ++version_;
 }
 
+void SleepingPiles::join(const std::vector<NetworkKey>& touching) {
+    for (const NetworkKey& pair : touching) join(pair.particle, pair.other);
+}
+
 /// Where both sleep.
 void SleepingPiles::join(std::uint64_t first, std::uint64_t second) {
     const Sleeper* const a = find(first);

@@ -43,6 +43,8 @@ public:
     /// Those fall asleep, with contacts of all of them. Piles that contacts join are one.
     void add(const std::vector<std::uint64_t>& particles, const std::vector<NetworkMemory::Entry>& contacts,
              const std::vector<Weight>& weights);
+    /// Pairs of spheres that touch: their piles are one, where both sleep.
+    void join(const std::vector<NetworkKey>& touching);
     /// All of the pile that a particle is of, ascending; nobody where it does not sleep.
     [[nodiscard]] std::vector<std::uint64_t> pile_of(std::uint64_t particle) const;
     /// Wakes a whole pile, and adds its contacts to a memory.

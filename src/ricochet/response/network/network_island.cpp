@@ -23,6 +23,9 @@ constexpr double kRounding = 1e-12;
 /// Part of a radius beside it in which contacts are looked for even where nothing moves.
 constexpr double kReach = 0.05;
 
+/// Parts of the smaller radius: spheres with no more between them touch.
+constexpr double kTouching = 0.01;
+
 /// m, for a sphere that goes a way, m.
 double reach_of(double way, double radius) { return 2.0 * way + kReach * radius; }
 
@@ -214,6 +217,16 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
         if (solver_.impulses()[i].normal > 0.0) entries.push_back({keys_[i], solver_.impulses()[i]});
     }
     return entries;
+}
+
+std::vector<NetworkKey> NetworkIsland::touching() const {
+    std::vector<NetworkKey> touching;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        if (keys_[i].is_wall()) continue;
+        const double smaller = std::min(bodies_[contacts_[i].a].radius, bodies_[contacts_[i].b].radius);
+        if (contacts_[i].gap <= kTouching * smaller) touching.push_back(keys_[i]);
+    }
+    return touching;
 }
 
 Vec3 NetworkIsland::velocity_in_flight(const NetworkMember& member) const {

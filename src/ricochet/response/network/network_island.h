@@ -63,6 +63,8 @@ public:
     [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
     [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
+    /// Pairs that hardly leave a gap between them, whether they press or not.
+    [[nodiscard]] std::vector<NetworkKey> touching() const;
     /// Lets members that others push farther than their contacts have been looked for reach as far; false where there
     /// are none: what is planned then leads into nothing.
     bool reach_farther(std::span<NetworkMember> members) const;

@@ -1,0 +1,80 @@
+// Spheres that sleep beside each other are hit and pushed: they wake in the same step, and momentum is kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::setup_of;
+
+constexpr double kRadius = 0.1;
+
+double momentum_along_x(const Simulation& simulation) {
+    const Particles& p = simulation.particles();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) sum += p.mass[i] * p.velocity[i].x;
+    return sum;
+}
+
+/// Spheres of 1 kg that touch, n by m of them from the origin on, on a smooth floor.
+SimulationSetup layer_setup(int n, int m, double duration, const PairContactSettings& contacts) {
+    SimulationSetup setup = setup_of(2e-3, duration, {"", 0.3, 0.0}, {0, 0, -9.81});
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
+    setup.options.particle_contacts = contacts;
+    for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < m; ++k)
+            setup.particles.push_back(particle_of({2 * kRadius * i, 2 * kRadius * k, kRadius}, {}, kRadius));
+    }
+    return setup;
+}
+
+TEST(PileWaking, ALayerThatSleepsTakesTheMomentumOfWhatHitsIt) {
+    for (const PairMethod method : {PairMethod::automatic, PairMethod::contacts}) {
+        SCOPED_TRACE(static_cast<int>(method));
+        SimulationSetup setup = layer_setup(8, 8, 0.6, {.restitution = 0.3, .method = method});
+        Particle fast = particle_of({-5.3, 7 * kRadius, kRadius}, {10, 0, 0}, kRadius);
+        fast.mass = 5.0;
+        setup.particles.push_back(fast);
+        Simulation simulation(std::move(setup));
+        std::uint64_t asleep = 0;
+        while (!simulation.finished()) {
+            simulation.step();
+            asleep = std::max(asleep, simulation.statistics().asleep);
+            ASSERT_NEAR(momentum_along_x(simulation), 50.0, 1e-10) << simulation.time();
+        }
+        EXPECT_GE(asleep, 64U);
+        EXPECT_EQ(simulation.statistics().asleep, 0U);
+    }
+}
+
+TEST(PileWaking, ARowThatSleepsWithoutWeightKeepsTheMomentumOfWhatHitsIt) {
+    SimulationSetup setup = setup_of(1e-3, 0.6);
+    setup.options.particle_contacts = PairContactSettings{.method = PairMethod::contacts};
+    setup.particles = {particle_of({-1, 0, 0}, {2, 0, 0}, kRadius)};
+    for (int i = 0; i < 5; ++i) setup.particles.push_back(particle_of({2 * kRadius * i, 0, 0}, {}, kRadius));
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    EXPECT_NEAR(momentum_along_x(simulation), 2.0, 1e-12);
+}
+
+// Slower than what falls 1 % of a radius.
+TEST(PileWaking, ASlowSphereMovesOneThatSleepsBesideAnother) {
+    SimulationSetup setup = layer_setup(2, 1, 3.0, {.restitution = 0.3});
+    setup.particles.push_back(particle_of({-2.5 * kRadius, 0, kRadius}, {0.05, 0, 0}, kRadius));
+    setup.particles.back().position.x -= 0.05;
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    EXPECT_NEAR(momentum_along_x(simulation), 0.05, 1e-12);
+    EXPECT_GT(simulation.particles().velocity[1].x, 0.01);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "ricochet/simulation.h"
@@ -74,6 +75,18 @@ TEST(PileWaking, ASlowSphereMovesOneThatSleepsBesideAnother) {
     while (!simulation.finished()) simulation.step();
     EXPECT_NEAR(momentum_along_x(simulation), 0.05, 1e-12);
     EXPECT_GT(simulation.particles().velocity[1].x, 0.01);
+}
+
+TEST(PileWaking, SpheresOnAFloorAnswerEachOtherWithTheirRestitution) {
+    for (const double e : {0.0, 0.5, 1.0}) {
+        SCOPED_TRACE("restitution " + std::to_string(e));
+        SimulationSetup setup = layer_setup(1, 1, 0.5, {.restitution = e, .method = PairMethod::contacts});
+        setup.particles.push_back(particle_of({-0.6, 0, kRadius}, {2, 0, 0}, kRadius));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_NEAR(simulation.particles().velocity[0].x, 1.0 + e, 1e-8);
+        EXPECT_NEAR(simulation.particles().velocity[1].x, 1.0 - e, 1e-8);
+    }
 }
 
 }  // namespace

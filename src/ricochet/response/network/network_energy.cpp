@@ -8,6 +8,13 @@
 namespace ricochet {
 namespace {
 
+/// A contact without rebound that gives a body no more than so many times what the body's own approach takes has no
+/// part in what others do: it holds a sphere that another one hits along the floor.
+constexpr double kHoldsOnly = 1.5;
+
+/// Without those that others of the same impact may take away.
+double own_restitution(const NetworkContact& contact) { return contact.touched ? 0.0 : contact.restitution; }
+
 /// Of contacts that push and are approached; 1 where there is none.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const NetworkState> before,
                                  std::span<const NetworkRow> rows, std::span<const std::uint32_t> order,
@@ -15,10 +22,12 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
     std::vector<double> least(impacts.size(), 1.0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const NetworkRow& row = rows[i];
-        if (row.push.normal == 0.0 || !(approach_of(row, before[row.a], before[row.b]) < 0.0)) continue;
-        const NetworkContact& contact = contacts[order[i]];
+        const double approach = approach_of(row, before[row.a], before[row.b]);
+        if (row.push.normal == 0.0 || !(approach < 0.0)) continue;
+        const double own = own_restitution(contacts[order[i]]);
+        if (own == 0.0 && row.push.normal <= -kHoldsOnly * row.normal_mass * approach) continue;
         double& e = least[impacts.of(row)];
-        e = std::min(e, contact.touched ? 0.0 : contact.restitution);
+        e = std::min(e, own);
     }
     return least;
 }
@@ -35,9 +44,10 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     impacts_.assign(before_, rows_);
     const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
     bool rebounds = false;
-    for (NetworkRow& row : rows_) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        NetworkRow& row = rows_[i];
         const double approach = approach_of(row, before_[row.a], before_[row.b]);
-        const double e = least[impacts_.of(row)];
+        const double e = own_restitution(contacts[coloring_.order()[i]]) == 0.0 ? 0.0 : least[impacts_.of(row)];
         if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
         row.bound = std::min(row.bound, e * approach);
         rebounds = true;

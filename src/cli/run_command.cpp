@@ -205,6 +205,9 @@ void leave_checkpoint(const Simulation& simulation, RunWriter& writer, const Run
     writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
 }
 
+/// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
+constexpr double kLargeOverlap = 0.05;
+
 // What makes results wrong or files incomplete: also where nothing else is told.
 void print_losses(const std::string& scene, const SimulationStatistics& statistics) {
     const auto warn = [&scene](std::uint64_t count, const char* what) {
@@ -214,6 +217,13 @@ void print_losses(const std::string& scene, const SimulationStatistics& statisti
     warn(statistics.lost_impulses,
          "impulses that are not in the totals of the collider files, since they have 6.7e7 N s and more along an axis, "
          "beyond what a total can hold; the motion itself is right (lost_impulses)");
+    if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
+        cli::print(
+            stderr,
+            "ricochet: {}: warning: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
+            "simulation.time_step smaller, or radii and masses more alike\n",
+            scene, statistics.overlap_largest);
+    }
 }
 
 void print_notes(const SimulationStatistics& statistics) {

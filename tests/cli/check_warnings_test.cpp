@@ -247,5 +247,22 @@ TEST_F(CheckWarnings, TellsOfStepsBeyondAStabilityBound) {
     EXPECT_EQ(warnings(stiff("10")), "");
 }
 
+TEST_F(CheckWarnings, MethodsThatCannotDoWhatASceneAsksOfSpheresAreNamed) {
+    const auto of_pairs = [&](const std::string& contacts, bool falls) {
+        const std::string gravity = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],)";
+        return warnings((falls ? gravity : "") + R"("particle_contacts": {)" + contacts + R"(},
+            "particles": [{"position": [0, 0, 1], "radius": 0.1}, {"position": [1, 0, 1], "radius": 0.1}])");
+    };
+    const auto names = [&](const std::string& contacts, bool falls) {
+        return of_pairs(contacts, falls).find("particle_contacts.method") != std::string::npos;
+    };
+    EXPECT_TRUE(names(R"("method": "events", "restitution": 0.5)", true));
+    EXPECT_FALSE(names(R"("method": "events", "restitution": 0.5)", false));
+    EXPECT_FALSE(names(R"("method": "events")", true));
+    EXPECT_FALSE(names(R"("restitution": 0.5)", true));
+    EXPECT_TRUE(names(R"("method": "contacts")", false));
+    EXPECT_FALSE(names(R"("method": "contacts", "restitution": 0.5)", true));
+}
+
 }  // namespace
 }  // namespace ricochet

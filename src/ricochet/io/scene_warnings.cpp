@@ -40,6 +40,9 @@ constexpr double kLeastRadiusUlps = 1e3;
 /// can be hit: at a tenth it costs 1.6 times as much, at a fifth 2.8 times.
 constexpr double kMostSlack = 0.1;
 
+/// Restitution from which on spheres are meant to keep their energy.
+constexpr double kNearlyElastic = 0.9;
+
 /// Particles that begin for one reason, some of them.
 struct Starts {
     std::string where;
@@ -151,6 +154,7 @@ public:
 
     std::vector<std::string> lines() {
         review_surfaces();
+        review_pairs();
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
         for (const Starts& starts : starts_) {
             review_positions(starts);
@@ -161,6 +165,7 @@ public:
 
 private:
     void review_surfaces();
+    void review_pairs();
     void review_collider(std::size_t i);
     void review_precision(const TriangleMesh& mesh, const std::string& where);
     void review_sides(const Starts& starts, const Solid& solid, const std::string& where);
@@ -313,6 +318,23 @@ bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const
         end = std::min(end, std::max(low, high));
     }
     return begin <= end && fall != Vec3{};
+}
+
+/// Methods that cannot do what a scene asks for.
+void SceneReview::review_pairs() {
+    const std::optional<PairContactSettings>& pairs = simulation_.options().particle_contacts;
+    if (!pairs) return;
+    if (pairs->method == PairMethod::events && fall_ != Vec3{} && pairs->restitution < 1.0) {
+        lines_.emplace_back(
+            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
+            "their impacts of each step and stand still in the air; use auto");
+    }
+    if (pairs->method == PairMethod::contacts && pairs->restitution >= kNearlyElastic) {
+        lines_.push_back(fmt::format(
+            "particle_contacts.method: contacts: all impacts of a step are one, which loses energy in a gas "
+            "and shares out that of a cradle, whatever the restitution of {:g}; use auto or events",
+            pairs->restitution));
+    }
 }
 
 /// Explicit particles in overlap are told by the simulation itself.

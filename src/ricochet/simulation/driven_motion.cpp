@@ -96,7 +96,7 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
         if (body) tallies[*body].add(load);
     }
     std::vector<double> shares;
-    for (const ImpactTally& tally : tallies) shares.push_back(tally.changes_energy(end) ? tally.share(end) : 1.0);
+    for (const ImpactTally& tally : tallies) shares.push_back(tally.share(end));
     return shares;
 }
 

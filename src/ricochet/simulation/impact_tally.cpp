@@ -46,6 +46,7 @@ void ImpactTally::add(const ColliderLoad& load) {
     const Wrench wrench = wrench_of(load, about_);
     const BodyOnPath body = at(load.time);
     const double yields = body.mobility.energy_by(wrench_of(load, body.mobility.center));
+    ++count_;
     wrench_ += wrench;
     alone_ += body.energy_by(wrench, about_);
     yielding_ += yields;
@@ -65,6 +66,7 @@ double ImpactTally::speed_by(Wrench wrench, const ColliderLoad& load) const {
 }
 
 double ImpactTally::share(double time) const {
+    if (count_ < 2 || !changes_energy(time)) return 1.0;
     const BodyOnPath body = at(time);
     return std::max(1.0, body.mobility.energy_by(body.about_center(wrench_, about_)) / yielding_);
 }

@@ -32,7 +32,8 @@ public:
     /// m/s, by which an impulse with its moment about the same point as wrench() changes the velocity of the body where
     /// a load is, at its time.
     [[nodiscard]] double speed_by(Wrench wrench, const ColliderLoad& load) const;
-    /// How many times as much the body yields to all of them at a time, s, as to each by itself; at least 1.
+    /// How many times as much the body yields to all of them at a time, s, as to each by itself; at least 1, and 1
+    /// where that would not change the energy.
     [[nodiscard]] double share(double time) const;
     [[nodiscard]] const Wrench& wrench() const { return wrench_; }
 
@@ -45,6 +46,7 @@ private:
     const MovingColliders* colliders_;
     BodyId id_;
     Vec3 about_;  // m, that moments are about
+    int count_ = 0;
     Wrench wrench_;
     double alone_ = 0.0;     // J, that the body would take from each by itself, at its time
     double yielding_ = 0.0;  // J, of that: what it would take from each, were it at rest

@@ -120,7 +120,7 @@ TEST(Departures, GiveTheOthersTheImpulseOfTheDeparture) {
         std::vector<Vec3> velocities = planned.planned_velocities();
         const Vec3 turned = flown[1].departure - flown[0].arrival;
         velocities[0] = flown[1].arrival;
-        planned.departures.record(0, flown);
+        planned.departures.record(0, flown, turned);
         planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
         const Vec3 given = 2.0 * (velocities[1] - planned.plans[1].end_velocity);
         const Vec3 along = planned.plans[1].start.position / length(planned.plans[1].start.position);
@@ -139,18 +139,36 @@ TEST(Departures, KeepMomentumButForWhatTheImpactGave) {
         const Vec3 before = planned.momentum(velocities);
         const Vec3 turned = flown[1].departure - flown[0].arrival;
         velocities[0] = flown[1].arrival;
-        planned.departures.record(0, flown);
+        planned.departures.record(0, flown, turned);
         planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
         EXPECT_LT(length(planned.momentum(velocities) - before - planned.system().mass(0) * turned), 1e-14);
     }
 }
 
-TEST(Departures, LeaveTheVelocitiesOfThoseInContact) {
+TEST(Departures, LeaveTheVelocitiesOfThoseThatNothingMoves) {
     PlannedSystem planned(IntegratorKind::rk4);
     std::vector<Vec3> velocities = planned.planned_velocities();
-    planned.departures.record(0, planned.turn_back());
+    planned.departures.record(0, planned.turn_back(), {});
     planned.departures.correct(planned.system(), planned.plans, {0, 0, 1}, velocities);
     EXPECT_EQ(velocities, planned.planned_velocities());
+}
+
+// In contact too: a spring pulls on one that a surface has held where it was, and on the other end the opposite.
+TEST(Departures, GiveBothEndsTheSameWhereOneIsHeld) {
+    for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4}) {
+        PlannedSystem planned(kind);
+        const Flight& plan = planned.plans[0];
+        std::vector<Vec3> velocities = planned.planned_velocities();
+        const Vec3 before = planned.momentum(velocities);
+        const Vec3 pushed{0.3, -0.2, 0.7};
+        velocities[0] = {};
+        const FlownPiece stay{line_path(plan.start.position, {}, kStep), plan.start.time, kStep, {}, {}, false};
+        planned.departures.record(0, {&stay, 1}, pushed);
+        EXPECT_TRUE(planned.departures.has_left(0));
+        planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
+        EXPECT_NE(velocities[1], planned.plans[1].end_velocity) << name_of(kind);
+        EXPECT_LT(length(planned.momentum(velocities) - before - planned.system().mass(0) * pushed), 1e-14);
+    }
 }
 
 }  // namespace

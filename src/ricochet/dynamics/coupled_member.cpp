@@ -73,15 +73,6 @@ Vec3 integral(std::span<const Node> rule, const TimeInterval& part, const Functi
     return sum;
 }
 
-/// What impacts have given a particle, m/s, which has the velocity `now` at the end.
-Vec3 turned_by_impacts(std::span<const FlownPiece> pieces, const Vec3& now) {
-    Vec3 sum;
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        sum += (k + 1 < pieces.size() ? pieces[k + 1].departure : now) - pieces[k].arrival;
-    }
-    return sum;
-}
-
 }  // namespace
 
 PhaseState FlownPiece::at(double time) const { return state_along(path, time - begin, duration, arrival); }
@@ -103,29 +94,26 @@ Vec3 CoupledMember::acceleration(const ForceInput& input) const {
 
 void Departures::reset(std::size_t members, IntegratorKind kind) {
     kind_ = kind;
-    flown_.resize(members);
-    for (std::vector<FlownPiece>& pieces : flown_) pieces.clear();
+    entries_.resize(members);
+    for (Entry& entry : entries_) entry.flown.clear();
 }
 
-void Departures::record(std::size_t member, std::span<const FlownPiece> flown) {
-    flown_[member].assign(flown.begin(), flown.end());
+void Departures::record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed) {
+    entries_[member].flown.assign(flown.begin(), flown.end());
+    entries_[member].pushed = pushed;
 }
 
 void Departures::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
-                         const std::vector<std::uint8_t>& is_free, std::vector<Vec3>& velocities) const {
-    const auto has_left = [](const std::vector<FlownPiece>& pieces) { return !pieces.empty(); };
-    if (std::none_of(flown_.begin(), flown_.end(), has_left)) return;
+                         const std::vector<std::uint8_t>& moves, std::vector<Vec3>& velocities) const {
+    const auto left = [](const Entry& entry) { return !entry.flown.empty(); };
+    if (std::none_of(entries_.begin(), entries_.end(), left)) return;
     const std::vector<Vec3> given = momentum_changes(system, plans);
     const std::vector<Vec3> mutual = mutual_changes(system, plans);
     for (std::size_t k = 0; k < velocities.size(); ++k) {
-        if (is_free[k] == 0) continue;
-        const std::vector<FlownPiece>& flown = flown_[k];
-        if (!flown.empty()) {
-            const bool was_free =
-                std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
-            if (!was_free) continue;
-            velocities[k] =
-                plans[k].end_velocity + turned_by_impacts(flown, velocities[k]) + own_change(system, k, plans[k]);
+        if (moves[k] == 0) continue;
+        if (has_left(k)) {
+            const Vec3 planned = plans[k].end_velocity - plans[k].path.duration * system.expected_push(k);
+            velocities[k] = planned + entries_[k].pushed + own_change(system, k, plans[k]);
         }
         if (given[k] != Vec3{}) velocities[k] += given[k] / system.mass(k);
         if (!mutual.empty()) velocities[k] += mutual[k];
@@ -162,7 +150,7 @@ std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const
 /// The integrals, over the step, of what a member's position and velocity are beyond its plan, m s and m.
 PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
-    const std::span<const FlownPiece> flown(flown_[member]);
+    const std::span<const FlownPiece> flown(entries_[member].flown);
     PhaseState sum;
     for (const TimeInterval& part : parts_between(flown, {}, planned)) {
         const FlownPiece& piece = piece_at(flown, part.middle());
@@ -195,7 +183,8 @@ Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSyst
                                 const std::vector<Flight>& plans) const {
     const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
     const auto flown_by = [&](std::size_t member, const FlownPiece& plan) {
-        return has_left(member) ? std::span<const FlownPiece>(flown_[member]) : std::span<const FlownPiece>(&plan, 1);
+        return has_left(member) ? std::span<const FlownPiece>(entries_[member].flown)
+                                : std::span<const FlownPiece>(&plan, 1);
     };
     const auto first = flown_by(bond.first, planned[0]);
     const auto second = flown_by(bond.second, planned[1]);
@@ -223,7 +212,7 @@ Vec3 Departures::own_change(const ParticleSystem& system, std::size_t member, co
         const PhaseState state = piece.at(t);
         return system.own_acceleration(member, t, state.position, state.velocity);
     };
-    const std::span<const FlownPiece> flown(flown_[member]);
+    const std::span<const FlownPiece> flown(entries_[member].flown);
     Vec3 sum;
     for (const TimeInterval& part : parts_between(flown, {}, planned)) {
         const FlownPiece& piece = piece_at(flown, part.middle());

@@ -59,12 +59,14 @@ private:
     MutualPull mutual_;
 };
 
-/// The members that have left the plan of a step by an impact, and what follows for the velocities at its end.
+/// The members that have left the plan of a step, by an impact or in contact, and what follows for the velocities at
+/// its end.
 ///
 /// The plan gives both ends of a spring opposite impulses, for the planned paths. Where an end has flown another path
 /// the difference, the integral of the force between the paths that were flown less that between the planned ones,
 /// goes to both ends with opposite signs: momentum is kept to rounding, and what the bounce of one does to the other
-/// is there, of third order in the step. Positions stay: they are at the ends of certified segments.
+/// is there, of third order in the step. It does not matter whether an end flies, slides or rests. Positions stay: they
+/// are at the ends of certified segments.
 ///
 /// Forces between members that know no pairs do the same all at once: they are evaluated where the plan ends, and with
 /// each member that has left it moved by the mean of its departure; the difference goes to all. In it momentum is kept
@@ -73,15 +75,17 @@ class Departures {
 public:
     /// Forgets all. members: how many there are; kind: the method that has planned.
     void reset(std::size_t members, IntegratorKind kind);
-    /// Notes what a member has flown instead of its plan; several threads may do so for different members.
-    void record(std::size_t member, std::span<const FlownPiece> flown);
-    /// Changes the velocities of the members at the end of the step, m/s. is_free: those whose velocity no contact
-    /// determines; others keep it.
-    void correct(const ParticleSystem& system, const std::vector<Flight>& plans,
-                 const std::vector<std::uint8_t>& is_free, std::vector<Vec3>& velocities) const;
+    /// Notes what a member has flown instead of its plan, and what surfaces have given it meanwhile, m/s; several
+    /// threads may do so for different members.
+    void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed);
+    /// Makes of the velocities of the members at the end of the step, m/s, those that all forces and surfaces have
+    /// given them. moves: those that forces move; others keep theirs.
+    void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
+                 std::vector<Vec3>& velocities) const;
+    /// True when something else than the plan is noted of it.
+    [[nodiscard]] bool has_left(std::size_t member) const { return !entries_[member].flown.empty(); }
 
 private:
-    [[nodiscard]] bool has_left(std::size_t member) const { return !flown_[member].empty(); }
     [[nodiscard]] std::vector<Vec3> momentum_changes(const ParticleSystem& system,
                                                      const std::vector<Flight>& plans) const;
     [[nodiscard]] std::vector<Vec3> mutual_changes(const ParticleSystem& system,
@@ -91,7 +95,11 @@ private:
                                       const std::vector<Flight>& plans) const;
     [[nodiscard]] Vec3 own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const;
 
-    std::vector<std::vector<FlownPiece>> flown_;  // of every member; empty: as planned
+    struct Entry {
+        std::vector<FlownPiece> flown;  // empty: as planned
+        Vec3 pushed;                    // m/s
+    };
+    std::vector<Entry> entries_;  // of every member
     IntegratorKind kind_ = IntegratorKind::ballistic;
 };
 

@@ -54,6 +54,11 @@ void ParticleSystem::assign(const Particles& particles, std::span<const std::uin
     link(particles.size());
 }
 
+void ParticleSystem::expect_pushes(std::span<const Vec3> pushes) {
+    require_same_length(pushes.size(), size(), "pushes on the members of a system");
+    for (std::size_t k = 0; k < size(); ++k) constants_[k].push = pushes[k];
+}
+
 // Springs whose ends are not both members act through the forces that the caller holds on for them.
 void ParticleSystem::link(std::size_t particle_count) {
     std::vector<std::uint32_t> member_of(particle_count, kNoMember);
@@ -150,6 +155,7 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
                                      : spring_force_on(i, positions, velocities) / mass(i) +
                                            own_acceleration(i, time, positions[i], velocities[i]);
             if (!mutual.empty() && !is_pinned(i)) result[i] += mutual[i];
+            if (!is_pinned(i) && expected_push(i) != Vec3{}) result[i] += expected_push(i);
         }
     });
 }

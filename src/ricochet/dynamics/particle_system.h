@@ -67,6 +67,11 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
     [[nodiscard]] const std::vector<Vec3>& positions() const { return position_; }   ///< m
     [[nodiscard]] const std::vector<Vec3>& velocities() const { return velocity_; }  ///< m/s
+    /// What surfaces are expected to give each member in this step, m/s^2: a part of all accelerations from now on,
+    /// until the next assign().
+    void expect_pushes(std::span<const Vec3> pushes);
+    /// That of member i.
+    [[nodiscard]] const Vec3& expected_push(std::size_t i) const { return constants(i).push; }
     void set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities);
     /// Accelerations of all members in a state, m/s^2; zero for pinned ones.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
@@ -106,12 +111,13 @@ public:
     [[nodiscard]] bool has_uniform_forces() const { return forces_.is_uniform(); }
 
 private:
-    /// What no step changes.
+    /// What does not change within a step.
     struct Constants {
         std::uint64_t id = 0;
         double mass = 1.0;
         double radius = 0.0;
         bool pinned = false;
+        Vec3 push{};  // m/s^2, expected of surfaces
     };
     struct Link {
         std::uint32_t spring = 0;

@@ -302,7 +302,9 @@ std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc
 /// The forces do in a step, and the integrator is of second order or more.
 bool ContactFollower::forces_vary() const {
     if (rules_.frame != nullptr) return true;
-    return follows_varying_forces(rules_.settings.integrator.kind) && !rules_.forces.is_uniform_for(state_);
+    const bool is_coupled = state_.coupling != nullptr && state_.coupling->varies();  // ballistic follows that too
+    const bool follows = follows_varying_forces(rules_.settings.integrator.kind) || is_coupled;
+    return follows && !rules_.forces.is_uniform_for(state_);
 }
 
 /// Forces that vary ask for an arc, for its energy or its tolerance; a frame that moves, for what it does to spins.

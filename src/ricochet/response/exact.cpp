@@ -7,6 +7,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_phase.h"
+#include "ricochet/response/kept_hold.h"
 #include "ricochet/response/momentum_account.h"
 #include "ricochet/response/riding.h"
 #include "ricochet/response/shared_contact.h"
@@ -398,6 +399,10 @@ ExactResponse::~ExactResponse() = default;
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
     return ParticleMover(rules_, rides_.get(), particle, duration, scratch).run();
+}
+
+HeldAcceleration ExactResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+    return hold_by_kept(rules_, particle, pull);
 }
 
 void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {

@@ -31,6 +31,7 @@ public:
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     void add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const override;
+    [[nodiscard]] HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const override;
 
 private:
     std::unique_ptr<Rides> rides_;  ///< null where nothing moves

@@ -64,6 +64,8 @@ public:
           stage_(lists.stage) {}
 
     MoveOutcome run(double duration);
+    /// What contacts add to a pull where it is now.
+    [[nodiscard]] HeldAcceleration hold(const Vec3& pull);
 
 private:
     void survey(double duration);
@@ -106,6 +108,14 @@ MoveOutcome PenaltyMover::run(double duration) {
     }
     if (!seen_.empty() && length(state_.velocity) < rules_.settings.resting_speed) outcome_.end = MoveEnd::resting;
     return outcome_;
+}
+
+HeldAcceleration PenaltyMover::hold(const Vec3& pull) {
+    substep_ = rules_.settings.time_step / rules_.settings.penalty.substeps;
+    seen_.clear();
+    if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
+    const ContactPush push = push_at({state_.position, {state_.velocity, particle_.spin}}, state_.time, seen_, 0.0);
+    return {pull + (push.acceleration - rules_.forces.acceleration(state_)), push.spin_acceleration};
 }
 
 /// One wide query instead of one a sub-step, as long as nothing is near.
@@ -339,6 +349,15 @@ PenaltyResponse::PenaltyResponse(const ResponseRules& rules) : Response(rules), 
 MoveOutcome PenaltyResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
     thread_local PenaltyScratch lists;
     return PenaltyMover(rules_, distance_, damping_ratios_, particle, scratch, lists).run(duration);
+}
+
+HeldAcceleration PenaltyResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+    MovingParticle copy = particle;
+    std::vector<SideMemory> sides(particle.sides.begin(), particle.sides.end());
+    copy.sides = sides;
+    MoveScratch scratch;
+    PenaltyScratch lists;
+    return PenaltyMover(rules_, distance_, damping_ratios_, copy, scratch, lists).hold(pull);
 }
 
 void PenaltyResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {

@@ -6,6 +6,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact_answer.h"
+#include "ricochet/response/kept_hold.h"
 #include "ricochet/response/side_watch.h"
 
 namespace ricochet {
@@ -26,6 +27,13 @@ public:
           seen_(lists.seen),
           contacts_(lists.contacts) {
         contacts_.clear();
+    }
+
+    /// What it touches where it is: nearer than twice the offset that it is put at.
+    std::span<const ContactSurface> touched() {
+        watch_.find_near(from_, from_, 2.0 * offset(), seen_);
+        for (const Proximity& view : seen_) touch(view);
+        return contacts_;
     }
 
     MoveOutcome run(double duration) {
@@ -133,6 +141,15 @@ private:
 MoveOutcome ProjectResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
     thread_local SideScratch lists;
     return Projector(rules_, distance_, particle, scratch, lists).run(duration);
+}
+
+HeldAcceleration ProjectResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+    MovingParticle copy = particle;
+    std::vector<SideMemory> sides(particle.sides.begin(), particle.sides.end());
+    copy.sides = sides;
+    MoveScratch scratch;
+    SideScratch lists;
+    return hold_by(rules_, particle, pull, Projector(rules_, distance_, copy, scratch, lists).touched());
 }
 
 void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {

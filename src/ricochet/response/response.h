@@ -151,6 +151,15 @@ struct MoveOutcome {
 /// Key of the random numbers that impacts draw; emitters use the numbers below.
 inline constexpr std::uint32_t kImpactStream = 0xFFFFFFFFU;
 
+/// What forces make of the motion of a particle where it is now, with the surfaces that it is in contact with.
+struct HeldAcceleration {
+    Vec3 acceleration{};                  ///< m/s^2, with what the surfaces give
+    Vec3 spin_acceleration{};             ///< rad/s^2
+    std::array<SurfaceId, 3> surfaces{};  ///< the first `count`
+    std::array<Vec3, 3> push{};           ///< m/s^2, of each
+    std::uint8_t count = 0;
+};
+
 class FrameForces;
 
 /// Where a particle spawned by another begins.
@@ -202,6 +211,13 @@ public:
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
     /// The same of a particle that another spawns. sides: in, those of the parent where its move began.
     virtual void inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const;
+
+    /// What forces that accelerate it by `pull`, m/s^2, leave it under this response in the contact that it is in.
+    /// Surfaces that move hold nothing here.
+    [[nodiscard]] virtual HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const;
+    /// Gives a particle at the end of its step of `duration` seconds a change of velocity, m/s, that is still owed to
+    /// it: as if it had been a part of the forces in that step. What surfaces take of it is recorded.
+    void take_up(MovingParticle& particle, const Vec3& change, double duration, MoveScratch& scratch) const;
 
     [[nodiscard]] const ResponseRules& rules() const { return rules_; }
 

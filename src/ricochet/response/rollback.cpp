@@ -5,6 +5,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/kept_hold.h"
 
 namespace ricochet {
 namespace {
@@ -119,6 +120,10 @@ MoveOutcome RollbackResponse::move(MovingParticle& particle, double duration, Mo
     MoveOutcome outcome;
     RollbackMover(rules_, particle, scratch, outcome, RollbackMover::Trial::same_flight).run(duration);
     return outcome;
+}
+
+HeldAcceleration RollbackResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+    return hold_by_kept(rules_, particle, pull, rollback_touch(rules_, particle.state, 0.0));
 }
 
 void move_together(const ResponseRules& rules, std::span<SystemParticle> particles, double from, double to,

@@ -35,6 +35,7 @@ public:
     explicit RollbackResponse(const ResponseRules& rules) : Response(rules) {}
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
+    [[nodiscard]] HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const override;
 };
 
 /// A particle as one of a system that goes back together.
@@ -64,6 +65,10 @@ struct CollisionBracket {
     double free = 0.0;     ///< latest time tried at which nothing blocks
     bool blocked = false;  ///< something blocks right after it; false: the whole piece is free
 };
+
+/// In contact is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
+/// faster than the resting speed. kick: m/s, at which what rests may have come down.
+[[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double kick);
 
 /// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
 inline constexpr double kLeastProgress = 0x1p-20;

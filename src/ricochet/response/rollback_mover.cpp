@@ -42,6 +42,14 @@ Vec3 lift_to_surface(const ContactSurface& support, const Path& path, const Coll
 
 }  // namespace
 
+TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double kick) {
+    const double resting_speed = rules.settings.resting_speed;
+    const double speed = std::max({length(state.velocity), resting_speed, kick});
+    const double reach = kTouchingOffsets * contact_offset(state.position) +
+                         kTouchBrackets * rules.settings.rollback.time_tolerance * speed;
+    return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
+}
+
 RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particle, MoveScratch& scratch,
                              MoveOutcome& outcome, Trial trial)
     : rules_(rules),
@@ -228,18 +236,11 @@ bool RollbackMover::will_stay() const {
     return pressed;
 }
 
-/// In contact is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
-/// faster than the resting speed.
 TouchRule RollbackMover::touch_rule() const {
-    const double resting_speed = rules_.settings.resting_speed;
-    double speed = std::max(length(state_.velocity), resting_speed);
     // What rests under symplectic Euler has come down at the speed of a step's kick.
-    if (kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight) {
-        speed = std::max(speed, rules_.settings.time_step * length(rules_.forces.acceleration(state_)));
-    }
-    const double reach = kTouchingOffsets * contact_offset(state_.position) +
-                         kTouchBrackets * rules_.settings.rollback.time_tolerance * speed;
-    return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
+    const bool is_kicked_down = kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight;
+    const double kick = is_kicked_down ? rules_.settings.time_step * length(rules_.forces.acceleration(state_)) : 0.0;
+    return rollback_touch(rules_, state_, kick);
 }
 
 /// Plans an interval on what is in contact; none when nothing presses the particle on, or the surface ends here.

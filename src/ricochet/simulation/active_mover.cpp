@@ -57,6 +57,28 @@ bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
     return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
 
+/// Responses that do not say what a particle has flown are taken to have led it smoothly from where it was to where it
+/// is.
+void note_flown(const Flight& plan, const MovingParticle& moved, MoveScratch& scratch) {
+    if (!scratch.flown.empty()) return;
+    const ForceInput& from = plan.start;
+    const double duration = plan.path.duration;
+    const Path path = hermite_path(from.position, from.velocity, moved.state.position, moved.state.velocity, duration);
+    scratch.flown.push_back({path, from.time, duration, from.velocity, moved.state.velocity, moved.contact.count == 0});
+}
+
+bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<const FlownPiece> flown) {
+    const bool is_free = std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
+    return is_free && moved.state.position == plan.path.end && moved.state.velocity == plan.end_velocity;
+}
+
+/// N s, that surfaces have given a particle with the hits from this one on.
+Vec3 pushed_since(std::size_t first_hit, const MoveScratch& scratch) {
+    Vec3 sum;
+    for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) sum -= scratch.hits[k].impulse;
+    return sum;
+}
+
 }  // namespace
 
 void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -84,16 +106,23 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     particle.step_end = life.end;
     scratch.segments.clear();
     const std::size_t first_record = scratch.records.size();
+    const std::size_t first_hit = scratch.hits.size();
+    const Flight* const plan = parts_.coupled.flight_of(i);
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
-    const bool as_planned = particle.planned != nullptr && life.begin == step.begin && life.end == step.end;
-    const double duration = as_planned ? particle.planned->path.duration : life.end - life.begin;
+    const bool as_planned = plan != nullptr && life.begin == step.begin && life.end == step.end;
+    const double duration = as_planned ? plan->path.duration : life.end - life.begin;
     scratch.flown.clear();
     scratch.motions.clear();
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
-    const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
-    if (outcome.bounces > 0 && goes_on && !scratch.flown.empty()) parts_.coupled.record_departure(i, scratch.flown);
+    const bool may_leave = scratch.record_flown && !outcome.is_absorbed() && !outcome.is_frozen();
+    if (may_leave && outcome.unsimulated_time == 0.0) {
+        note_flown(*plan, particle, scratch);
+        if (particle.planned == nullptr || outcome.bounces > 0 || !is_as_planned(*plan, particle, scratch.flown)) {
+            parts_.coupled.record_departure(i, scratch.flown, pushed_since(first_hit, scratch) / particle.state.mass);
+        }
+    }
     if (parts_.check != nullptr) {
         const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
         parts_.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
@@ -236,7 +265,7 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
     if (parts_.offspring != nullptr) {
         particle.shatter_impulse = parts_.offspring->shatter_impulse(parts_.store.particles(), i);
     }
-    particle.planned = parts_.coupled.flight_of(i);
+    particle.planned = parts_.coupled.is_planned_in_contact(i) ? nullptr : parts_.coupled.flight_of(i);
     particle.state.coupling = parts_.coupled.coupling_of(i);
     return particle;
 }

@@ -97,6 +97,13 @@ public:
     /// Moves the particles of the range as one system that goes back together: see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
+    // For particles that act on each other.
+
+    /// What forces that accelerate particle i by `pull` at a time, s, leave it in the contact that it is in, m/s^2.
+    [[nodiscard]] Vec3 held_acceleration(std::size_t i, double time, const Vec3& pull);
+    /// Gives particles in contact what they are owed at the end of a part of the step.
+    void take_up(std::span<const CoupledMotion::Owed> owed, const TimeSpan& part, std::vector<BlockRecord>& blocks);
+
     // For spheres that meet each other, which are moved together.
 
     /// A particle as it sets out; nothing where it does not live in the step.

@@ -87,6 +87,10 @@ double misplaced_energy(const ParticleSystem& system, const SystemStep& step, st
     return sum;
 }
 
+bool is_in_contact(const Particles& particles, std::size_t i) {
+    return particles.support[i][0] != kNoSupport || particles.resting[i] != 0;
+}
+
 }  // namespace
 
 CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
@@ -116,13 +120,35 @@ std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles,
     return members;
 }
 
-double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts) {
+/// What holds a member at the start of the step is expected to go on with that: others would feel it fall through what
+/// it lies on, and the plan could not rest.
+std::vector<Vec3> CoupledMotion::expected_pushes(const Particles& particles, const Hold& hold) const {
+    const std::vector<Vec3>& x = system_.positions();
+    const std::vector<Vec3>& v = system_.velocities();
+    const std::vector<Vec3> mutual = system_.mutual_accelerations(system_.time(), x, v);
+    std::vector<Vec3> pushes(system_.size());
+    parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = system_.members()[k];
+            if (system_.is_pinned(k) || particles.frozen[i] != 0) continue;
+            Vec3 pull = system_.spring_force_on(k, x, v) / system_.mass(k) +
+                        system_.own_acceleration(k, system_.time(), x[k], v[k]);
+            if (!mutual.empty()) pull += mutual[k];
+            if (is_finite(pull)) pushes[k] = hold(i, pull) - pull;
+        }
+    });
+    return pushes;
+}
+
+double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
+                           const Hold& hold) {
     system_.assign(particles, members_of(particles, time), time);
     mutual_.assign(particles, system_.members());
     slots_.assign(particles.size(), kNoSlot);
     flights_.resize(system_.size());
     if (system_.size() == 0) return duration;
     const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
+    if (!holds_coupling(integrator_.kind)) system_.expect_pushes(expected_pushes(particles, hold));
     const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
     if (!springs_.empty()) watch_energy(step);
     is_unsolved_ = is_unsolved_ || !step.solved;
@@ -271,13 +297,15 @@ void CoupledMotion::watch_energy(const SystemStep& step) {
     given_ += watching_ ? std::max(0.0, before - energy_after_plan_) : before;
     const auto work_of = [&](std::size_t k) {
         if (system_.is_pinned(k)) return 0.0;
-        const Vec3& x0 = system_.positions()[k];
-        const Vec3& x1 = step.positions[k];
-        Vec3 pull = system_.own_acceleration(k, system_.time(), x0, system_.velocities()[k]) +
-                    system_.own_acceleration(k, system_.time() + step.duration, x1, step.velocities[k]);
+        const Vec3& v0 = system_.velocities()[k];
+        const Vec3& v1 = step.velocities[k];
+        Vec3 pull = system_.own_acceleration(k, system_.time(), system_.positions()[k], v0) +
+                    system_.own_acceleration(k, system_.time() + step.duration, step.positions[k], v1);
+        pull += 2.0 * system_.expected_push(k);
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
-        return 0.5 * system_.mass(k) * dot(pull, x1 - x0);
+        // The way that the velocities mean: forward Euler's, which sets out without the forces, would have no work.
+        return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
     };
     const auto sum = [&](auto&& term) {
         return ordered_sum(system_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -309,19 +337,29 @@ void CoupledMotion::report_divergence(const SystemStep& step) const {
                     system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain));
 }
 
-void CoupledMotion::correct_velocities(Particles& particles) {
-    if (system_.size() == 0) return;
+std::vector<CoupledMotion::Owed> CoupledMotion::correct_velocities(Particles& particles) {
+    std::vector<Owed> owed;
+    if (system_.size() == 0) return owed;
     std::vector<Vec3> velocities(system_.size());
-    std::vector<std::uint8_t> is_free(system_.size());
+    std::vector<std::uint8_t> moves(system_.size());
     for (std::size_t k = 0; k < system_.size(); ++k) {
         const std::uint32_t i = system_.members()[k];
         velocities[k] = particles.velocity[i];
         const bool is_fixed = particles.pinned[i] != 0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0;
-        const bool in_contact = particles.support[i][0] != kNoSupport || particles.resting[i] != 0;
-        is_free[k] = is_fixed || in_contact ? 0 : 1;
+        const bool is_unknown = is_in_contact(particles, i) && !departures_.has_left(k);
+        moves[k] = is_fixed || is_unknown ? 0 : 1;
     }
-    departures_.correct(system_, flights_, is_free, velocities);
-    for (std::size_t k = 0; k < system_.size(); ++k) particles.velocity[system_.members()[k]] = velocities[k];
+    departures_.correct(system_, flights_, moves, velocities);
+    for (std::size_t k = 0; k < system_.size(); ++k) {
+        const std::uint32_t i = system_.members()[k];
+        if (velocities[k] == particles.velocity[i]) continue;
+        if (is_in_contact(particles, i)) {
+            owed.push_back({i, velocities[k] - particles.velocity[i]});
+        } else {
+            particles.velocity[i] = velocities[k];
+        }
+    }
+    return owed;
 }
 
 std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, double time) const {

@@ -28,12 +28,16 @@ public:
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
     [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty() || !mutual_.empty(); }
+    /// What the forces on particle i, m/s^2, leave it in the contact that it is in.
+    using Hold = std::function<Vec3(std::size_t i, const Vec3& pull)>;
+
     /// To be called whenever particles were added or removed.
     void bind(const Particles& particles);
     /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. contacts:
-    /// foresees what surfaces do to them, for the implicit method. Throws DivergedError when what comes out is
-    /// nonsense.
-    double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts);
+    /// foresees what surfaces do to them, for the implicit method; hold: for the methods that follow forces as they
+    /// vary. Throws DivergedError when what comes out is nonsense.
+    double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
+                const Hold& hold);
 
     /// between: called between the iterations of plan() with the implicit method; what it throws comes out of it.
     /// Empty: nothing is.
@@ -47,15 +51,28 @@ public:
     [[nodiscard]] const Coupling* coupling_of(std::size_t i) const {
         return holds(i) ? flights_[slots_[i]].start.coupling : nullptr;
     }
+    /// True when what surfaces are expected to give member i is in its planned flight: only others reckon with that,
+    /// it itself meets its surfaces.
+    [[nodiscard]] bool is_planned_in_contact(std::size_t i) const {
+        return holds(i) && system_.expected_push(slots_[i]) != Vec3{};
+    }
     /// True when what member i flies instead of its plan is to be noted.
     [[nodiscard]] bool wants_departure_of(std::size_t i) const {
         return holds(i) && flights_[slots_[i]].start.coupling->varies();
     }
-    /// Notes it; several threads may do so for different members.
-    void record_departure(std::size_t i, std::span<const FlownPiece> flown) { departures_.record(slots_[i], flown); }
+    /// Notes it, and what surfaces have given it meanwhile, m/s; several threads may do so for different members.
+    void record_departure(std::size_t i, std::span<const FlownPiece> flown, const Vec3& pushed) {
+        departures_.record(slots_[i], flown, pushed);
+    }
 
-    /// After the move of what was planned: gives members the momentum that the departures of others mean.
-    void correct_velocities(Particles& particles);
+    /// A change of velocity that is owed to a particle in contact, m/s.
+    struct Owed {
+        std::uint32_t particle = 0;
+        Vec3 change;
+    };
+    /// After the move of what was planned: gives members in flight what their springs and forces have given them
+    /// beyond what they have seen of it, and returns what those in contact are owed.
+    [[nodiscard]] std::vector<Owed> correct_velocities(Particles& particles);
     /// After the step: counts it where a part of it was not solved, and breaks what is overstretched.
     void settle(const Particles& particles);
 
@@ -84,6 +101,7 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> members_of(const Particles& particles, double time) const;
     [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
+    [[nodiscard]] std::vector<Vec3> expected_pushes(const Particles& particles, const Hold& hold) const;
     /// What surfaces hold in a step, and its solution with that.
     struct Foreseen {
         SystemStep step;

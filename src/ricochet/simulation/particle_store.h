@@ -92,9 +92,11 @@ public:
     template <class Archive>
     void archive(Archive& a);
 
+    /// rad/s, of particle i as the response has moved it, as it is stored.
+    [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
+
 private:
     void load_core(std::size_t i, MovingParticle& particle) const;
-    [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
     void load_contact(std::size_t i, KeptContact& contact) const;
     void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_held);
 

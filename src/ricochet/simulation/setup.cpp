@@ -73,11 +73,19 @@ std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
     if (setup.solver) return {};
     const IntegratorKind kind = setup.options.integrator.kind;
     const double bound = longest_stable_step(kind, setup.springs, setup.particles);
-    if (setup.options.time_step <= bound) return {};
+    const double step = setup.options.time_step;
+    if (step <= bound) return {};
+    if (bound == 0.0) {
+        return {
+            fmt::format("{} is not stable at any time step with these springs, some of which have no damping: they "
+                        "may explode; give every spring damping of more than the time step times its stiffness, or "
+                        "use the integrator symplectic_euler, velocity_verlet or implicit_euler",
+                        name_of(kind))};
+    }
     return {
         fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
                     "springs: they may explode; use a shorter step or the integrator implicit_euler",
-                    setup.options.time_step, bound, name_of(kind))};
+                    step, bound, name_of(kind))};
 }
 
 /// By how much paths may leave their chords: more where the look-ahead follows parabolas.

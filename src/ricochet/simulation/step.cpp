@@ -94,8 +94,10 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         wake_sleepers(part);
         move_part(batch, part, blocks);
         stop_runaways(blocks, step.end);
+        if (coupled.is_active() && batch.begin == 0) {
+            mover.take_up(coupled.correct_velocities(store.particles()), part, blocks);
+        }
         record_part(batch, blocks);
-        if (coupled.is_active() && batch.begin == 0) coupled.correct_velocities(store.particles());
         now = part.end;
     }
     if (coupled.is_active() && batch.begin == 0) coupled.settle(particles());
@@ -162,7 +164,9 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
     if (!coupled.is_active() || batch.begin != 0) return rest;
     const double whole = rest.end - rest.begin;
-    const double planned = coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed});
+    const auto hold = [&](std::size_t i, const Vec3& pull) { return mover.held_acceleration(i, rest.begin, pull); };
+    const double planned =
+        coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
 }
 

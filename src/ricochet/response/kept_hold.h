@@ -1,0 +1,25 @@
+/// \file
+/// Private to the responses: what surfaces leave of the forces on a particle whose contact lasts.
+#pragma once
+
+#include <span>
+
+#include "ricochet/collision/contact_scratch.h"
+#include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/response.h"
+
+namespace ricochet {
+
+/// By the contact that it has kept, where that is with surfaces at rest; without any: `pull` as it is.
+[[nodiscard]] HeldAcceleration hold_by_kept(const ResponseRules& rules, const MovingParticle& particle,
+                                            const Vec3& pull, const TouchRule& rule);
+
+/// The same by what touches it exactly.
+[[nodiscard]] HeldAcceleration hold_by_kept(const ResponseRules& rules, const MovingParticle& particle,
+                                            const Vec3& pull);
+
+/// By these surfaces.
+[[nodiscard]] HeldAcceleration hold_by(const ResponseRules& rules, const MovingParticle& particle, const Vec3& pull,
+                                       std::span<const ContactSurface> surfaces);
+
+}  // namespace ricochet

@@ -1,0 +1,227 @@
+// Springs between particles that slide, rest and roll: what one end of a spring gains the other loses, in every step,
+// whether it flies or a surface holds it; where closed forms exist they come out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+std::vector<IntegratorKind> explicit_methods() {
+    return {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
+            IntegratorKind::midpoint,      IntegratorKind::velocity_verlet,
+            IntegratorKind::rk4,           IntegratorKind::dormand_prince,
+            IntegratorKind::ballistic};
+}
+
+/// Methods of second order and more.
+std::vector<IntegratorKind> higher_methods() {
+    return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4,
+            IntegratorKind::dormand_prince, IntegratorKind::ballistic};
+}
+
+constexpr ResponseKind kResponses[] = {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project,
+                                       ResponseKind::penalty};
+
+/// The penalty response has sub-steps of its own, and refuses a method that chooses them.
+bool go_together(IntegratorKind kind, ResponseKind response) {
+    return kind != IntegratorKind::dormand_prince || response != ResponseKind::penalty;
+}
+
+std::string name_of_case(IntegratorKind kind, ResponseKind response, double damping) {
+    return std::string(name_of(kind)) + ", " + std::string(name_of(response)) + ", c = " + std::to_string(damping);
+}
+
+Particle point(const Vec3& position, const Vec3& velocity, double mass) {
+    Particle particle;
+    particle.position = position;
+    particle.velocity = velocity;
+    particle.mass = mass;
+    return particle;
+}
+
+/// A plane z = 0 on which nothing rebounds, and gravity.
+SimulationSetup floor_with(double friction) {
+    SimulationSetup setup;
+    setup.forces.push_back(make_gravity({0, 0, -kGravity}));
+    Material& material = setup.materials.emplace_back();
+    material.restitution = 0.0;
+    material.friction = friction;
+    setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
+    return setup;
+}
+
+/// Six points in a row that slides along itself. moved: m, by which every other one is off its place.
+SimulationSetup sliding_row(double stiffness, double damping, double moved) {
+    SimulationSetup setup = floor_with(0.3);
+    for (std::uint64_t i = 0; i < 6; ++i) {
+        const double off = i % 2 == 0 ? moved : 0.0;
+        setup.particles.push_back(point({0.2 * static_cast<double>(i) + off, off, 0.0}, {3, 0, 0}, 1.0 / 6.0));
+        if (i > 0) setup.springs.push_back({i - 1, i, 0.2, stiffness, damping});
+    }
+    return setup;
+}
+
+/// Two masses over each other, the lower one on the floor, the spring as long as it is under the weight of the upper.
+SimulationSetup column(double stiffness, double damping) {
+    SimulationSetup setup = floor_with(0.5);
+    setup.particles = {point({}, {}, 1.0), point({0, 0, 0.3}, {}, 1.0)};
+    setup.springs.push_back({0, 1, 0.3, stiffness, damping});
+    return setup;
+}
+
+Simulation made(SimulationSetup setup, IntegratorKind kind, ResponseKind response, double step, double duration) {
+    setup.options.integrator = kind;
+    setup.options.response = response;
+    setup.options.time_step = step;
+    setup.options.duration = duration;
+    return Simulation(std::move(setup));
+}
+
+/// N s, that the floor was given.
+Vec3 given_to_floor(const Simulation& run) { return run.triangle_totals(0).impulse[0]; }
+
+Vec3 momentum(const Simulation& run) {
+    Vec3 sum;
+    for (std::size_t i = 0; i < run.particles().size(); ++i) {
+        sum += run.particles().mass[i] * run.particles().velocity[i];
+    }
+    return sum;
+}
+
+/// The largest momentum, N s, that a step of the run makes out of nothing. The weight is kg.
+double largest_gap(Simulation run, double weight, double step) {
+    double largest = 0.0;
+    Vec3 before = momentum(run) + given_to_floor(run);
+    while (!run.finished()) {
+        run.step();
+        const Vec3 after = momentum(run) + given_to_floor(run);
+        largest = std::max(largest, length(after - before - Vec3{0, 0, -weight * kGravity * step}));
+        before = after;
+    }
+    return largest;
+}
+
+TEST(SpringsInContact, KeepMomentumInEveryStepOfASlidingRow) {
+    for (const IntegratorKind kind : explicit_methods()) {
+        for (const ResponseKind response : kResponses) {
+            for (const double damping : {0.0, 1.0}) {
+                if (!go_together(kind, response)) continue;
+                Simulation run = made(sliding_row(1000.0, damping, 0.003), kind, response, 1e-3, 0.1);
+                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, response, damping);
+            }
+        }
+    }
+}
+
+// The smallest case: one slides, the other flies, and only the one that slides has a weight.
+TEST(SpringsInContact, KeepMomentumBetweenASliderAndAFlyer) {
+    for (const IntegratorKind kind : explicit_methods()) {
+        for (const ResponseKind response : kResponses) {
+            for (const double damping : {0.0, 20.0}) {
+                if (!go_together(kind, response)) continue;
+                SimulationSetup setup = floor_with(0.5);
+                setup.forces.clear();
+                setup.forces.push_back(make_force_on({0}, make_gravity({0, 0, -kGravity})));
+                setup.particles = {point({}, {3, 0, 0}, 1.0), point({1, 0, 0.2}, {3, 0, 0}, 1.0)};
+                setup.springs.push_back({0, 1, 1.0, 1000.0, damping});
+                Simulation run = made(std::move(setup), kind, response, 1e-3, 0.1);
+                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, response, damping);
+            }
+        }
+    }
+}
+
+// Landing, sliding, rolling and lifting off, of spheres on a net.
+TEST(SpringsInContact, KeepMomentumOfANetThatFallsOnTheFloor) {
+    for (const IntegratorKind kind : higher_methods()) {
+        for (const double damping : {0.0, 0.05}) {
+            SimulationSetup setup = floor_with(0.4);
+            for (std::uint64_t k = 0; k < 16; ++k) {
+                const double x = 0.06 * static_cast<double>(k % 4);
+                const double y = 0.06 * static_cast<double>(k / 4);
+                Particle sphere = point({x, y, 0.05 + 0.3 * x + 0.2 * y}, {1.0, 0.3, -1.0}, 0.01);
+                sphere.radius = 0.02;
+                setup.particles.push_back(sphere);
+                if (k % 4 > 0) setup.springs.push_back({k - 1, k, 0.06, 100.0, damping});
+                if (k >= 4) setup.springs.push_back({k - 4, k, 0.06, 100.0, damping});
+            }
+            Simulation run = made(std::move(setup), kind, ResponseKind::exact, 5e-4, 0.3);
+            EXPECT_LT(largest_gap(std::move(run), 0.16, 5e-4), 1e-12)
+                << name_of_case(kind, ResponseKind::exact, damping);
+        }
+    }
+}
+
+// v^2 / (2 mu g): friction takes from each the same, and springs at rest have nothing to do.
+TEST(SpringsInContact, LetARowSlideAsFarAsWithoutThem) {
+    const double closed = 9.0 / (2.0 * 0.3 * kGravity);
+    for (const IntegratorKind kind : higher_methods()) {
+        // An adaptive method may be wrong by its tolerance, 1e-6 m, in each of the sub-steps that end the slide.
+        const double error = kind == IntegratorKind::dormand_prince ? 1e-5 : 1e-6;
+        for (const double step : {1e-3, 4e-3}) {
+            Simulation run = made(sliding_row(1000.0, 1.0, 0.0), kind, ResponseKind::exact, step, 1.5);
+            while (!run.finished()) run.step();
+            double sum = 0.0;
+            for (const Vec3& x : run.particles().position) sum += x.x / 6.0;
+            EXPECT_NEAR(sum - 0.5, closed, error) << name_of(kind) << ", " << step << " s";
+            EXPECT_EQ(run.statistics().resting, 6U) << name_of(kind);
+        }
+    }
+}
+
+TEST(SpringsInContact, LetAStiffRowSlideAsFarAsWithoutThem) {
+    const double closed = 9.0 / (2.0 * 0.3 * kGravity);
+    Simulation run = made(sliding_row(1e5, 5.0, 0.0), IntegratorKind::velocity_verlet, ResponseKind::exact, 1e-3, 1.5);
+    while (!run.finished()) run.step();
+    double sum = 0.0;
+    for (const Vec3& x : run.particles().position) sum += x.x / 6.0;
+    EXPECT_NEAR(sum - 0.5, closed, 1e-6);
+}
+
+// 2 m g on the floor and m g / k in the spring, once it has come to rest.
+TEST(SpringsInContact, HoldAColumnAtRest) {
+    struct Case {
+        double stiffness;
+        double damping;
+    };
+    for (const auto& [stiffness, damping] : {Case{1000.0, 5.0}, Case{1e5, 100.0}}) {
+        for (const IntegratorKind kind : higher_methods()) {
+            for (const ResponseKind response : kResponses) {
+                if (!go_together(kind, response)) continue;
+                Simulation run = made(column(stiffness, damping), kind, response, 2e-3, 12.0);
+                while (run.time() < 11.0) run.step();
+                const double time = run.time();
+                const double before = given_to_floor(run).z;
+                while (!run.finished()) run.step();
+                const double force = (before - given_to_floor(run).z) / (run.time() - time);
+                const std::string what = name_of_case(kind, response, damping);
+                const std::vector<Vec3>& x = run.particles().position;
+                EXPECT_NEAR(force, 2.0 * kGravity, 1e-6) << what;
+                EXPECT_NEAR(0.3 - (x[1].z - x[0].z), kGravity / stiffness, 1e-7 * kGravity / stiffness + 1e-12) << what;
+                EXPECT_LT(std::fabs(run.particles().velocity[1].z), 1e-9) << what;
+            }
+        }
+    }
+}
+
+// Forward Euler sets out without its forces: n steps of h from rest lead down by g h^2 n (n - 1) / 2. What gravity
+// gives in the first of them is no sign of a motion that diverges.
+TEST(SpringsThatFall, MayFallFromRestByForwardEuler) {
+    SimulationSetup setup;
+    setup.forces.push_back(make_gravity({0, 0, -kGravity}));
+    setup.particles = {point({0, 0, 5}, {}, 1.0), point({0, 0, 5.3}, {}, 1.0)};
+    setup.springs.push_back({0, 1, 0.3, 1.0, 1.0});
+    Simulation run = made(std::move(setup), IntegratorKind::forward_euler, ResponseKind::exact, 0.01, 1.0);
+    while (!run.finished()) run.step();
+    EXPECT_NEAR(run.particles().position[0].z, 5.0 - kGravity * 1e-4 * 100.0 * 99.0 / 2.0, 1e-10);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -240,7 +240,6 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
         const LyingLoad lying = lying_on(k, preview, end);
         if (!relaxations_[k].concerns(lying)) continue;
         const Fit fit = fit_of(k, lying, duration);
-        // DBG
         if (can_shorten) longest = std::min(longest, fit.longest);
         if (!fit.fits || longest < 1.0)
             loads_[k] = relaxations_[k].next(bodies_[k], loads_[k], fit.back, lying.heaviness);

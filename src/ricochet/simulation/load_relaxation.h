@@ -4,7 +4,7 @@
 /// The body's plan takes a load; what lies on the body goes along with that plan, and gives it another load back. What
 /// is heavier than the body gives the more back the less it is given, by more than that, and nothing where it is given
 /// so much that the body runs away from it: planned again and again with what came back, the load would grow without
-/// bound. So it is found between one that is too small and one that is too large, where there are both (C. Dowell,
+/// bound. So it is found between one that is too small and one that is too large, where there are both (M. Dowell,
 /// P. Jarratt, "A modified regula falsi method for computing the root of an equation", BIT 11, 1971), and before with a
 /// factor by how much heavier what lies there is (U. Kuttler, W. A. Wall, "Fixed-point fluid-structure interaction
 /// solvers with dynamic relaxation", Computational Mechanics 43, 2008).

@@ -23,6 +23,15 @@ TEST(ParticleTable, ReadsColumnsInAnyOrder) {
     EXPECT_EQ(table.particles[1].position, (Vec3{4, 5, 0.6}));
 }
 
+TEST(ParticleTable, RefusesWhatIsNotTextInOneLine) {
+    using namespace std::string_literals;
+    const std::string utf16 = "\xFF\xFEx\0,\0y\0,\0z\0\n\0"s + "1\0,\0002\0,\0003\0"s;
+    EXPECT_EQ(parse_particle_table(utf16, "t.csv").errors,
+              Lines{"t.csv:1: is UTF-16 or binary, expected text in UTF-8: save the file as UTF-8"});
+    EXPECT_EQ(parse_particle_table("x,y,z\n1,2,3\n4,5\0,6\n"s, "t.csv").errors,
+              Lines{"t.csv:3: found a NUL byte, expected text only"});
+}
+
 TEST(ParticleTable, BringsBackEveryBitOfSeventeenDigits) {
     const ParticleTable table =
         parse_particle_table("x,y,z\n0.10000000000000001,3.3333333333333335,-1.7976931348623157e-308\n", "t.csv");

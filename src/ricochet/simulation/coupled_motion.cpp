@@ -205,8 +205,9 @@ SystemStep CoupledMotion::stepped(double duration) {
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
-    const bool is_part = first_try_ > 0.0 && first_try_ < 0.75 * duration;
-    Foreseen foreseen = foresee(is_part ? first_try_ : duration, spins, contacts);
+    const double first_try = std::max(first_try_, kLeastPart * time_step_);
+    const bool is_part = first_try_ > 0.0 && first_try < 0.75 * duration;
+    Foreseen foreseen = foresee(is_part ? first_try : duration, spins, contacts);
     bool is_cut = false;
     int vain = 0;
     double h = foreseen.step.duration;

@@ -93,6 +93,7 @@ public:
     }
 
     ParticleTable parse() {
+        if (!is_text()) return std::move(table_);
         const std::optional<std::string_view> header = next_line();
         if (!header || trimmed(*header).empty()) {
             fail("the first line is empty, expected the names of the columns, for example x,y,z,vx,vy,vz");
@@ -110,6 +111,17 @@ public:
     }
 
 private:
+    /// Reports what is not text in UTF-8, of which each column would be unknown and each number unreadable.
+    bool is_text() {
+        const std::size_t nul = rest_.find('\0');
+        if (nul == std::string_view::npos) return true;
+        constexpr std::size_t kWidestCharacter = 4;
+        line_ = 1 + static_cast<std::size_t>(std::count(rest_.begin(), rest_.begin() + nul, '\n'));
+        fail(nul < kWidestCharacter ? "is UTF-16 or binary, expected text in UTF-8: save the file as UTF-8"
+                                    : "found a NUL byte, expected text only");
+        return false;
+    }
+
     std::optional<std::string_view> next_line() {
         if (rest_.empty()) return std::nullopt;
         ++line_;

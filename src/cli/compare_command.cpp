@@ -36,11 +36,11 @@ std::string progress_text(const ComparisonProgress& progress) {
                        progress.response, progress.time_step, kind, progress.step, progress.steps);
 }
 
-// Finds out whether the scene can run at all before anything in the output folder is changed.
-void check_setup(const cli::SceneArguments& arguments) {
+// Finds out whether every row can run before anything in the output folder is changed.
+void check_rows(const cli::SceneArguments& arguments, const ComparisonPlan& plan) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {
-        const Simulation simulation(std::move(scene.setup));
+        require_comparable(std::move(scene.setup), plan);
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", scene.file, error.what()));
     }
@@ -116,7 +116,7 @@ void run_compare(const CompareArguments& arguments) {
     const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
     SceneDescription scene = cli::load_scene(arguments.scene);
     const ComparisonPlan plan = make_plan(arguments.request, scene.setup.options);
-    check_setup(arguments.scene);
+    check_rows(arguments.scene, plan);
     const OutputDirectory folder(arguments.output);
     const ComparisonSource source = source_of(scene, arguments);
     const Comparison comparison = compare(scene, plan, arguments.quiet);

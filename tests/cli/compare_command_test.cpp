@@ -124,6 +124,39 @@ TEST(CompareCommand, BadRequestsAreOneLineAndTwoAndLeaveAnEarlierReportAlone) {
     }
 }
 
+// What one row refuses is said before the others are run: here they would take hours.
+TEST(CompareCommand, RefusesRowsThatCannotRunBeforeAnyOtherDoes) {
+    struct Refusal {
+        std::string setting;
+        std::string responses;  // empty: those by default
+        std::string reason;
+        std::string left;
+    };
+    const char* const kSpheres = "emitters[0].particle_radius=0.001";
+    const ComparedScene files;
+    for (const Refusal& wrong : std::vector<Refusal>{
+             {"simulation.integrator=\"implicit_euler\"", "",
+              "simulation.response: the rows of penalty cannot be run: integrator: found implicit_euler with the "
+              "penalty response",
+              "expected an explicit method of fixed steps, for example rk4; or leave it out (--responses "
+              "exact,rollback,project)"},
+             {"simulation.integrator=\"dormand_prince\"", "rollback:global,penalty",
+              "simulation.response: the rows of rollback:global cannot be run: integrator: found dormand_prince",
+              "expected a method of fixed steps, for example rk4; or leave it out (--responses exact)"},
+             {"particle_contacts={\"restitution\":0.5}", "",
+              "simulation.response: the rows of rollback cannot be run: particle_contacts: response: found rollback",
+              "expected exact: the others move each particle for itself; or leave it out (--responses exact)"}}) {
+        std::vector<std::string> more{"--set", wrong.setting, "--time-steps", "1e-9", "--set", kSpheres};
+        if (!wrong.responses.empty()) more.insert(more.end(), {"--responses", wrong.responses});
+        const ProgramResult result = files.compare("out", more);
+        EXPECT_EQ(result.exit_code, 2) << wrong.setting;
+        EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+        EXPECT_NE(result.errors.find(wrong.reason), std::string::npos) << result.errors;
+        EXPECT_NE(result.errors.find(wrong.left), std::string::npos) << result.errors;
+        EXPECT_FALSE(files.exists("out"));
+    }
+}
+
 TEST(CompareCommand, DrawsAllPicturesOrSaysWhyNot) {
     const ComparedScene files;
     const ProgramResult result = files.compare("out", {"--responses", "exact,penalty", "--time-steps", "0.02"});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -87,11 +88,40 @@ auto named(std::string_view part, const ResponseChoice& response, double time_st
     }
 }
 
+/// The rest of a refusal: what a plan comes to without the responses that a scene refuses.
+std::string without_refused(const std::vector<ResponseChoice>& accepted) {
+    std::string names;
+    for (const ResponseChoice& choice : accepted) names += (names.empty() ? "" : ",") + name_of(choice);
+    return fmt::format("or leave it out (--responses {})", names.empty() ? name_of(kExact) : names);
+}
+
+/// Makes a simulation of each response at the step, s, and runs none. Throws InputError for the first that cannot be.
+void require_runs(const SetupCopies& copies, const std::vector<ResponseChoice>& responses, double time_step) {
+    const auto make = [&](const ResponseChoice& response) {
+        const Simulation simulation(copies.make(options_for(copies.options(), response, time_step)));
+    };
+    make(kExact);  // what it refuses has nothing to do with rows
+    std::vector<ResponseChoice> accepted;
+    std::string refusal;
+    for (const ResponseChoice& response : responses) {
+        try {
+            if (response != kExact) make(response);
+            accepted.push_back(response);
+        } catch (const InputError& error) {
+            if (!refusal.empty()) continue;
+            refusal =
+                fmt::format("simulation.response: the rows of {} cannot be run: {}", name_of(response), error.what());
+        }
+    }
+    if (!refusal.empty()) throw InputError(fmt::format("{}; {}", refusal, without_refused(accepted)));
+}
+
 /// Works through a plan.
 class Comparer {
 public:
     Comparer(SimulationSetup setup, const ComparisonPlan& plan, const ComparisonHook& hook)
         : copies_(std::move(setup)), hook_(hook) {
+        require_runs(copies_, plan.responses, plan.reference_step);
         result_.plan = plan;
         result_.options = copies_.options();
         for (const ResponseChoice& response : plan.responses) add_rows(response, true);
@@ -203,6 +233,10 @@ std::vector<const ComparisonRow*> Comparison::listed_rows() const {
         if (row.listed) listed.push_back(&row);
     }
     return listed;
+}
+
+void require_comparable(SimulationSetup setup, const ComparisonPlan& plan) {
+    require_runs(SetupCopies(std::move(setup)), plan.responses, plan.reference_step);
 }
 
 std::optional<Comparison> compare_responses(SimulationSetup setup, const ComparisonPlan& plan,

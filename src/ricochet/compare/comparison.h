@@ -60,10 +60,14 @@ struct ComparisonProgress {
 /// Called after every step of every run; false ends the comparison.
 using ComparisonHook = std::function<bool(const ComparisonProgress&)>;
 
+/// Runs nothing: throws InputError, one line, for a setup that cannot work, or that refuses a response of the plan; the
+/// line names that one and the responses that are left.
+void require_comparable(SimulationSetup setup, const ComparisonPlan& plan);
+
 /// Runs the plan on a scene: the reference and every row once with all checks on, then the timed runs, one after the
 /// other within a repeat so that noise hits all alike. Nothing when the hook has ended it. The numbers apart from the
-/// costs are the same every time. Throws InputError for a setup that cannot work, RunError when a timed run ends in
-/// another state than the measured one.
+/// costs are the same every time. Throws InputError as require_comparable() does, before anything runs, and RunError
+/// when a timed run ends in another state than the measured one.
 [[nodiscard]] std::optional<Comparison> compare_responses(SimulationSetup setup, const ComparisonPlan& plan,
                                                           const ComparisonHook& hook = {});
 

@@ -26,16 +26,23 @@ std::vector<IntegratorKind> higher_methods() {
             IntegratorKind::dormand_prince, IntegratorKind::ballistic};
 }
 
-constexpr ResponseKind kResponses[] = {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project,
-                                       ResponseKind::penalty};
+struct Answer {
+    ResponseKind kind;
+    bool global = false;  ///< rollback takes the whole system back
+};
+constexpr Answer kExact{ResponseKind::exact};
+constexpr Answer kAnswers[] = {
+    kExact, {ResponseKind::rollback}, {ResponseKind::rollback, true}, {ResponseKind::project}, {ResponseKind::penalty}};
 
-/// The penalty response has sub-steps of its own, and refuses a method that chooses them.
-bool go_together(IntegratorKind kind, ResponseKind response) {
-    return kind != IntegratorKind::dormand_prince || response != ResponseKind::penalty;
+/// The penalty response has sub-steps of its own, and the global rollback steps all together: they refuse a method that
+/// chooses its steps.
+bool go_together(IntegratorKind kind, const Answer& answer) {
+    return kind != IntegratorKind::dormand_prince || !(answer.kind == ResponseKind::penalty || answer.global);
 }
 
-std::string name_of_case(IntegratorKind kind, ResponseKind response, double damping) {
-    return std::string(name_of(kind)) + ", " + std::string(name_of(response)) + ", c = " + std::to_string(damping);
+std::string name_of_case(IntegratorKind kind, const Answer& answer, double damping) {
+    return std::string(name_of(kind)) + ", " + std::string(name_of(answer.kind)) + (answer.global ? ".global" : "") +
+           ", c = " + std::to_string(damping);
 }
 
 Particle point(const Vec3& position, const Vec3& velocity, double mass) {
@@ -76,9 +83,10 @@ SimulationSetup column(double stiffness, double damping) {
     return setup;
 }
 
-Simulation made(SimulationSetup setup, IntegratorKind kind, ResponseKind response, double step, double duration) {
+Simulation made(SimulationSetup setup, IntegratorKind kind, const Answer& answer, double step, double duration) {
     setup.options.integrator = kind;
-    setup.options.response = response;
+    setup.options.response = answer.kind;
+    setup.options.rollback.global = answer.global;
     setup.options.time_step = step;
     setup.options.duration = duration;
     return Simulation(std::move(setup));
@@ -110,11 +118,11 @@ double largest_gap(Simulation run, double weight, double step) {
 
 TEST(SpringsInContact, KeepMomentumInEveryStepOfASlidingRow) {
     for (const IntegratorKind kind : explicit_methods()) {
-        for (const ResponseKind response : kResponses) {
+        for (const Answer& answer : kAnswers) {
             for (const double damping : {0.0, 1.0}) {
-                if (!go_together(kind, response)) continue;
-                Simulation run = made(sliding_row(1000.0, damping, 0.003), kind, response, 1e-3, 0.1);
-                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, response, damping);
+                if (!go_together(kind, answer)) continue;
+                Simulation run = made(sliding_row(1000.0, damping, 0.003), kind, answer, 1e-3, 0.1);
+                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, answer, damping);
             }
         }
     }
@@ -123,16 +131,16 @@ TEST(SpringsInContact, KeepMomentumInEveryStepOfASlidingRow) {
 // The smallest case: one slides, the other flies, and only the one that slides has a weight.
 TEST(SpringsInContact, KeepMomentumBetweenASliderAndAFlyer) {
     for (const IntegratorKind kind : explicit_methods()) {
-        for (const ResponseKind response : kResponses) {
+        for (const Answer& answer : kAnswers) {
             for (const double damping : {0.0, 20.0}) {
-                if (!go_together(kind, response)) continue;
+                if (!go_together(kind, answer)) continue;
                 SimulationSetup setup = floor_with(0.5);
                 setup.forces.clear();
                 setup.forces.push_back(make_force_on({0}, make_gravity({0, 0, -kGravity})));
                 setup.particles = {point({}, {3, 0, 0}, 1.0), point({1, 0, 0.2}, {3, 0, 0}, 1.0)};
                 setup.springs.push_back({0, 1, 1.0, 1000.0, damping});
-                Simulation run = made(std::move(setup), kind, response, 1e-3, 0.1);
-                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, response, damping);
+                Simulation run = made(std::move(setup), kind, answer, 1e-3, 0.1);
+                EXPECT_LT(largest_gap(std::move(run), 1.0, 1e-3), 1e-12) << name_of_case(kind, answer, damping);
             }
         }
     }
@@ -152,9 +160,8 @@ TEST(SpringsInContact, KeepMomentumOfANetThatFallsOnTheFloor) {
                 if (k % 4 > 0) setup.springs.push_back({k - 1, k, 0.06, 100.0, damping});
                 if (k >= 4) setup.springs.push_back({k - 4, k, 0.06, 100.0, damping});
             }
-            Simulation run = made(std::move(setup), kind, ResponseKind::exact, 5e-4, 0.3);
-            EXPECT_LT(largest_gap(std::move(run), 0.16, 5e-4), 1e-12)
-                << name_of_case(kind, ResponseKind::exact, damping);
+            Simulation run = made(std::move(setup), kind, kExact, 5e-4, 0.3);
+            EXPECT_LT(largest_gap(std::move(run), 0.16, 5e-4), 1e-12) << name_of_case(kind, kExact, damping);
         }
     }
 }
@@ -166,7 +173,7 @@ TEST(SpringsInContact, LetARowSlideAsFarAsWithoutThem) {
         // An adaptive method may be wrong by its tolerance, 1e-6 m, in each of the sub-steps that end the slide.
         const double error = kind == IntegratorKind::dormand_prince ? 1e-5 : 1e-6;
         for (const double step : {1e-3, 4e-3}) {
-            Simulation run = made(sliding_row(1000.0, 1.0, 0.0), kind, ResponseKind::exact, step, 1.5);
+            Simulation run = made(sliding_row(1000.0, 1.0, 0.0), kind, kExact, step, 1.5);
             while (!run.finished()) run.step();
             double sum = 0.0;
             for (const Vec3& x : run.particles().position) sum += x.x / 6.0;
@@ -178,7 +185,7 @@ TEST(SpringsInContact, LetARowSlideAsFarAsWithoutThem) {
 
 TEST(SpringsInContact, LetAStiffRowSlideAsFarAsWithoutThem) {
     const double closed = 9.0 / (2.0 * 0.3 * kGravity);
-    Simulation run = made(sliding_row(1e5, 5.0, 0.0), IntegratorKind::velocity_verlet, ResponseKind::exact, 1e-3, 1.5);
+    Simulation run = made(sliding_row(1e5, 5.0, 0.0), IntegratorKind::velocity_verlet, kExact, 1e-3, 1.5);
     while (!run.finished()) run.step();
     double sum = 0.0;
     for (const Vec3& x : run.particles().position) sum += x.x / 6.0;
@@ -193,15 +200,15 @@ TEST(SpringsInContact, HoldAColumnAtRest) {
     };
     for (const auto& [stiffness, damping] : {Case{1000.0, 5.0}, Case{1e5, 100.0}}) {
         for (const IntegratorKind kind : higher_methods()) {
-            for (const ResponseKind response : kResponses) {
-                if (!go_together(kind, response)) continue;
-                Simulation run = made(column(stiffness, damping), kind, response, 2e-3, 12.0);
+            for (const Answer& answer : kAnswers) {
+                if (!go_together(kind, answer)) continue;
+                Simulation run = made(column(stiffness, damping), kind, answer, 2e-3, 12.0);
                 while (run.time() < 11.0) run.step();
                 const double time = run.time();
                 const double before = given_to_floor(run).z;
                 while (!run.finished()) run.step();
                 const double force = (before - given_to_floor(run).z) / (run.time() - time);
-                const std::string what = name_of_case(kind, response, damping);
+                const std::string what = name_of_case(kind, answer, damping);
                 const std::vector<Vec3>& x = run.particles().position;
                 EXPECT_NEAR(force, 2.0 * kGravity, 1e-6) << what;
                 EXPECT_NEAR(0.3 - (x[1].z - x[0].z), kGravity / stiffness, 1e-7 * kGravity / stiffness + 1e-12) << what;
@@ -218,7 +225,7 @@ TEST(SpringsThatFall, MayFallFromRestByForwardEuler) {
     setup.forces.push_back(make_gravity({0, 0, -kGravity}));
     setup.particles = {point({0, 0, 5}, {}, 1.0), point({0, 0, 5.3}, {}, 1.0)};
     setup.springs.push_back({0, 1, 0.3, 1.0, 1.0});
-    Simulation run = made(std::move(setup), IntegratorKind::forward_euler, ResponseKind::exact, 0.01, 1.0);
+    Simulation run = made(std::move(setup), IntegratorKind::forward_euler, kExact, 0.01, 1.0);
     while (!run.finished()) run.step();
     EXPECT_NEAR(run.particles().position[0].z, 5.0 - kGravity * 1e-4 * 100.0 * 99.0 / 2.0, 1e-10);
 }

@@ -46,7 +46,9 @@ private:
                 SystemParticle& p = particles_[i];
                 MoveScratch& scratch = blocks_[block];
                 scratch.segments.clear();
+                const std::size_t first_hit = scratch.hits.size();
                 body(p, events_[i], scratch);
+                for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) p.pushed -= scratch.hits[k].impulse;
                 p.segments.insert(p.segments.end(), scratch.segments.begin(), scratch.segments.end());
             }
         });

@@ -45,6 +45,7 @@ struct SystemParticle {
     double stop = 0.0;   ///< s, and ends
     MoveOutcome outcome = {};
     std::vector<Segment> segments = {};  ///< filled when the scratch records segments
+    Vec3 pushed{};                       ///< N s, that surfaces have given it
     bool is_out = false;                 ///< it is done with the step: its budget is spent, or it rests in a pit
     int idle = 0;                        ///< pieces of contact in a row without progress
 };

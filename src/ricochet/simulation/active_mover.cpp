@@ -59,12 +59,12 @@ bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
 
 /// Responses that do not say what a particle has flown are taken to have led it smoothly from where it was to where it
 /// is.
-void note_flown(const Flight& plan, const MovingParticle& moved, MoveScratch& scratch) {
-    if (!scratch.flown.empty()) return;
+void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
+    if (!flown.empty()) return;
     const ForceInput& from = plan.start;
     const double duration = plan.path.duration;
     const Path path = hermite_path(from.position, from.velocity, moved.state.position, moved.state.velocity, duration);
-    scratch.flown.push_back({path, from.time, duration, from.velocity, moved.state.velocity, moved.contact.count == 0});
+    flown.push_back({path, from.time, duration, from.velocity, moved.state.velocity, moved.contact.count == 0});
 }
 
 bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<const FlownPiece> flown) {
@@ -116,13 +116,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
-    const bool may_leave = scratch.record_flown && !outcome.is_absorbed() && !outcome.is_frozen();
-    if (may_leave && outcome.unsimulated_time == 0.0) {
-        note_flown(*plan, particle, scratch);
-        if (particle.planned == nullptr || outcome.bounces > 0 || !is_as_planned(*plan, particle, scratch.flown)) {
-            parts_.coupled.record_departure(i, scratch.flown, pushed_since(first_hit, scratch) / particle.state.mass);
-        }
-    }
+    if (scratch.record_flown) note_departure(i, particle, outcome, scratch.flown, pushed_since(first_hit, scratch));
     if (parts_.check != nullptr) {
         const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
         parts_.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
@@ -132,6 +126,17 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
         scratch.records[k].radius = particle.state.whole_radius;
     }
     take_over(i, particle, outcome, life.end, record);
+}
+
+/// pushed: N s, that surfaces have given it.
+void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                 std::vector<FlownPiece>& flown, const Vec3& pushed) {
+    if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
+    const Flight& plan = *parts_.coupled.flight_of(i);
+    note_flown(plan, moved, flown);
+    if (moved.planned == nullptr || outcome.bounces > 0 || !is_as_planned(plan, moved, flown)) {
+        parts_.coupled.record_departure(i, flown, pushed / moved.state.mass);
+    }
 }
 
 /// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces.
@@ -213,6 +218,11 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
         if (parts_.check != nullptr) {
             parts_.check->check(i, parts_.store.particles(), moved.particle.state, {moved.stop, moved.stop},
                                 moved.segments, record.violations);
+        }
+        const bool as_planned = moved.start == step.begin && moved.stop == step.end;
+        if (as_planned && parts_.coupled.wants_departure_of(i)) {
+            std::vector<FlownPiece> flown;
+            note_departure(i, moved.particle, moved.outcome, flown, moved.pushed);
         }
         take_over(i, moved.particle, moved.outcome, moved.stop, record);
     }

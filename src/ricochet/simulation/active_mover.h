@@ -132,6 +132,8 @@ private:
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record);
     [[nodiscard]] bool is_near_yielding(const ForceInput& state, double duration) const;
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
+    void note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                        std::vector<FlownPiece>& flown, const Vec3& pushed);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,

@@ -146,9 +146,10 @@ TEST(SpringsInContact, KeepMomentumBetweenASliderAndAFlyer) {
     }
 }
 
-// Landing, sliding, rolling and lifting off, of spheres on a net.
+// Landing, sliding, rolling and lifting off, of spheres on a net. Friction turns while a slip ends, and what is left of
+// the slip when its speed is next to nothing is friction's too.
 TEST(SpringsInContact, KeepMomentumOfANetThatFallsOnTheFloor) {
-    for (const IntegratorKind kind : higher_methods()) {
+    for (const IntegratorKind kind : explicit_methods()) {
         for (const double damping : {0.0, 0.05}) {
             SimulationSetup setup = floor_with(0.4);
             for (std::uint64_t k = 0; k < 16; ++k) {

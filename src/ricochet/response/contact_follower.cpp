@@ -140,7 +140,6 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
-    manifold_.record_push(turned + elapsed * (interval.acceleration - forces), elapsed, impact_);
     Motion motion =
         end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
@@ -148,6 +147,9 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
         limit_energy(motion, state_.radius, most + 2.0 * work,
                      length(forces) * step_.geometry().contact_offset(state_.position));
     }
+    // Also what surfaces take of a slip that ends: friction turns while it does, and not all of it ends by itself.
+    const Vec3 stopped = motion.velocity - state_.velocity;
+    manifold_.record_push(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, impact_);
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     step_.log().note_contact(pull.forces, way.path, pull.acts);

@@ -69,5 +69,22 @@ TEST(MotionScene, SaysWhatDoesNotGoWithAFlow) {
               (Lines{"simulation.flow: only goes together with \"motion\": \"flow\""}));
 }
 
+TEST(MotionScene, WarnsOfWallsThatCannotSwallowOrShatterWhatAFlowCarries) {
+    const std::string parents = R"("emitters": [{"name": "a", "type": "point", "center": [0, 0, 1], "burst": 1},)";
+    const std::string walls = R"(, "materials": {"sink": {"absorption": 0.5}}, "colliders": [{"type": "plane",
+        "normal": [0, 0, 1], "material": "sink"}], )" +
+                              parents;
+    const std::string child = R"({"type": "child", "parent": "a", "on": "impact", "count": 2, "share": )";
+    const std::string carried = R"("motion": "flow", "flow": "stream")";
+    const SceneDescription shared = parse_scene(scene_of(carried, walls + child + "true}]"), "s.json");
+    ASSERT_EQ(shared.warnings.size(), 2U);
+    EXPECT_NE(shared.warnings[0].find("materials.sink.absorption: a flow carries the particles"), std::string::npos)
+        << shared.warnings[0];
+    EXPECT_NE(shared.warnings[1].find("emitters[1].on: a flow carries the particles"), std::string::npos)
+        << shared.warnings[1];
+    EXPECT_EQ(parse_scene(scene_of(carried, walls + child + "false}]"), "s.json").warnings.size(), 1U);
+    EXPECT_EQ(parse_scene(scene_of("", walls + child + "true}]"), "s.json").warnings.size(), 0U);
+}
+
 }  // namespace
 }  // namespace ricochet

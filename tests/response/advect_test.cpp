@@ -100,6 +100,22 @@ TEST(Advect, SlidesAlongAPlaneAndAFineMeshAsTheTangentialFlowGoes) {
     }
 }
 
+// What lands at the very end of a step has no time left to go along the wall: it has landed once all the same.
+TEST(Advect, LandsOnceAtTheEndOfAStep) {
+    for (const WallRule rule : {WallRule::slide, WallRule::stop}) {
+        std::vector<Particle> particles;
+        for (int k = 5; k < 40; ++k) particles.push_back(at({0, 0, 0.02 * k}));
+        SimulationSetup setup =
+            carried(make_wind({0.2, 0.1, -1}), {plane_collider({}, {0, 0, 1})}, std::move(particles), rule);
+        setup.options.duration = 1.0;
+        setup.options.time_step = 0.02;
+        Simulation simulation(std::move(setup));
+        run(simulation);
+        EXPECT_EQ(simulation.statistics().contacts, 35U);
+        EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    }
+}
+
 TEST(Advect, SlidesIntoAnEdgeAndAlongItAndStaysInACorner) {
     const FlowPointer flow = make_wind({1, 0.5, -1});
     SimulationSetup setup =

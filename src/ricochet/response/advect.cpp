@@ -43,6 +43,8 @@ private:
     [[nodiscard]] bool is_stopped() const {
         return is_stuck_ || (rules_.settings.walls == WallRule::stop && flow_.leads_in(state_.time));
     }
+    /// Pressed onto a surface with no time left to go anywhere along it, as after a landing at the end of the step.
+    [[nodiscard]] bool is_over() const { return flow_.is_no_way(step_.remaining()) && flow_.leads_in(state_.time); }
     [[nodiscard]] double reach() const { return widening_ * kEdgeOffsets * contact_offset(state_.position); }
     [[nodiscard]] TouchRule touch_rule() const;
 
@@ -72,7 +74,9 @@ MoveOutcome Advector::run() {
             step_.stop();
             break;
         }
-        if (is_stopped()) {
+        if (is_over()) {
+            step_.wait(step_.remaining());
+        } else if (is_stopped()) {
             step_.wait(is_stuck_ ? step_.remaining() : flow_.time_to_release(step_.remaining()));
         } else {
             advance();

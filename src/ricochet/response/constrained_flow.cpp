@@ -148,12 +148,12 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
         const Path path = is_arc ? arc(longest_arc(duration)) : free_path(duration);
         if (holders_.empty() || !can_be_followed(path)) return path;
         const Part held = is_arc ? arc_until_release(path) : until_release(path);
-        if (is_no_progress(held.path)) {  // the flow turns away here
+        if (is_no_progress(held.path.duration, held.path.c[1])) {  // the flow turns away here
             holders_.remove(held.ended_by);
             continue;
         }
         const Part part = until_rim(held.path, reach);
-        if (is_no_progress(part.path)) {  // it is past that surface's end
+        if (is_no_progress(part.path.duration, part.path.c[1])) {  // it is past that surface's end
             manifold_.remove(holders_.point(part.ended_by));
             holders_ = holders_now();
             continue;
@@ -165,6 +165,10 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
         }
         return lifted(part.path);
     }
+}
+
+bool ConstrainedFlow::is_no_way(double duration) const {
+    return duration <= kNoProgress * step_ && is_no_progress(duration, velocity());
 }
 
 bool ConstrainedFlow::dips(const Path& path, double time) const {
@@ -375,9 +379,8 @@ Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
 }
 
 /// Too short to change anything: neither a noticeable part of the step nor of what positions are rounded by.
-bool ConstrainedFlow::is_no_progress(const Path& path) const {
-    return !(path.duration > kNoProgress * step_) &&
-           !(length(path.c[1]) * path.duration > 0.25 * contact_offset(state_.position));
+bool ConstrainedFlow::is_no_progress(double duration, const Vec3& velocity) const {
+    return !(duration > kNoProgress * step_) && !(length(velocity) * duration > 0.25 * contact_offset(state_.position));
 }
 
 }  // namespace ricochet

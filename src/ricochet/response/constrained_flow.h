@@ -60,6 +60,9 @@ public:
     /// s, at most `remaining`: how long it does.
     [[nodiscard]] double time_to_release(double remaining) const;
 
+    /// True when it leads so little along surfaces in that time, s, that a path is not worth making, see kNoProgress.
+    [[nodiscard]] bool is_no_way(double duration) const;
+
     /// The next path, at most `duration` long, s, and at most `reach`, m, beyond the rim of a flat surface. Contact
     /// points that the particle is past are removed.
     [[nodiscard]] Path next_path(double duration, double reach);
@@ -93,7 +96,7 @@ private:
     [[nodiscard]] Part until_rim(const Path& path, double reach) const;
     [[nodiscard]] Path lifted(Path path) const;
     [[nodiscard]] Path along_curved(const ContactSurface& support, Path path);
-    [[nodiscard]] bool is_no_progress(const Path& path) const;
+    [[nodiscard]] bool is_no_progress(double duration, const Vec3& velocity) const;
 
     const ResponseRules& rules_;
     const FlowField& flow_;

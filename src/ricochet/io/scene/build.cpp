@@ -304,6 +304,22 @@ void build_motion(const SceneContext& context, const ForceBuilder& forces, Simul
     }
 }
 
+/// What is carried has no momentum that walls could take, or share out.
+void warn_of_walls_along_flows(const SceneContext& context, const SimulationSetup& setup) {
+    if (setup.options.flow == nullptr) return;
+    for (const NamedObject& named : context.root().named_objects("materials")) {
+        if (!(named.view.read<Material>().absorption > 0.0)) continue;
+        context.warn(named.view, "absorption", "a flow carries the particles, it does nothing: walls \"stop\" them");
+    }
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const auto& rule = setup.emitters[k].parent;
+        if (!rule || !rule->share || rule->on != BirthEvent::impact) continue;
+        context.warn(context.objects("emitters")[k], "on",
+                     "a flow carries the particles, their impacts have no impulse and none is shared out: nothing is "
+                     "born here; \"share\": false bears at every impact");
+    }
+}
+
 void build_bounds(const SceneContext& context, SimulationSetup& setup) {
     const ObjectView view = context.root().object("bounds");
     if (!view.has("lower") || !view.has("upper")) return;
@@ -351,6 +367,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_attributes(context, scene.setup);
     build_reference_camera(context, scene.setup);
     build_emitters(context, scene.setup);
+    warn_of_walls_along_flows(context, scene.setup);
     build_particles(context, scene.setup);
     build_springs(context, scene.setup);
     build_particle_contacts(context, scene.setup);

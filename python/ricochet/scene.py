@@ -1061,6 +1061,11 @@ class Picture(Thing):
     particles: What particles are drawn as.
     shutter: How long it is open, up to the picture's time: moving particles blur. 0: not at all. Unit: s. Default:
         0.
+    sprite: A PNG file, with alpha or without: its longer edge is as long as the particle is thick.
+    mesh: A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.
+    turn: How sprites are turned.
+    turning: How fast sprites, and meshes of particles without a spin, turn on as they age. Unit: rad/s.
+    stretch: Squash and stretch of spheres and meshes, at the same volume.
     ground: A level ground at this height along the upward axis. Unit: m.
     """
 
@@ -1260,6 +1265,17 @@ class SheetSprings(Thing):
     """
 
     _fixed = {"type": "sheet"}
+
+
+class Stretch(Thing):
+    """How drawn particles change their shape as they move; collisions know nothing of it.
+
+    speed: Along their velocity they are longer by the factor 1 + `speed` times the speed. Unit: s/m. Default: 0.
+    impact: At an impact they are flatter along its normal by the factor 1 + `impact` times the speed along it; this
+        needs `output.contacts`. Unit: s/m. Default: 0.
+    time: How long an impact shows, half of it before. Unit: s. Default: 0.1.
+    most: Neither longer nor flatter than by this factor. Default: 2.
+    """
 
 
 class SurfaceMotion(Thing):

@@ -893,6 +893,11 @@ class Picture(Thing):
         transparent: Optional[bool] = ...,
         particles: Optional[str] = ...,
         shutter: Optional[float] = ...,
+        sprite: Optional[str] = ...,
+        mesh: Optional[str] = ...,
+        turn: Optional[str] = ...,
+        turning: Any = ...,
+        stretch: Any = ...,
         ground: Optional[float] = ...,
     ) -> None: ...
 
@@ -1069,6 +1074,16 @@ class SheetSprings(Thing):
         breaking_stretch: Optional[float] = ...,
         pinned: Optional[Vector] = ...,
         pin_boxes: Optional[Sequence[Any]] = ...,
+    ) -> None: ...
+
+class Stretch(Thing):
+    def __init__(
+        self,
+        *,
+        speed: Optional[float] = ...,
+        impact: Optional[float] = ...,
+        time: Optional[float] = ...,
+        most: Optional[float] = ...,
     ) -> None: ...
 
 class SurfaceMotion(Thing):

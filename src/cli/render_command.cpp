@@ -174,10 +174,18 @@ void render(const RenderArguments& arguments) {
     } else {
         cli::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
     }
-    if (pictures.shows_own_colors()) {
+    if (pictures.shows_image_colors()) {
+        cli::print("in the colours of the sprite\n");
+    } else if (pictures.shows_own_colors()) {
         cli::print("in the particles' own colours\n");
     } else {
         cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
+    }
+    if (const std::string& name = pictures.hiding_collider(); !name.empty()) {
+        cli::print(
+            "note: most particles are inside \"{0}\", of which the camera sees the outside; --glass {0}, or "
+            "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
+            name);
     }
 }
 

@@ -72,7 +72,19 @@ ColorMap parse_color_map(const std::string& text) {
 
 ParticleDrawing parse_drawing(const std::string& text) {
     if (const auto drawing = drawing_from_name(text)) return *drawing;
-    refuse(fmt::format("--draw {}: expected auto, spheres, streaks, soft or glow", text));
+    refuse(fmt::format("--draw {}: expected auto, spheres, streaks, soft, glow, sprites or meshes", text));
+}
+
+// A file says what it is for; other drawings beside it would not use it.
+void choose_file(const char* option, const std::string& file, ParticleDrawing drawing, std::filesystem::path& target,
+                 PictureStyle& style) {
+    if (file.empty()) return;
+    if (style.drawing == ParticleDrawing::automatic) style.drawing = drawing;
+    if (style.drawing != drawing) {
+        refuse(fmt::format("{} {}: found beside another --draw, expected --draw {}", option, file,
+                           drawing == ParticleDrawing::sprites ? "sprites" : "meshes"));
+    }
+    target = file;
 }
 
 std::optional<Lighting> parse_light(const std::string& text) {
@@ -110,6 +122,8 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     PictureStyle style;
     style.color_by = arguments.color_by;
     style.drawing = parse_drawing(arguments.drawing);
+    choose_file("--sprite", arguments.sprite, ParticleDrawing::sprites, style.sprite, style);
+    choose_file("--mesh", arguments.mesh, ParticleDrawing::meshes, style.mesh, style);
     style.range = parse_range("--range", arguments.range);
     style.map = parse_color_map(arguments.color_map);
     if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
@@ -152,9 +166,11 @@ void add_render_options(cli::Command command, RenderArguments& a) {
                        "Array of the frames that colours the particles (default: their own color, or speed)");
     command
         .add_option("--draw", a.drawing,
-                    "Particles as spheres, streaks along their way, soft discs by opacity, or glow that adds up (auto: "
-                    "soft with an opacity)")
+                    "Particles as spheres, streaks along their way, soft discs by opacity, glow that adds up, sprites, "
+                    "or meshes (auto: soft with an opacity)")
         .show_default();
+    command.add_option("--sprite", a.sprite, "PNG file that particles are drawn with, facing the camera");
+    command.add_option("--mesh", a.mesh, "Mesh file that particles are drawn as copies of, turned by their spin");
     command.add_option("--light", a.light, "day, noon, overcast, night or studio (default: the scene's, or day)");
     command.add_flag("--night", a.night, "The same as --light night");
     command.add_option("--background", a.background, "sky, transparent (.png), or red,green,blue from 0 to 1");

@@ -20,6 +20,8 @@ struct RenderArguments {
     std::string lens;
     std::string color_by;
     std::string drawing = "auto";
+    std::string sprite;
+    std::string mesh;
     std::string color_map = "plasma";
     std::string range;
     std::string collider_color = "plain";

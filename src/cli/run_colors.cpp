@@ -37,7 +37,9 @@ void RunPictures::color_colliders(const RunFolder& folder) {
     if (quantity.kind == ColliderQuantity::Kind::energy) energies = triangle_energies(folder);
     std::vector<std::vector<double>> values;
     std::vector<std::pair<double, double>> all;
-    for (const std::filesystem::path& file : mesh_files_) {
+    std::vector<std::filesystem::path> files = mesh_files_;
+    for (const auto& [number, file] : moving_files_) files.push_back(file);
+    for (const std::filesystem::path& file : files) {
         const VtkPolyData data = read_vtp(file);
         ColliderInfo info;
         for (const ColliderInfo& one : folder.info.colliders) {
@@ -50,17 +52,21 @@ void RunPictures::color_colliders(const RunFolder& folder) {
     }
     collider_range_ = style_.collider_range ? *style_.collider_range : ValueRange{0.0, upper_value(std::move(all))};
     const double scale = 1.0 / (collider_range_.high - collider_range_.low);
-    for (std::size_t m = 0; m < meshes_.size(); ++m) {
-        for (const double value : values[m]) {
-            meshes_[m].triangle_colors.push_back(kParticleAlbedo *
-                                                 map_color(ColorMap::viridis, (value - collider_range_.low) * scale));
+    const auto colors_of = [&](const std::vector<double>& of_triangles) {
+        std::vector<Vec3> colors;
+        for (const double value : of_triangles) {
+            colors.push_back(kParticleAlbedo * map_color(ColorMap::viridis, (value - collider_range_.low) * scale));
         }
-    }
+        return colors;
+    };
+    for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m].triangle_colors = colors_of(values[m]);
+    std::size_t next = meshes_.size();
+    for (const auto& [number, file] : moving_files_) moving_colors_[number] = colors_of(values[next++]);
 }
 
 std::vector<ColorBar> RunPictures::color_bars() const {
     std::vector<ColorBar> bars;
-    if (!own_colors_) bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
+    if (!own_colors_ && !plain_image_) bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
     if (style_.collider_quantity) {
         bars.push_back(
             {style_.collider_quantity->name(), style_.collider_quantity->unit(), collider_range_, ColorMap::viridis});

@@ -21,7 +21,6 @@ namespace ricochet::cli {
 
 namespace {
 
-constexpr std::size_t kSurveyedFrames = 12;
 constexpr const char* kSpeed = "speed";
 
 // Muted earth and stone, so that the particles' colours stand out.
@@ -37,15 +36,6 @@ constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
 constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
 constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 
-std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
-    if (frames.size() <= kSurveyedFrames) return frames;
-    std::vector<FrameFile> sample;
-    for (std::size_t i = 0; i < kSurveyedFrames; ++i) {
-        sample.push_back(frames[i * (frames.size() - 1) / (kSurveyedFrames - 1)]);
-    }
-    return sample;
-}
-
 std::string known_arrays(const VtkPolyData& frame) {
     std::string names = kSpeed;
     for (const VtkArray& array : frame.point_arrays) names += ", " + array.name;
@@ -60,13 +50,6 @@ std::size_t color_index(const RunInfo& info, const std::filesystem::path& file) 
         if (collider.file == file.filename().string()) return collider.material % kColliderColors.size();
     }
     return 0;
-}
-
-std::string collider_name(const RunInfo& info, const std::filesystem::path& file) {
-    for (const ColliderInfo& collider : info.colliders) {
-        if (collider.file == file.filename().string()) return collider.name;
-    }
-    return file.stem().string();
 }
 
 void check_names(const char* option, const std::vector<std::string>& names, const RunFolder& folder) {
@@ -89,8 +72,26 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
+    constexpr std::size_t kSurveyedFrames = 12;
+    if (frames.size() <= kSurveyedFrames) return frames;
+    std::vector<FrameFile> sample;
+    for (std::size_t i = 0; i < kSurveyedFrames; ++i) {
+        sample.push_back(frames[i * (frames.size() - 1) / (kSurveyedFrames - 1)]);
+    }
+    return sample;
+}
+
+std::string collider_name(const RunInfo& info, const std::filesystem::path& file) {
+    for (const ColliderInfo& collider : info.colliders) {
+        if (collider.file == file.filename().string()) return collider.name;
+    }
+    return file.stem().string();
+}
+
 std::optional<ParticleDrawing> drawing_from_name(std::string_view name) {
-    constexpr std::array<std::string_view, 5> kNames = {"auto", "spheres", "streaks", "soft", "glow"};
+    constexpr std::array<std::string_view, 7> kNames = {"auto", "spheres", "streaks", "soft",
+                                                        "glow", "sprites", "meshes"};
     const auto found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) return std::nullopt;
     return static_cast<ParticleDrawing>(found - kNames.begin());
@@ -102,12 +103,16 @@ RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& 
     check_names("--hide", style_.hidden, folder);
     check_names("--glass", style_.glass, folder);
     choose_scenery(folder.info);
+    choose_shape(folder);
     survey(chosen);
+    require_room_for_copies();
     load_colliders(folder);
     survey_moving(chosen);
     lay_ground(folder);
     choose_camera(folder, aspect);
+    find_hiding(folder, chosen);
     preview_.emplace(std::move(meshes_), planes_, camera_.target);
+    if (shape_mesh_) preview_->set_shape(*shape_mesh_);
 }
 
 void RunPictures::survey(const std::vector<FrameFile>& chosen) {
@@ -118,6 +123,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
         const std::vector<double> here = shown_values(frame);
         values.insert(values.end(), here.begin(), here.end());
         subject_.particles.insert(subject_.particles.end(), frame.points.begin(), frame.points.end());
+        widen_subject(frame);
         most_particles_ = std::max(most_particles_, frame.points.size());
     }
     range_ = style_.range ? *style_.range : robust_range(std::move(values));
@@ -127,7 +133,10 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
 // Settles what was left to the frames, and notes whether any particle has a size of its own.
 void RunPictures::choose_looks(const VtkPolyData& frame) {
     const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
-    if (style_.color_by.empty()) style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
+    if (style_.color_by.empty()) {
+        plain_image_ = style_.drawing == ParticleDrawing::sprites && !has_colors;
+        style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
+    }
     own_colors_ = style_.color_by == kColorAttribute;
     if (style_.drawing == ParticleDrawing::automatic) {
         const bool soft = find_array(frame.point_arrays, kOpacityAttribute) != nullptr;
@@ -162,6 +171,7 @@ void RunPictures::load_colliders(const RunFolder& folder) {
         if (moves) {
             const auto index = index_of_collider_file(file.filename().string());
             moving_looks_[static_cast<std::uint32_t>(index.value_or(0))] = looks;
+            moving_files_[static_cast<std::uint32_t>(index.value_or(0))] = file;
         }
         if (moves || looks.hidden) continue;
         VtkPolyData data = read_vtp(file);
@@ -198,8 +208,11 @@ void RunPictures::add_moving(std::map<std::uint32_t, TriangleMesh> meshes, Previ
     for (auto& [collider, mesh] : meshes) {
         const auto looks = moving_looks_.find(collider);
         if (looks == moving_looks_.end() || looks->second.hidden) continue;
-        moving.meshes.push_back(
-            {std::move(mesh), looks->second.color, {}, looks->second.glass, looks->second.roughness});
+        const auto colors = moving_colors_.find(collider);
+        const bool has_quantity = colors != moving_colors_.end() && colors->second.size() == mesh.triangles.size();
+        moving.meshes.push_back({std::move(mesh), looks->second.color,
+                                 has_quantity ? colors->second : std::vector<Vec3>{}, looks->second.glass,
+                                 looks->second.roughness});
     }
 }
 
@@ -233,7 +246,7 @@ std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
 }
 
 // Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
-PreviewMoving RunPictures::moving(const Moment& moment) const {
+PreviewMoving RunPictures::moving(const Moment& moment) {
     const VtkPolyData& frame = moment.frame;
     const std::vector<Vec3> shown = colors(frame);
     const std::vector<double> radii = shown_radii(frame);
@@ -267,6 +280,7 @@ PreviewMoving RunPictures::moving(const Moment& moment) const {
         moving.spheres.colors.push_back(shown[i]);
     }
     if (!moment.paths.empty()) set_ways(moment.paths, drawn, moving);
+    if (draws_copies()) make_copies(moment, drawn, moving);
     return moving;
 }
 
@@ -292,12 +306,11 @@ void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::siz
     }
     // Bends of gravity need few steps; the corner of an impact is cut by at most a step.
     constexpr std::size_t kSmoothSteps = 9;
-    constexpr std::size_t kSteps = 65;
     const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
         return std::any_of(nodes.begin(), nodes.end(),
                            [](const PathNode& node) { return node.velocity_before != node.velocity_after; });
     });
-    const std::size_t steps = bends ? kSteps : kSmoothSteps;
+    const std::size_t steps = bends ? kMostWaySteps : kSmoothSteps;
     spheres.ways.resize(shown.size());
     for (std::size_t k = 0; k < shown.size(); ++k) {
         for (std::size_t step = 0; step < steps; ++step) {
@@ -309,6 +322,7 @@ void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::siz
 }
 
 std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame) const {
+    if (plain_image_) return std::vector<Vec3>(frame.points.size(), Vec3{1, 1, 1});
     const VtkArray* const own = own_colors_ ? find_array(frame.point_arrays, kColorAttribute) : nullptr;
     const auto* const vectors = own == nullptr ? nullptr : std::get_if<std::vector<Vec3>>(&own->values);
     if (vectors != nullptr) return *vectors;
@@ -335,8 +349,12 @@ Image RunPictures::picture(double time, const PictureOptions& options) {
     std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     const bool glow = style_.drawing == ParticleDrawing::glow;
-    return render_picture(*preview_, camera_, options,
-                          {frame.points, shown_radii(frame), colors(frame), std::move(opacities), glow});
+    Sprites sprites{frame.points, shown_radii(frame), colors(frame), std::move(opacities), glow};
+    if (sprite_) {
+        sprites.image = sprite_;
+        sprites.angles = sprite_angles(frame);
+    }
+    return render_picture(*preview_, camera_, options, sprites);
 }
 
 }  // namespace ricochet::cli

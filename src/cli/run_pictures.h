@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +12,12 @@
 
 #include "cli/collider_quantity.h"
 #include "cli/run_timeline.h"
+#include "cli/run_turning.h"
+#include "ricochet/core/transform.h"
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/run_folder.h"
+#include "ricochet/io/scene.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/camera.h"
 #include "ricochet/render/color_bar.h"
@@ -19,11 +25,15 @@
 #include "ricochet/render/image.h"
 #include "ricochet/render/picture.h"
 #include "ricochet/render/preview.h"
+#include "ricochet/render/sprite_image.h"
 
 namespace ricochet::cli {
 
 inline constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
 inline constexpr double kParticleAlbedo = 0.8;  ///< of the colour map's colours, so that sunlit ones do not burn out
+
+/// Most places that a sphere has while the shutter is open.
+inline constexpr std::size_t kMostWaySteps = 65;
 
 /// What particles are drawn as.
 enum class ParticleDrawing {
@@ -32,10 +42,17 @@ enum class ParticleDrawing {
     streaks,  ///< threads along the way that they went while the shutter was open
     soft,     ///< discs that cover what is behind by their opacity
     glow,     ///< discs of light that adds up
+    sprites,  ///< an image that faces the camera
+    meshes,   ///< copies of a mesh
 };
 
-/// auto, spheres, streaks, soft or glow.
+/// auto, spheres, streaks, soft, glow, sprites or meshes.
 [[nodiscard]] std::optional<ParticleDrawing> drawing_from_name(std::string_view name);
+
+/// A few of a run's frames, spread over all of it.
+[[nodiscard]] std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames);
+/// Of a collider by its file in the run's folder.
+[[nodiscard]] std::string collider_name(const RunInfo& info, const std::filesystem::path& file);
 
 /// The opening of a camera's lens.
 struct Lens {
@@ -53,6 +70,13 @@ struct Background {
 struct Ground {
     enum class Kind { none, automatic, at_height } kind = Kind::none;
     double height = 0.0;  ///< m along the upward axis
+};
+
+/// How sprites and meshes are turned, and how spheres and meshes change their shape.
+struct ParticleShape {
+    enum class Facing { upright, random, velocity } facing = Facing::upright;
+    MeanSpread turning;  ///< rad/s
+    std::optional<StretchDescription> stretch;
 };
 
 /// How a run is shown.
@@ -75,6 +99,8 @@ struct PictureStyle {
     std::optional<Background> background;
     std::optional<Ground> ground;
     std::optional<double> shutter;  ///< s
+    std::filesystem::path sprite;   ///< PNG file of sprites; empty: the run's own
+    std::filesystem::path mesh;     ///< file of the mesh that particles are copies of; empty: the run's own
 };
 
 /// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
@@ -99,10 +125,15 @@ public:
     /// True when the frames themselves say the colours.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
-    /// True when particles are soft discs.
+    /// True when particles are discs or images.
     [[nodiscard]] bool draws_sprites() const {
-        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow;
+        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow ||
+               style_.drawing == ParticleDrawing::sprites;
     }
+    /// True when sprites have the colours of their image alone.
+    [[nodiscard]] bool shows_image_colors() const { return plain_image_; }
+    /// The collider in which most particles are and that hides them from the camera outside; empty where there is none.
+    [[nodiscard]] const std::string& hiding_collider() const { return hiding_; }
 
 private:
     /// How a collider is shown.
@@ -128,9 +159,22 @@ private:
     [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame) const;
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
-    [[nodiscard]] PreviewMoving moving(const Moment& moment) const;
+    [[nodiscard]] PreviewMoving moving(const Moment& moment);
     void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewMoving& moving) const;
     void place_camera(const VtkPolyData& frame);
+    [[nodiscard]] Vec3 camera_place_in(const VtkPolyData& frame) const;
+    void find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen);
+    [[nodiscard]] bool hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const;
+
+    // What particles are drawn as, run_shapes.cpp.
+    void choose_shape(const RunFolder& folder);
+    void widen_subject(const VtkPolyData& frame);
+    void require_room_for_copies() const;
+    [[nodiscard]] bool draws_copies() const;
+    void make_copies(const Moment& moment, const std::vector<std::size_t>& shown, PreviewMoving& moving);
+    [[nodiscard]] std::vector<AffineMap> turns_of(const VtkPolyData& frame, const std::vector<std::size_t>& shown);
+    void stretch_copies(const VtkPolyData& frame, const std::vector<std::size_t>& shown, PreviewMoving& moving);
+    [[nodiscard]] std::vector<double> sprite_angles(const VtkPolyData& frame) const;
 
     PictureStyle style_;
     RunTimeline timeline_;
@@ -144,7 +188,15 @@ private:
     std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
     ValueRange collider_range_;
     std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
+    std::map<std::uint32_t, std::filesystem::path> moving_files_;
+    std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them
     std::vector<PreviewPlane> planes_;
+    ParticleShape shape_;
+    std::optional<TriangleMesh> shape_mesh_;  // fitted into the ball of radius 1
+    std::shared_ptr<const SpriteImage> sprite_;
+    bool plain_image_ = false;
+    RunTurning turning_;
+    std::string hiding_;
     std::optional<Preview> preview_;
 };
 

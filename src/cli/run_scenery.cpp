@@ -1,11 +1,18 @@
 // Where pictures of a run are taken from, and what is around.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "cli/run_pictures.h"
+#include "ricochet/core/box3.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/io/camera_frames.h"
+#include "ricochet/io/moving_meshes.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
 
@@ -60,6 +67,50 @@ void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
         camera_.focus_distance = style_.lens->focus_distance;
     }
     subject_ = {};
+}
+
+Vec3 RunPictures::camera_place_in(const VtkPolyData& frame) const {
+    const auto place = camera_of_frame(frame);
+    return place && !style_.camera ? place->position : camera_.position;
+}
+
+// True for a mesh around most of the probes, but not around the eye.
+bool RunPictures::hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const {
+    constexpr double kInside = 0.5;  // of the winding number, which is 1 inside a closed mesh
+    const Box3 box = bounds(mesh);
+    const auto in_box = std::count_if(probes.begin(), probes.end(), [&](const Vec3& p) { return box.contains(p); });
+    if (2 * static_cast<std::size_t>(in_box) <= probes.size()) return false;
+    if (std::fabs(winding_number(mesh, eye)) > kInside) return false;
+    std::vector<std::uint8_t> is_inside(probes.size(), 0);
+    parallel_for_blocks(probes.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+        is_inside[i] = box.contains(probes[i]) && std::fabs(winding_number(mesh, probes[i])) > kInside ? 1 : 0;
+    });
+    return 2 * std::accumulate(is_inside.begin(), is_inside.end(), std::size_t{0}) > probes.size();
+}
+
+// Of the last chosen frame that has particles.
+void RunPictures::find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen) {
+    constexpr std::size_t kProbes = 32;
+    const std::vector<FrameFile> sample = spread_sample(chosen);
+    for (auto file = sample.rbegin(); file != sample.rend(); ++file) {
+        const VtkPolyData frame = read_vtp(file->path);
+        if (frame.points.empty()) continue;
+        std::vector<Vec3> probes;
+        const std::size_t stride = (frame.points.size() - 1) / kProbes + 1;
+        for (std::size_t i = 0; i < frame.points.size(); i += stride) probes.push_back(frame.points[i]);
+        const Vec3 eye = camera_place_in(frame);
+        for (std::size_t m = 0; m < meshes_.size(); ++m) {
+            if (!meshes_[m].glass && hides(meshes_[m].mesh, probes, eye))
+                hiding_ = collider_name(folder.info, mesh_files_[m]);
+        }
+        if (file->moving.empty() || !hiding_.empty()) return;
+        for (const auto& [number, mesh] : read_moving_meshes(*file)) {
+            const Looks& looks = moving_looks_[number];
+            if (!looks.glass && !looks.hidden && hides(mesh, probes, eye))
+                hiding_ = collider_name(folder.info, moving_files_[number]);
+        }
+        return;
+    }
 }
 
 void RunPictures::place_camera(const VtkPolyData& frame) {

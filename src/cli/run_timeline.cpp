@@ -32,6 +32,36 @@ Whole mixed(Whole a, Whole /*b*/, double /*t*/) {
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
+// Spheres that meet have the velocities of one of them in the log: what it was turned by stands for the speed.
+void add_near_impacts(const VtkPolyData& log, double time, double reach,
+                      const std::unordered_map<std::int64_t, std::size_t>& rows, std::vector<NearImpact>& nearest) {
+    const auto& particles = values_of<std::int64_t>(log, "particle");
+    const auto& others = values_of<std::int64_t>(log, "other");
+    const auto& times = values_of<double>(log, "time");
+    const auto& normals = values_of<Vec3>(log, "normal");
+    const auto& before = values_of<Vec3>(log, "velocity_before");
+    const auto& after = values_of<Vec3>(log, "velocity_after");
+    const auto& surface = values_of<Vec3>(log, "surface_velocity");
+    const auto note = [&](std::int64_t id, const NearImpact& impact) {
+        const auto found = rows.find(id);
+        if (found == rows.end() || impact.away > reach || !(impact.speed > 0.0)) return;
+        NearImpact& known = nearest[found->second];
+        if (known.speed == 0.0 || impact.away < known.away) known = impact;
+    };
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double away = std::fabs(times[i] - time);
+        const std::int64_t other = i < others.size() ? others[i] : -1;
+        if (other >= 0) {
+            const double speed = dot(after[i] - before[i], normals[i]);
+            note(particles[i], {away, speed, normals[i]});
+            note(other, {away, speed, -normals[i]});
+        } else {
+            const Vec3 carried = i < surface.size() ? surface[i] : Vec3{};
+            note(particles[i], {away, dot(carried - before[i], normals[i]), normals[i]});
+        }
+    }
+}
+
 }  // namespace
 
 // The particles of a moment: where each stands in the frame before and in the one after, and by its id.
@@ -55,6 +85,12 @@ RunTimeline::RunTimeline(const RunFolder& folder) : files_(folder.frames) {
 const VtkPolyData& RunTimeline::frame(std::size_t k) {
     auto& slot = loaded_[k];
     if (!slot) slot = std::make_shared<const VtkPolyData>(read_vtp(files_[k].path));
+    return *slot;
+}
+
+const VtkPolyData& RunTimeline::contact_log(std::uint64_t step, const std::filesystem::path& path) {
+    auto& slot = loaded_contacts_[step];
+    if (!slot) slot = std::make_shared<const VtkPolyData>(read_vtp(path));
     return *slot;
 }
 
@@ -117,9 +153,7 @@ void RunTimeline::add_impact_nodes(std::size_t first, std::size_t last, const Ro
     const auto begin = contacts_.upper_bound(files_[first].step);
     const auto end = contacts_.upper_bound(files_[last].step);
     for (auto file = begin; file != end; ++file) {
-        auto& slot = loaded_contacts_[file->first];
-        if (!slot) slot = std::make_shared<const VtkPolyData>(read_vtp(file->second));
-        const VtkPolyData& log = *slot;
+        const VtkPolyData& log = contact_log(file->first, file->second);
         const std::vector<std::int64_t>& particles = values_of<std::int64_t>(log, "particle");
         const std::vector<double>& times = values_of<double>(log, "time");
         const std::vector<double>& radii = values_of<double>(log, "radius");
@@ -137,6 +171,22 @@ void RunTimeline::add_impact_nodes(std::size_t first, std::size_t last, const Ro
         std::stable_sort(nodes.begin(), nodes.end(),
                          [](const PathNode& a, const PathNode& b) { return a.time < b.time; });
     }
+}
+
+std::vector<NearImpact> RunTimeline::impacts_near(const VtkPolyData& frame, double time, double reach) {
+    std::vector<NearImpact> nearest(frame.points.size());
+    std::unordered_map<std::int64_t, std::size_t> rows;
+    for (const std::int64_t id : values_of<std::int64_t>(frame, "id")) rows.emplace(id, rows.size());
+    std::size_t first = index_at(time);
+    std::size_t last = first;
+    while (first > 0 && time_of(first) > time - reach) --first;
+    while (last + 1 < files_.size() && time_of(last) < time + reach) ++last;
+    const auto end = contacts_.upper_bound(files_[last].step);
+    for (auto file = contacts_.upper_bound(files_[first].step); file != end; ++file) {
+        const VtkPolyData& log = contact_log(file->first, file->second);
+        add_near_impacts(log, time, reach, rows, nearest);
+    }
+    return nearest;
 }
 
 void RunTimeline::set_births(std::size_t last, const Rows& rows, ShutterPaths& paths) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
@@ -31,6 +33,13 @@ struct Moment {
     ShutterPaths paths;
 };
 
+/// The impact of a particle that is nearest to a moment.
+struct NearImpact {
+    double away = 0.0;   ///< s from the moment, either way
+    double speed = 0.0;  ///< m/s along the normal, before it; 0: there is none
+    Vec3 normal;         ///< of unit length, away from what was hit
+};
+
 /// Reads frames and contact files as they are needed, and keeps those near the last time that was asked for.
 class RunTimeline {
 public:
@@ -46,6 +55,8 @@ public:
     /// The run at a time within it; exactly a frame's own state at its time. shutter: s before it that the paths are
     /// wanted for; 0: no paths. Throws InputError for files that are not a run's.
     [[nodiscard]] Moment at(double time, double shutter);
+    /// Of each particle of a moment at that time, the impact at most `reach` s away from it.
+    [[nodiscard]] std::vector<NearImpact> impacts_near(const VtkPolyData& frame, double time, double reach);
     /// True when impacts between frames are known.
     [[nodiscard]] bool knows_impacts() const { return !contacts_.empty(); }
 
@@ -53,6 +64,7 @@ private:
     struct Rows;  // of the particles of a moment
 
     [[nodiscard]] const VtkPolyData& frame(std::size_t k);
+    [[nodiscard]] const VtkPolyData& contact_log(std::uint64_t step, const std::filesystem::path& path);
     // The last frame at or before a time; frames within a billionth of their distance count as at it.
     [[nodiscard]] std::size_t index_at(double time);
     [[nodiscard]] bool is_at(std::size_t k, double time);

@@ -59,14 +59,21 @@ std::string at(const Vec3& p, const Fit& fit) {
 Vec3 above_mesh(const Fit& fit, double height) { return {fit.center.x, fit.center.y, fit.top + height * fit.length}; }
 
 struct Part {
-    std::string title;     // what happens, one line of comment
-    std::string picture;   // options for `ricochet render`
-    std::string emitters;  // the list's inside
-    std::string surface;   // the mesh's material
-    double duration;       // s
-    double height;         // above the mesh that the picture and the bounds hold, parts of its diagonal
+    std::string title;      // what happens, one line of comment
+    std::string picture{};  // options for `ricochet render`
+    std::string emitters;   // the list's inside
+    std::string surface;    // the mesh's material
+    double duration;        // s
+    double height;          // above the mesh that the picture and the bounds hold, parts of its diagonal
+    bool has_box = false;   // around the mesh
     bool has_gravity = true;
 };
+
+// Edges of a box around the mesh.
+Vec3 box_size(const Fit& fit) {
+    const double edge = 0.5 * fit.length;
+    return fit.size + Vec3{edge, edge, edge};
+}
 
 // Life of spray and sparks that fade.
 constexpr const char* kFade =
@@ -191,11 +198,11 @@ Part gas(const Fit& fit, bool closed) {
     }
     return {.title = closed ? "Gas: test molecules inside the closed mesh, with elastic reflections and no forces."
                             : "Gas: test molecules around the open mesh in a closed box, with elastic reflections.",
-            .picture = closed ? "--glass mesh" : "--glass box",
             .emitters = emitters,
             .surface = R"({"restitution": 1})",
             .duration = 6.0 * fit.fall,
-            .height = closed ? 0.0 : 0.2,
+            .height = 0.0,
+            .has_box = !closed,
             .has_gravity = false};
 }
 
@@ -215,6 +222,9 @@ Part part_of(SceneTemplate kind, const Fit& fit, bool closed) {
     return rain(fit);
 }
 
+// What holds the gas would hide it.
+constexpr const char* kGlass = R"(, "looks": {"glass": true})";
+
 std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& part) {
     const std::string turned =
         mesh.y_up ? ",\n     // The file's y axis points up; z does here.\n     \"rotation\": {\"axis\": [1, 0, 0], "
@@ -227,12 +237,11 @@ std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& p
             ",\n    {{\"name\": \"ground\", \"type\": \"plane\", \"point\": {}, \"normal\": [0, 0, 1], \"material\": "
             "\"ground\"}}",
             at({fit.center.x, fit.center.y, fit.ground}, fit));
-    } else if (!mesh.closed) {
-        const double edge = 0.5 * fit.length;
+    } else if (part.has_box) {
         text += fmt::format(
             ",\n    {{\"name\": \"box\", \"type\": \"box\", \"size\": {}, \"position\": {}, \"material\": "
-            "\"surface\"}}",
-            at(fit.size + Vec3{edge, edge, edge}, fit), at(fit.center, fit));
+            "\"surface\"{}}}",
+            at(box_size(fit), fit), at(fit.center, fit), kGlass);
     }
     return text;
 }
@@ -243,7 +252,9 @@ std::string camera_text(const Fit& fit, const Part& part) {
     constexpr double kHalfAngle = 0.5 * kFieldOfView * 3.14159265358979323846 / 180.0;
     const double extra = part.height * fit.length;
     const Vec3 target{fit.center.x, fit.center.y, fit.center.z + 0.35 * extra};
-    const double distance = (0.5 * fit.length + 0.35 * extra) * 0.95 / std::sin(kHalfAngle);
+    // A box has corners: all of the ball around it is to be seen.
+    const double reach = part.has_box ? 0.5 * length(box_size(fit)) : (0.5 * fit.length + 0.35 * extra) * 0.95;
+    const double distance = reach / std::sin(kHalfAngle);
     const Vec3 direction = normalized(Vec3{0.45, -0.8, 0.38});
     return fmt::format(R"({{"position": {}, "target": {}, "field_of_view": {:.0f}}})",
                        at(target + distance * direction, fit), at(target, fit), kFieldOfView);

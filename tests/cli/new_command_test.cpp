@@ -1,14 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/render/camera.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {
@@ -40,6 +44,35 @@ TEST(NewCommand, WritesOfEveryTemplateASceneThatRunsForClosedAndOpenMeshes) {
             ASSERT_EQ(run.exit_code, 0) << run.errors;
             EXPECT_EQ(run.output.find("  0 particles emitted"), std::string::npos) << run.output;
             EXPECT_EQ(run.output.find(", 0 contacts"), std::string::npos) << run.output;
+        }
+    }
+}
+
+// Every corner of the box is in a picture of 16 to 9.
+TEST(NewCommand, TheCameraOfTheGasAroundAnOpenMeshSeesAllOfItsBox) {
+    const test::TemporaryFolder folder;
+    for (const std::string& mesh : {kOpen, std::string("v 0 0 0\nv 20 0 0\nv 0 1 1\nf 1 2 3\n"),
+                                    std::string("v 0 0 0\nv 1 0 30\nv 0 1 1\nf 1 2 3\n")}) {
+        SCOPED_TRACE(mesh);
+        const std::string scene = folder.path("s.json").string();
+        ASSERT_EQ(
+            test::run_ricochet({"new", folder.write("m.obj", mesh), "--output", scene, "--template", "gas", "--force"})
+                .exit_code,
+            0);
+        const SceneDescription read = read_scene(scene);
+        ASSERT_TRUE(read.camera);
+        const Camera camera{read.camera->position, read.camera->target, {0, 0, 1}, read.camera->field_of_view_degrees};
+        const CameraFrame view = camera_frame(camera);
+        const double tangent = std::tan(0.5 * camera.fov_degrees * 3.14159265358979 / 180.0);
+        const auto& cuboid = std::get<CuboidShape>(read.setup.colliders[1].shape);
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 side{corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5};
+            const Vec3 p = cuboid.placement.position +
+                           Vec3{side.x * cuboid.size.x, side.y * cuboid.size.y, side.z * cuboid.size.z};
+            const Vec3 away = p - camera.position;
+            const double depth = dot(away, view.forward);
+            EXPECT_LT(std::fabs(dot(away, view.up)), tangent * depth);
+            EXPECT_LT(std::fabs(dot(away, view.right)), 16.0 / 9.0 * tangent * depth);
         }
     }
 }

@@ -92,5 +92,32 @@ TEST(RunTimeline, AFramesOwnTimeShowsItAsItIs) {
     EXPECT_NEAR(timeline.spacing(), 0.2, 1e-12);
 }
 
+// A ball falls from rest by 0.2 m: it lands after sqrt(2 h / g), at sqrt(2 g h).
+TEST(RunTimeline, TheImpactNearestToAMomentIsAsTheFallSays) {
+    const TemporaryFolder folder;
+    const auto scene = folder.write("fall.json", R"({"ricochet": 1,
+        "simulation": {"time_step": 0.01, "duration": 0.4, "integrator": "ballistic"},
+        "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+        "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]}],
+        "particles": [{"position": [0, 0, 0.3], "radius": 0.1}, {"position": [5, 0, 9], "radius": 0.1}],
+        "output": {"every": 5, "contacts": true}})");
+    const std::string output = folder.path("fall").string();
+    ASSERT_EQ(run_ricochet({"run", scene.string(), "--output", output, "--quiet"}).exit_code, 0);
+    RunTimeline timeline(open_run_folder(output));
+    const double landing = std::sqrt(2.0 * 0.2 / 9.81);
+    for (const double time : {0.1, 0.17, 0.21, 0.25, 0.33}) {
+        const Moment moment = timeline.at(time, 0.0);
+        const std::vector<NearImpact> impacts = timeline.impacts_near(moment.frame, moment.frame.time, 0.05);
+        ASSERT_EQ(impacts.size(), 2U);
+        const bool is_near = std::fabs(time - landing) < 0.05;
+        EXPECT_EQ(impacts[0].speed > 0.0, is_near) << time;
+        EXPECT_EQ(impacts[1].speed, 0.0) << "never lands";
+        if (!is_near) continue;
+        EXPECT_NEAR(impacts[0].away, std::fabs(time - landing), 1e-9);
+        EXPECT_NEAR(impacts[0].speed, std::sqrt(2.0 * 9.81 * 0.2), 1e-9);
+        EXPECT_EQ(impacts[0].normal, Vec3(0, 0, 1));
+    }
+}
+
 }  // namespace
 }  // namespace ricochet::cli

@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/camera_frames.h"
+#include "ricochet/io/picture_files.h"
+#include "ricochet/io/run_folder.h"
 #include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
 #include "support/temporary_folder.h"
@@ -103,6 +108,85 @@ TEST(PictureScene, ThePictureIsNoPartOfTheFingerprint) {
     EXPECT_EQ(parsed(R"("picture": {"light": "night"})").fingerprint,
               parsed(R"("picture": {"light": "noon"})").fingerprint);
     EXPECT_EQ(error_of(R"("picture": {"light": "dawn"})").substr(0, 14), "picture.light:");
+}
+
+// What particles are drawn with lies beside the scene.
+class DrawnParticles : public testing::Test {
+protected:
+    [[nodiscard]] SceneDescription read(const std::string& keys) const {
+        return parse_scene(scene_with(keys), folder_.path("s.json"));
+    }
+    [[nodiscard]] std::string error(const std::string& keys) const {
+        try {
+            (void)read(keys);
+        } catch (const SceneError& error) {
+            EXPECT_EQ(error.messages().size(), 1U) << error.messages()[1];
+            return error.messages()[0];
+        }
+        return "";
+    }
+
+    test::TemporaryFolder folder_;
+    std::filesystem::path sprite_ =
+        folder_.write("a.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x01\0\0\0\x01", 24));
+    std::filesystem::path mesh_ =
+        folder_.write("a.obj", "v 0 0 0\nv 1 0.1 -2e-9\nv 0 0.3333333333333333 0.5\nf 1 2 3\n");
+    std::filesystem::path text_ = folder_.write("a.txt", "words");
+};
+
+TEST_F(DrawnParticles, TheRunsFolderKeepsTheFilesAndNamesThem) {
+    RunInfo info = run_info_of(read(R"("picture": {"particles": "sprites", "sprite": "a.png", "turn": "velocity",
+                                                    "turning": [2, 1]})"));
+    EXPECT_EQ(info.picture->sprite, sprite_.string());
+    const test::TemporaryFolder run;
+    keep_picture_files(run.path(""), *info.picture);
+    EXPECT_EQ(run.read(kParticleSpriteFile), folder_.read("a.png"));
+    const RunInfo again = read_run_info(run.write("run.json", run_info_text(info)));
+    EXPECT_EQ(again.picture->sprite, kParticleSpriteFile);
+    EXPECT_EQ(again.picture->turn, "velocity");
+    EXPECT_EQ(again.picture->turning->mean, 2.0);
+    EXPECT_EQ(again.picture->turning->spread, 1.0);
+    EXPECT_TRUE(is_run_file(kParticleSpriteFile) && is_run_file(kParticleMeshFile));
+}
+
+TEST_F(DrawnParticles, AMeshIsKeptToTheBit) {
+    RunInfo info = run_info_of(read(R"("picture": {"particles": "meshes", "mesh": "a.obj", "stretch": {"speed": 0.5,
+                                                    "time": 0.25, "most": 3}})"));
+    const test::TemporaryFolder run;
+    keep_picture_files(run.path(""), *info.picture);
+    const TriangleMesh kept = read_mesh(run.path(info.picture->mesh)).mesh;
+    EXPECT_EQ(kept.vertices, read_mesh(mesh_).mesh.vertices);
+    EXPECT_EQ(kept.triangles, read_mesh(mesh_).mesh.triangles);
+    const RunInfo again = read_run_info(run.write("run.json", run_info_text(info)));
+    EXPECT_EQ(*again.picture->stretch, (StretchDescription{0.5, 0.0, 0.25, 3.0}));
+}
+
+TEST_F(DrawnParticles, RefusesFilesThatAreMissingOrOfAnotherKind) {
+    EXPECT_NE(error(R"("picture": {"particles": "sprites", "sprite": "b.png"})").find("there is no file"),
+              std::string::npos);
+    EXPECT_NE(error(R"("picture": {"particles": "sprites", "sprite": "a.txt"})").find("is not a PNG file"),
+              std::string::npos);
+    EXPECT_NE(error(R"("picture": {"particles": "meshes", "mesh": "a.txt"})").find("picture.mesh"), std::string::npos);
+    EXPECT_NE(error(R"("picture": {"particles": "sprites"})").find("picture.sprite: missing"), std::string::npos);
+    EXPECT_NE(error(R"("picture": {"particles": "meshes"})").find("picture.mesh: missing"), std::string::npos);
+    EXPECT_NE(error(R"("picture": {"mesh": "a.obj"})").find(R"(only goes together with "particles": "meshes")"),
+              std::string::npos);
+}
+
+TEST_F(DrawnParticles, RefusesKeysThatWouldDoNothing) {
+    EXPECT_NE(error(R"("picture": {"turn": "random"})").find("picture.turn: only goes together"), std::string::npos);
+    EXPECT_NE(error(R"("picture": {"turning": 3})").find("picture.turning: only goes together"), std::string::npos);
+    EXPECT_NE(error(R"("picture": {"particles": "glow", "stretch": {"speed": 1}})").find("picture.stretch: "),
+              std::string::npos);
+    EXPECT_NE(error(R"("picture": {"stretch": {"impact": 1}})").find("picture.stretch.impact: "), std::string::npos);
+    EXPECT_EQ(error(R"("picture": {"stretch": {"impact": 1}}, "output": {"contacts": true})"), "");
+    EXPECT_NE(error(R"("picture": {"stretch": {"most": 0.5}})").find("picture.stretch.most: "), std::string::npos);
+}
+
+// Neither which files they are nor what is in them.
+TEST_F(DrawnParticles, FilesOfPicturesAreNoPartOfTheFingerprint) {
+    const std::uint64_t plain = read(R"("picture": {"light": "night"})").fingerprint;
+    EXPECT_EQ(read(R"("picture": {"particles": "meshes", "mesh": "a.obj"})").fingerprint, plain);
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ struct Door {
 constexpr std::array kDoors = {
     Door{"embree[34]/", "src/ricochet/geometry/acceleration/embree\\.h"},
     Door{"ricochet/geometry/acceleration/embree\\.h",
-         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/preview\\.cpp|src/bench/"
-         "native_ray\\.h"},
+         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/(preview\\.cpp|drawn_mesh\\.h|"
+         "shape_copies\\.h)|src/bench/native_ray\\.h"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|page|cli)/.*\\.cpp|tests/.*"},

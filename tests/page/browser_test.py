@@ -29,6 +29,16 @@ SCENE = {
 }
 
 
+# Nothing is born before the third frame.
+LATE = {
+    "ricochet": 1,
+    "simulation": {"time_step": 0.05, "duration": 0.5},
+    "output": {"every": 1},
+    "emitters": [{"type": "point", "center": [0, 0, 0], "rate": 30, "start": 0.12, "velocity": [1, 0, 0],
+                  "particle_radius": 0.1}],
+}
+
+
 def check(what, is_true, *shown):
     """Ends the test with 1 where something is not as it should be."""
     if not is_true:
@@ -118,6 +128,27 @@ def look(browser, page, folder):
     check("the theme has changed", browser.run("document.documentElement.dataset.theme") == "dark")
 
 
+def look_at_late_one(browser, page):
+    browser.open(page)
+    number, counts = browser.run("ricochet.app.number"), browser.run("ricochet.app.run.description.frames.count")
+    check("it begins empty", counts[0] == 0, counts)
+    check("the page opens on the first frame that has particles", counts[number] > 0 and sum(counts[:number]) == 0,
+          number, counts)
+    browser.run("ricochet.loaded")
+    check("and stays there", browser.run("ricochet.app.number") == number)
+    check("the empty ones can be shown", browser.run("show(0)") == 0)
+
+
+def view(program, scene_data, folder, name):
+    """The page of a scene."""
+    scene, page = os.path.join(folder, name + ".json"), os.path.join(folder, name + ".html")
+    with open(scene, "w", encoding="utf-8") as stream:
+        json.dump(scene_data, stream)
+    subprocess.run([program, "view", scene, "--output", page, "--run-output", os.path.join(folder, name), "--quiet"],
+                   check=True)
+    return page
+
+
 def main():
     program, folder = sys.argv[1:3]
     path = find_browser()
@@ -125,16 +156,14 @@ def main():
         print("SKIPPED: there is no chromium here (apt install chromium)")
         sys.exit(77)
     os.makedirs(folder, exist_ok=True)
-    scene, page = os.path.join(folder, "scene.json"), os.path.join(folder, "page.html")
-    with open(scene, "w", encoding="utf-8") as stream:
-        json.dump(SCENE, stream)
-    subprocess.run([program, "view", scene, "--output", page, "--run-output", os.path.join(folder, "run"), "--quiet"],
-                   check=True)
+    page, late = view(program, SCENE, folder, "page"), view(program, LATE, folder, "late")
     browser = Browser(path)
     try:
         look(browser, page, folder)
+        look_at_late_one(browser, late)
         check("the console stays empty", browser.console == [], browser.console)
-        outside = [url for url in browser.requests if not url.startswith(("blob:", "file://" + os.path.abspath(page)))]
+        pages = ["file://" + os.path.abspath(one) for one in (page, late)]
+        outside = [url for url in browser.requests if not url.startswith(("blob:", *pages))]
         check("nothing is asked of anyone", outside == [], outside)
         check("no error", browser.run("ricochet.errors") == [])
     finally:

@@ -49,5 +49,31 @@ TEST(Png, LeavesNothingBehindWhenItCannotBeWritten) {
 
 TEST(Image, PixelsAreCountedFromTheTopLeft) { EXPECT_EQ(gradient(5, 4).pixel(3, 2), (std::array<int, 3>{3, 2, 6})); }
 
+TEST(Png, ReadsBackWhatItWrites) {
+    const test::TemporaryFolder folder;
+    Image image = gradient(5, 3);
+    write_png(folder.path("opaque.png"), image);
+    EXPECT_EQ(read_png(folder.path("opaque.png")).rgb, image.rgb);
+    EXPECT_TRUE(read_png(folder.path("opaque.png")).alpha.empty());
+    for (int i = 0; i < 15; ++i) image.alpha.push_back(static_cast<std::uint8_t>(17 * i));
+    write_png(folder.path("clear.png"), image);
+    const Image read = read_png(folder.path("clear.png"));
+    EXPECT_EQ(read.rgb, image.rgb);
+    EXPECT_EQ(read.alpha, image.alpha);
+    EXPECT_EQ(read.width, 5);
+    EXPECT_EQ(read.height, 3);
+}
+
+TEST(Png, RefusesOtherFilesAndDamagedOnes) {
+    const test::TemporaryFolder folder;
+    EXPECT_THROW((void)read_png(folder.path("missing.png")), InputError);
+    EXPECT_THROW((void)read_png(folder.write("text.png", "no picture")), InputError);
+    const std::string whole = png_bytes(gradient(40, 40));
+    EXPECT_THROW((void)read_png(folder.write("cut.png", whole.substr(0, whole.size() / 2))), InputError);
+    std::string huge = whole;
+    huge[16] = '\x7f';  // of its width
+    EXPECT_THROW((void)read_png(folder.write("huge.png", huge)), InputError);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -16,6 +16,8 @@ class App {
     this.run = new Run(description);
     this.stage = new Stage(element('canvas'), description);
     this.number = 0;      // of the frame that is shown
+    // The first one with particles: runs with emitters begin empty.
+    this.opening = Math.max(0, description.frames.count.findIndex((count) => count > 0));
     this.is_playing = false;
     this.speed = 1;
     this.picked = null;   // id
@@ -61,13 +63,13 @@ class App {
   }
 
   on_frame(i) {
-    if (i === 0) {
+    if (i === this.opening) {
       performance.mark('first frame unpacked');
       element('message').textContent = '';
-      this.show_frame(0);
+      this.show_frame(i);
     }
     this.show_facts();
-    for (const wake of this.waiting.splice(0)) wake();
+    if (i >= this.opening) for (const wake of this.waiting.splice(0)) wake();
   }
 
   waiting = [];
@@ -336,7 +338,7 @@ function on_key(app, event) {
   keys[event.key]();
 }
 
-// Resolves when the first frame is on the screen; the others go on being unpacked.
+// Resolves when the opening frame is on the screen; the others go on being unpacked.
 export async function start(description) {
   performance.mark('modules loaded');
   const app = new App(description);

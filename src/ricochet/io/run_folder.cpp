@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/io/picture_files.h"
 
 namespace ricochet {
 
@@ -112,8 +113,8 @@ bool is_run_file(std::string_view name) {
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
            finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile ||
-           step_of_frame_file(finished) || step_of_contact_file(finished) || step_of_moving_file(finished) ||
-           index_of_collider_file(finished);
+           finished == kParticleSpriteFile || finished == kParticleMeshFile || step_of_frame_file(finished) ||
+           step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
 }
 
 // The folder while a run writes.

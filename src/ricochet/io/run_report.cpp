@@ -33,6 +33,11 @@ Vec3 vec3_of(const Json& json) {
     return v;
 }
 
+StretchDescription stretch_of(const Json& json) {
+    return {json.at("speed").get<double>(), json.at("impact").get<double>(), json.at("time").get<double>(),
+            json.at("most").get<double>()};
+}
+
 PictureDescription picture_of(const Json& json) {
     PictureDescription picture;
     picture.light = json.value("light", "");
@@ -41,6 +46,13 @@ PictureDescription picture_of(const Json& json) {
     picture.particles = json.value("particles", "");
     picture.shutter = json.value("shutter", 0.0);
     if (json.contains("ground")) picture.ground = json.at("ground").get<double>();
+    picture.sprite = json.value("sprite", "");
+    picture.mesh = json.value("mesh", "");
+    picture.turn = json.value("turn", "");
+    if (json.contains("turning")) {
+        picture.turning = MeanSpread{json.at("turning").at(0).get<double>(), json.at("turning").at(1).get<double>()};
+    }
+    if (json.contains("stretch")) picture.stretch = stretch_of(json.at("stretch"));
     return picture;
 }
 
@@ -52,6 +64,14 @@ Json json_of(const PictureDescription& picture) {
     if (picture.ground) json["ground"] = *picture.ground;
     if (!picture.particles.empty()) json["particles"] = picture.particles;
     if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
+    if (!picture.sprite.empty()) json["sprite"] = picture.sprite;
+    if (!picture.mesh.empty()) json["mesh"] = picture.mesh;
+    if (!picture.turn.empty()) json["turn"] = picture.turn;
+    if (picture.turning) json["turning"] = {picture.turning->mean, picture.turning->spread};
+    if (const auto& stretch = picture.stretch) {
+        json["stretch"] = {
+            {"speed", stretch->speed}, {"impact", stretch->impact}, {"time", stretch->time}, {"most", stretch->most}};
+    }
     return json;
 }
 

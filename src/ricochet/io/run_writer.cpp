@@ -8,6 +8,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/io/camera_frames.h"
 #include "ricochet/io/frames.h"
+#include "ricochet/io/picture_files.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 
@@ -95,6 +96,7 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
     for (std::size_t i = 0; i < std::min(info_.looks.size(), info_.colliders.size()); ++i) {
         info_.colliders[i].looks = info_.looks[i];
     }
+    if (info_.picture) keep_picture_files(folder_, *info_.picture);
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
     write_colliders(simulation);
     std::vector<PvdEntry> series;

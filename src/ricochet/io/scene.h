@@ -15,6 +15,7 @@
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/keyed_curve.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/emitter.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {
@@ -54,14 +55,29 @@ struct ColliderLooks {
     friend bool operator==(const ColliderLooks&, const ColliderLooks&) = default;
 };
 
+/// How drawn particles change their shape as they move, at the same volume; it does nothing to the run.
+struct StretchDescription {
+    double speed = 0.0;   ///< s/m: along the velocity they are longer by 1 + this times the speed
+    double impact = 0.0;  ///< s/m: at an impact flatter along the normal by 1 + this times its normal speed
+    double time = 0.1;    ///< s, > 0, over which they are flatter, half of it before the impact
+    double most = 2.0;    ///< >= 1: neither longer nor flatter than by this factor
+
+    friend bool operator==(const StretchDescription&, const StretchDescription&) = default;
+};
+
 /// Light and surroundings of pictures, and what particles are drawn as.
 struct PictureDescription {
-    std::string light;               ///< by name; empty: the renderer's own
-    std::optional<Vec3> background;  ///< linear light; nothing: the light's sky
-    bool transparent = false;        ///< nothing behind everything
-    std::optional<double> ground;    ///< m along the upward axis: a level ground; nothing: none
-    std::string particles;           ///< what they are drawn as, by name; empty: the renderer's own
-    double shutter = 0.0;            ///< s of the run that a picture shows, up to its own time
+    std::string light;                            ///< by name; empty: the renderer's own
+    std::optional<Vec3> background;               ///< linear light; nothing: the light's sky
+    bool transparent = false;                     ///< nothing behind everything
+    std::optional<double> ground;                 ///< m along the upward axis: a level ground; nothing: none
+    std::string particles;                        ///< what they are drawn as, by name; empty: the renderer's own
+    double shutter = 0.0;                         ///< s of the run that a picture shows, up to its own time
+    std::string sprite{};                         ///< PNG file that particles are drawn with; in run.json: beside it
+    std::string mesh{};                           ///< mesh file that they are copies of; in run.json: beside it
+    std::string turn{};                           ///< how sprites are turned, by name; empty: upright
+    std::optional<MeanSpread> turning{};          ///< rad/s, by which sprites and meshes without a spin turn on
+    std::optional<StretchDescription> stretch{};  ///< nothing: they keep their shape
 };
 
 /// A scene, read and checked.

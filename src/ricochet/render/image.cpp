@@ -4,10 +4,21 @@
 #define STB_IMAGE_WRITE_STATIC
 #include <stb/stb_image_write.h>
 
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <memory>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 
 namespace ricochet {
 
@@ -44,6 +55,34 @@ std::string png_bytes(const Image& image) {
         throw RunError("the picture cannot be packed as PNG: memory is short");
     }
     return bytes;
+}
+
+Image read_png(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const auto refuse = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", path.string(), what)); };
+    if (!file || bytes.empty()) refuse("cannot be read, expected a PNG file");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = static_cast<int>(std::min(bytes.size(), std::size_t{0x7fffffff}));
+    Image image;
+    int channels = 0;
+    if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {
+        refuse("is not a PNG file, expected one");
+    }
+    const double pixels = static_cast<double>(image.width) * static_cast<double>(image.height);
+    if (pixels > kMostPixelsRead) {
+        refuse(fmt::format("has {} x {} pixels, expected at most {:.0f}", image.width, image.height, kMostPixelsRead));
+    }
+    require_memory(12.0 * pixels, path.string());
+    const std::unique_ptr<stbi_uc, void (*)(void*)> decoded(
+        stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4), &stbi_image_free);
+    if (!decoded) refuse(fmt::format("is damaged ({}), expected a PNG file", stbi_failure_reason()));
+    const bool has_alpha = channels == 2 || channels == 4;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(pixels); ++i) {
+        image.rgb.insert(image.rgb.end(), decoded.get() + 4 * i, decoded.get() + 4 * i + 3);
+        if (has_alpha) image.alpha.push_back(decoded.get()[4 * i + 3]);
+    }
+    return image;
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) { write_file(path, png_bytes(image)); }

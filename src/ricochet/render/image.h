@@ -21,6 +21,11 @@ struct Image {
     [[nodiscard]] std::array<int, 3> pixel(int x, int y) const;
 };
 
+/// Most pixels of a PNG file that is read.
+inline constexpr double kMostPixelsRead = 4096.0 * 4096.0;
+/// Reads a PNG file; alpha where it has some. Throws InputError when it is none, damaged, or larger than
+/// kMostPixelsRead or the memory.
+[[nodiscard]] Image read_png(const std::filesystem::path& path);
 /// The picture as the bytes of a PNG file. Throws RunError when memory is short.
 [[nodiscard]] std::string png_bytes(const Image& image);
 /// Writes a PNG file, which appears under its name only when it is complete. Throws like AtomicFile.

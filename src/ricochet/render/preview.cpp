@@ -8,20 +8,18 @@
 #include <utility>
 
 #include "ricochet/geometry/acceleration/embree.h"
+#include "ricochet/render/drawn_mesh.h"
+#include "ricochet/render/shape_copies.h"
 
 namespace ricochet {
 
 namespace {
 
-// Debian builds Embree with assertions: rays beyond 1.8e18 or not finite end the process.
-constexpr double kLargestCoordinate = 1e15;
 constexpr double kCreaseDegrees = 40.0;
 constexpr double kClothCreaseDegrees = 180.0;  // its folds are round
 
 // Geometries of the scene of what moves.
-enum MovingGeometry : unsigned { kSpheres, kLines, kCloth };
-
-bool drawable(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestCoordinate; }
+enum MovingGeometry : unsigned { kSpheres, kLines, kCloth, kCopies };
 
 void store(float* target, const Vec3& p) {
     target[0] = static_cast<float>(p.x);
@@ -65,45 +63,6 @@ RTCRayHit embree_query(const PreviewRay& ray, const Vec3& origin) {
     return query;
 }
 
-Vec3 towards(const Vec3& normal, const Vec3& direction) { return dot(normal, direction) > 0.0 ? -normal : normal; }
-
-// A mesh and what its shading needs.
-struct DrawnMesh {
-    PreviewMesh source;
-    std::vector<std::array<Vec3, 3>> normals;
-};
-
-void make_drawable(TriangleMesh& mesh) {
-    std::vector<bool> bad(mesh.vertices.size());
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) bad[v] = !drawable(mesh.vertices[v]);
-    for (Triangle& triangle : mesh.triangles) {
-        // A triangle with a hopeless corner shrinks to nothing; its number stays taken.
-        if (bad[triangle[0]] || bad[triangle[1]] || bad[triangle[2]]) triangle = {0, 0, 0};
-    }
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        if (bad[v]) mesh.vertices[v] = {};
-    }
-}
-
-// From a point of a triangle to the smooth surface that its corners' normals stand for, along which shadows fall: rays
-// that begin on the flat triangle would draw the edge of its own shadow. Zero where the surface is hollow.
-// Method: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
-Vec3 lift_to_smooth(const DrawnMesh& mesh, unsigned triangle, const std::array<double, 3>& weights,
-                    const Vec3& seen_normal) {
-    const auto& normals = mesh.normals[triangle];
-    const Triangle& corners = mesh.source.mesh.triangles[triangle];
-    if (normals[0] == normals[1] && normals[1] == normals[2]) return {};
-    Vec3 point;
-    for (std::size_t k = 0; k < 3; ++k) point += weights[k] * mesh.source.mesh.vertices[corners[k]];
-    Vec3 lift;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 normal = towards(normals[k], -seen_normal);
-        const double below = dot(point - mesh.source.mesh.vertices[corners[k]], normal);
-        if (below < 0.0) lift -= weights[k] * below * normal;
-    }
-    return lift;
-}
-
 // Meshes that are traced together; geometry k of the scene is mesh k.
 struct MeshGroup {
     embree::Scene scene;
@@ -124,41 +83,28 @@ struct Preview::Impl {
     std::vector<Vec3> sphere_emissions;  // the same, or empty
     std::vector<Vec3> line_colors;       // in the order of the drawn lines
     DrawnMesh cloth;
+    ShapeCopies copies;
     bool has_moving = false;
     Vec3 origin;
 
-    [[nodiscard]] RTCGeometry triangles_of(const TriangleMesh& mesh) const;
     void add_spheres(const PreviewSpheres& spheres);
     void add_lines(const PreviewLines& lines);
     void add_cloth(PreviewMesh source);
+    void add_copies(const PreviewCopies& source);
 
     void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
     void fill(MeshGroup& solid_ones, MeshGroup& glass_ones, std::vector<PreviewMesh> meshes) const;
     [[nodiscard]] std::optional<PreviewHit> trace(const MeshGroup& group, const PreviewRay& ray, RTCRayHit& hit) const;
     [[nodiscard]] static PreviewHit mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, const PreviewRay& ray);
-    [[nodiscard]] PreviewHit moving_hit(const RTCRayHit& hit, const PreviewRay& ray) const;
+    [[nodiscard]] PreviewHit moving_hit(const RTCRayHit& hit, const CopyHit& copy_hit, const PreviewRay& ray) const;
     void trace_planes(const PreviewRay& ray, std::optional<PreviewHit>& nearest) const;
 };
 
-RTCGeometry Preview::Impl::triangles_of(const TriangleMesh& mesh) const {
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), mesh.vertices.size()));
-    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
-    embree::check_device(device.get(), "storing a mesh for the picture");
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) store(vertices + 3 * v, mesh.vertices[v] - origin);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), corners + 3 * t);
-    }
-    return geometry;
-}
-
 void Preview::Impl::add_mesh(MeshGroup& group, PreviewMesh source) const {
-    make_drawable(source.mesh);
-    attach(group.scene.get(), triangles_of(source.mesh), static_cast<unsigned>(group.meshes.size()));
-    auto normals = corner_normals(source.mesh, kCreaseDegrees);
-    group.meshes.push_back({std::move(source), std::move(normals)});
+    DrawnMesh mesh = drawn_mesh(std::move(source), kCreaseDegrees);
+    attach(group.scene.get(), triangles_of(device.get(), mesh.source.mesh, origin),
+           static_cast<unsigned>(group.meshes.size()));
+    group.meshes.push_back(std::move(mesh));
 }
 
 void Preview::Impl::fill(MeshGroup& solid_ones, MeshGroup& glass_ones, std::vector<PreviewMesh> meshes) const {
@@ -182,24 +128,21 @@ std::optional<PreviewHit> Preview::Impl::trace(const MeshGroup& group, const Pre
 }
 
 PreviewHit Preview::Impl::mesh_hit(const DrawnMesh& mesh, const RTCRayHit& hit, const PreviewRay& ray) {
-    const auto& corner = mesh.normals[hit.hit.primID];
-    const double u = hit.hit.u;
-    const double v = hit.hit.v;
     PreviewHit out;
     out.distance = hit.ray.tfar;
     out.point = ray.origin + out.distance * ray.direction;
     out.face = towards(normalized(Vec3{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z}), ray.direction);
-    const Vec3 smooth = (1.0 - u - v) * corner[0] + u * corner[1] + v * corner[2];
-    out.normal = length(smooth) > 1e-6 ? normalized(smooth) : out.face;
-    if (dot(out.normal, out.face) < 0.0) out.normal = -out.normal;
-    out.lift = lift_to_smooth(mesh, hit.hit.primID, {1.0 - u - v, u, v}, out.normal);
+    const MeshPoint seen = point_of(mesh, hit.hit.primID, hit.hit.u, hit.hit.v, out.face);
+    out.normal = seen.normal;
+    out.lift = seen.lift;
     out.roughness = mesh.source.roughness;
     out.time = ray.time;
-    out.color = mesh.source.triangle_colors.empty() ? mesh.source.color : mesh.source.triangle_colors[hit.hit.primID];
+    out.color = seen.color;
     return out;
 }
 
-PreviewHit Preview::Impl::moving_hit(const RTCRayHit& hit, const PreviewRay& ray) const {
+PreviewHit Preview::Impl::moving_hit(const RTCRayHit& hit, const CopyHit& copy_hit, const PreviewRay& ray) const {
+    if (hit.hit.geomID == kCopies) return copies.hit(hit, copy_hit, ray);
     PreviewHit out;
     if (hit.hit.geomID == kCloth) {
         out = mesh_hit(cloth, hit, ray);
@@ -223,7 +166,7 @@ void Preview::Impl::trace_planes(const PreviewRay& ray, std::optional<PreviewHit
     for (const PreviewPlane& plane : planes) {
         const double slope = dot(plane.normal, ray.direction);
         const double distance = dot(plane.point - ray.origin, plane.normal) / slope;
-        if (slope >= 0.0 || !(distance > 0.0) || distance > kLargestCoordinate) continue;
+        if (slope >= 0.0 || !(distance > 0.0) || distance > kLargestDrawn) continue;
         if (nearest && nearest->distance <= distance) continue;
         nearest = PreviewHit{distance,     ray.origin + distance * ray.direction,
                              plane.normal, plane.normal,
@@ -249,8 +192,7 @@ void Preview::Impl::add_spheres(const PreviewSpheres& spheres) {
     for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
         const bool on_the_way =
             spheres.ways.empty() || std::all_of(spheres.ways[i].begin(), spheres.ways[i].end(), drawable);
-        if (on_the_way && drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 &&
-            spheres.radii[i] < kLargestCoordinate)
+        if (on_the_way && drawable(spheres.centers[i]) && spheres.radii[i] > 0.0 && spheres.radii[i] < kLargestDrawn)
             drawn.push_back(i);
     }
     sphere_colors.clear();
@@ -284,7 +226,7 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
     for (std::size_t i = 0; i < lines.ends.size(); ++i) {
         const auto [a, b] = lines.ends[i];
         if (drawable(lines.points[a]) && drawable(lines.points[b]) && lines.radii[i] > 0.0 &&
-            lines.radii[i] < kLargestCoordinate)
+            lines.radii[i] < kLargestDrawn)
             drawn.push_back(i);
     }
     line_colors.clear();
@@ -311,12 +253,19 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
 void Preview::Impl::add_cloth(PreviewMesh source) {
     cloth = {};
     if (source.mesh.triangles.empty()) return;
-    make_drawable(source.mesh);
-    attach(moving_scene.get(), triangles_of(source.mesh), kCloth);
-    auto normals = corner_normals(source.mesh, kClothCreaseDegrees);
-    cloth = {std::move(source), std::move(normals)};
+    cloth = drawn_mesh(std::move(source), kClothCreaseDegrees);
+    attach(moving_scene.get(), triangles_of(device.get(), cloth.source.mesh, origin), kCloth);
     has_moving = true;
 }
+
+void Preview::Impl::add_copies(const PreviewCopies& source) {
+    RTCGeometry geometry = copies.make_geometry(device.get(), source, origin);
+    if (geometry == nullptr) return;
+    attach(moving_scene.get(), geometry, kCopies);
+    has_moving = true;
+}
+
+void Preview::set_shape(TriangleMesh shape) { impl_->copies.set_shape(impl_->device.get(), std::move(shape)); }
 
 void Preview::set_spheres(const PreviewSpheres& spheres) { set_moving({spheres, {}, {}}); }
 
@@ -326,6 +275,7 @@ void Preview::set_moving(PreviewMoving moving) {
     impl_->add_spheres(moving.spheres);
     impl_->add_lines(moving.lines);
     impl_->add_cloth(std::move(moving.cloth));
+    impl_->add_copies(moving.copies);
     impl_->fill(impl_->moving_solid, impl_->moving_glass, std::move(moving.meshes));
     if (!impl_->has_moving) return;
     rtcCommitScene(impl_->moving_scene.get());
@@ -339,12 +289,13 @@ std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     if (const auto nearer = impl_->trace(impl_->moving_solid, ray, hit)) nearest = nearer;
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    CopyHit copy_hit;
     if (impl_->has_moving) {
         embree::QueryContext context;
-        embree::init_context(context, nullptr);
+        embree::init_context(context, &copy_hit);
         embree::intersect1(impl_->moving_scene.get(), context, hit);
     }
-    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->moving_hit(hit, ray);
+    if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) nearest = impl_->moving_hit(hit, copy_hit, ray);
     impl_->trace_planes(ray, nearest);
     return nearest;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "ricochet/core/transform.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
@@ -50,12 +51,21 @@ struct PreviewLines {
     std::vector<Vec3> colors;
 };
 
+/// Copies of the shape of Preview::set_shape(), or of a ball of radius 1 where none is set; all vectors have the same
+/// length, the last one may be empty.
+struct PreviewCopies {
+    std::vector<AffineMap> places;  ///< into the world from the shape's own coordinates, when the shutter closes
+    std::vector<Vec3> colors;
+    std::vector<std::vector<Vec3>> ways{};  ///< of the shape's origin, as those of spheres; maps stay the same on them
+};
+
 /// What moves: changes from picture to picture.
 struct PreviewMoving {
     PreviewSpheres spheres;
     PreviewLines lines;
     PreviewMesh cloth;                  ///< shaded smoothly everywhere
     std::vector<PreviewMesh> meshes{};  ///< colliders that move
+    PreviewCopies copies{};
 };
 
 /// A ray from a point along a unit vector.
@@ -73,7 +83,7 @@ struct PreviewHit {
     Vec3 normal;  ///< smoothed, of unit length, towards the ray's origin
     Vec3 face;    ///< of the surface itself, of unit length, towards the ray's origin
     Vec3 color;
-    enum class Kind { mesh, plane, sphere, line, cloth } kind = Kind::mesh;
+    enum class Kind { mesh, plane, sphere, line, cloth, copy } kind = Kind::mesh;
     Vec3 emission{};         ///< light of its own
     Vec3 lift{};             ///< m, to where rays for shadows begin, on the smooth surface that a mesh stands for
     double roughness = 1.0;  ///< 0 (a mirror's gloss) .. 1 (matt)
@@ -93,6 +103,8 @@ public:
     Preview(Preview&&) noexcept;
     Preview& operator=(Preview&&) noexcept;
 
+    /// What copies are copies of: a mesh all of which is at most 1 away from its origin. Not while rays are being shot.
+    void set_shape(TriangleMesh shape);
     /// Replaces all that moves by spheres. Not while rays are being shot.
     void set_spheres(const PreviewSpheres& spheres);
     /// Replaces all that moves. Not while rays are being shot.

@@ -15,7 +15,6 @@ constexpr std::size_t kRows = 16;        // rows per unit of parallel work
 constexpr std::size_t kDiscs = 256;      // discs per unit of parallel work
 constexpr double kSmallestRadius = 0.8;  // pixels
 constexpr double kGlowReach = 2.5;       // a glow's radius over the particle's
-constexpr double kDaylight = 1.8;        // light on a haze
 
 // A disc on the screen, in pixels.
 struct Disc {
@@ -52,7 +51,7 @@ public:
         const auto hit = preview.trace({camera_.position, normalized(away)});
         if (hit && hit->distance < length(away) - sprites.radii[i]) return disc;
         disc.strength = std::clamp(sprites.opacities[i], 0.0, 1.0) * part * part;
-        disc.color = sprites.glow ? sprites.colors[i] : kDaylight * sprites.colors[i];
+        disc.color = sprites.glow ? sprites.colors[i] : kSpriteDaylight * sprites.colors[i];
         return disc;
     }
 
@@ -89,6 +88,7 @@ void lay_over(const Disc& disc, bool glow, std::size_t first_row, std::size_t la
 }  // namespace
 
 SpriteLayer draw_sprites(const Sprites& sprites, const Preview& preview, const Camera& camera, int width, int height) {
+    if (sprites.image) return draw_images(sprites, preview, camera, width, height);
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     SpriteLayer layer{std::vector<Vec3>(pixels), std::vector<double>(pixels, 1.0)};
     std::vector<Disc> discs(sprites.centers.size());

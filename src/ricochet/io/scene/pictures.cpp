@@ -2,8 +2,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/io/picture_files.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -106,6 +113,88 @@ const ObjectSpec& camera_spec() {
     return spec;
 }
 
+namespace {
+
+const ObjectSpec& stretch_spec() {
+    using S = StretchDescription;
+    static const ObjectSpec spec = object<S>(
+        "stretch", "How drawn particles change their shape as they move; collisions know nothing of it.",
+        {{"speed", &S::speed, kNotNegative, "s/m",
+          "Along their velocity they are longer by the factor 1 + `speed` times the speed."},
+         {"impact", &S::impact, kNotNegative, "s/m",
+          "At an impact they are flatter along its normal by the factor 1 + `impact` times the speed along it; this "
+          "needs `output.contacts`."},
+         {"time", &S::time, kPositive, "s", "How long an impact shows, half of it before."},
+         {"most", &S::most, between(1.0, 100.0), "", "Neither longer nor flatter than by this factor."}});
+    return spec;
+}
+
+std::optional<std::string> mesh_problem(const std::filesystem::path& path) {
+    try {
+        (void)read_mesh(path, MeshContent::triangles);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return std::nullopt;
+}
+
+// The file that a key names, as a path; empty where there is none, or after reporting.
+std::string picture_file(const SceneContext& context, const ObjectView& view, std::string_view key) {
+    if (!view.has(key)) return "";
+    const std::filesystem::path path = context.path_of_file(view.text(key));
+    std::optional<std::string> problem = file_problem(path);
+    if (!problem && key == "sprite") problem = png_problem(path);
+    if (!problem && key == "mesh") problem = mesh_problem(path);
+    if (!problem) return path.string();
+    context.error(view, key, *problem);
+    return "";
+}
+
+// What particles are drawn as, and the key without which they cannot be.
+void check_drawing(const SceneContext& context, const ObjectView& view, const PictureDescription& picture) {
+    for (const auto& [drawing, key] : {std::pair{"sprites", "sprite"}, std::pair{"meshes", "mesh"}}) {
+        const bool is_drawn = picture.particles == drawing;
+        if (is_drawn && !view.has(key)) {
+            context.error(view, key, fmt::format("missing, \"particles\": \"{}\" needs its file", drawing));
+        } else if (!is_drawn && view.has(key)) {
+            context.error(view, key, fmt::format("only goes together with \"particles\": \"{}\"", drawing));
+        }
+    }
+    const bool turns = picture.particles == "sprites" || picture.particles == "meshes";
+    if (view.has("turn") && picture.particles != "sprites") {
+        context.error(view, "turn", R"(only goes together with "particles": "sprites")");
+    }
+    if (view.has("turning") && !turns) {
+        context.error(view, "turning", R"(only goes together with "particles": "sprites" or "meshes")");
+    }
+}
+
+void check_stretch(const SceneContext& context, const ObjectView& view, const PictureDescription& picture,
+                   bool has_contact_log) {
+    if (!picture.stretch) return;
+    const std::string& drawing = picture.particles;
+    if (!drawing.empty() && drawing != "spheres" && drawing != "meshes") {
+        context.error(
+            view, "stretch",
+            fmt::format("\"particles\": \"{}\" keep their shape, expected \"spheres\" or \"meshes\"", drawing));
+    }
+    if (picture.stretch->impact > 0.0 && !has_contact_log) {
+        context.error(view.object("stretch"), "impact",
+                      "pictures know impacts from the contact log only, expected \"output\": {\"contacts\": true}");
+    }
+}
+
+PictureDescription picture_of(const SceneContext& context, const ObjectView& view, bool has_contact_log) {
+    auto picture = view.read<PictureDescription>();
+    check_drawing(context, view, picture);
+    check_stretch(context, view, picture, has_contact_log);
+    picture.sprite = picture_file(context, view, "sprite");
+    picture.mesh = picture_file(context, view, "mesh");
+    return picture;
+}
+
+}  // namespace
+
 const ObjectSpec& picture_spec() {
     using P = PictureDescription;
     static const ObjectSpec spec = object<P>(
@@ -124,10 +213,27 @@ const ObjectSpec& picture_spec() {
           Choices{{"spheres", "solid spheres"},
                   {"streaks", "threads along the way that they went while the shutter was open, bent where they hit"},
                   {"soft", "soft discs that cover what is behind by their opacity"},
-                  {"glow", "discs of light that adds up"}},
+                  {"glow", "discs of light that adds up"},
+                  {"sprites", "the picture of `sprite`, which faces the camera"},
+                  {"meshes", "copies of `mesh`, turned by their spin"}},
           Without{"soft discs where they have an opacity, spheres otherwise"}},
          {"shutter", &P::shutter, kNotNegative, "s",
           "How long it is open, up to the picture's time: moving particles blur. 0: not at all."},
+         {"sprite", &P::sprite,
+          "A PNG file, with alpha or without: its longer edge is as long as the particle is thick.", ValueType::file,
+          Without{"none"}},
+         {"mesh", &P::mesh,
+          "A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.", ValueType::file,
+          Without{"none"}},
+         {"turn", &P::turn, "How sprites are turned.",
+          Choices{{"upright", "as the camera is"},
+                  {"random", "each by an angle of its own"},
+                  {"velocity", "their upper edge the way that the particle goes"}},
+          Without{"`upright`"}},
+         {"turning", &P::turning, kCoordinate, "rad/s",
+          "How fast sprites, and meshes of particles without a spin, turn on as they age.", Without{"not at all"}},
+         {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
+          Without{"they keep their shape"}, &stretch_spec()},
          {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
           Without{"none"}}});
     return spec;
@@ -149,7 +255,8 @@ void build_pictures(const SceneContext& context, SceneDescription& scene) {
         scene.looks.push_back(view.object("looks").read<ColliderLooks>());
     }
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"), scene.setup);
-    if (context.root().has("picture")) scene.picture = context.root().object("picture").read<PictureDescription>();
+    if (!context.root().has("picture")) return;
+    scene.picture = picture_of(context, context.root().object("picture"), scene.setup.options.record_contacts);
 }
 
 }  // namespace ricochet::detail

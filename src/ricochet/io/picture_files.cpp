@@ -1,0 +1,54 @@
+#include "ricochet/io/picture_files.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "ricochet/core/atomic_file.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/io/scene/files.h"
+
+namespace ricochet {
+namespace {
+
+std::string obj_text(const TriangleMesh& mesh) {
+    std::string text = "# What ricochet draws particles as.\n";
+    for (const Vec3& v : mesh.vertices) {
+        fmt::format_to(std::back_inserter(text), "v {:.17g} {:.17g} {:.17g}\n", v.x, v.y, v.z);
+    }
+    for (const Triangle& t : mesh.triangles) {
+        fmt::format_to(std::back_inserter(text), "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::optional<std::string> png_problem(const std::filesystem::path& path) {
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+    std::array<char, 24> head{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), head.size());
+    const std::string_view bytes(head.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() == head.size() && bytes.starts_with(kSignature) && bytes.substr(12, 4) == "IHDR") {
+        return std::nullopt;
+    }
+    return fmt::format("{} is not a PNG file, expected one", path.string());
+}
+
+void keep_picture_files(const std::filesystem::path& folder, PictureDescription& picture) {
+    if (!picture.sprite.empty()) {
+        write_file(folder / kParticleSpriteFile, detail::read_bytes(picture.sprite, kLargestSpriteFile));
+        picture.sprite = kParticleSpriteFile;
+    }
+    if (!picture.mesh.empty()) {
+        write_file(folder / kParticleMeshFile, obj_text(read_mesh(picture.mesh, MeshContent::triangles).mesh));
+        picture.mesh = kParticleMeshFile;
+    }
+}
+
+}  // namespace ricochet

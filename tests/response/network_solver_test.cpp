@@ -127,6 +127,16 @@ double defect(const NetworkContact& contact, const NetworkImpulse& impulse, cons
     return std::max(worst, length(cut - impulse.tangential) * mobility);
 }
 
+TEST(NetworkSolver, SaysWhichContactsRebound) {
+    std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, 1})};
+    std::vector<NetworkContact> contacts{on_wall(0, kUp), on_wall(1, kUp), on_wall(2, kUp)};
+    for (NetworkContact& contact : contacts) contact.restitution = 0.5;
+    contacts[1].touched = true;
+    NetworkSolver solver;
+    static_cast<void>(solver.solve(bodies, contacts, exactly()));
+    EXPECT_EQ(std::vector<int>(solver.rebounds().begin(), solver.rebounds().end()), (std::vector<int>{1, 0, 0}));
+}
+
 TEST(NetworkSolver, BallOnAFloorIsHeldByItsWeight) {
     std::vector<NetworkBody> bodies{ball(2.0, 0.1, {0, 0, -kGravity * kStep})};
     const std::vector<NetworkContact> contacts{on_wall(0, kUp)};

@@ -125,7 +125,10 @@ TEST(DenseAmongMovers, AFloorThatGoesToAndFroWithinAStepComesToNoSphere) {
     constexpr double kAmplitude = 1.5 * kRadius;
     SimulationSetup setup = moving_setup(kStep, Oscillation{{0, 0, kAmplitude}, 1.0 / kStep, 0.0}, 0.3);
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "mover"}};
-    for (const double y : {-kRadius, kRadius}) setup.particles.push_back(grain({0, y, kRadius}));
+    for (const int k : {-1, 0, 1}) {
+        setup.particles.push_back(grain({0, 2.0 * kRadius * k, kRadius}));
+        setup.particles.back().velocity = {0, -1e-6 * k, 0};  // the middle one is hit twice: they are planned together
+    }
     Simulation simulation(std::move(setup));
     run(simulation);
     expect_sound(simulation);

@@ -120,6 +120,34 @@ TEST(DenseContacts, WhatIsPushedFartherThanItComesByItselfFindsWhatIsThere) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
+/// In a closed box, packing 0.15, with steps in which a third of the spheres meet others.
+SimulationSetup gas_setup() {
+    SimulationSetup setup = setup_of(0.01, 1.0);
+    setup.colliders = {mesh_collider(testing::flipped(testing::box_mesh({0, 0, 0}, {1, 1, 1})))};
+    setup.options.particle_contacts = PairContactSettings{.method = PairMethod::contacts};
+    RandomSequence random(5, 0, 0);
+    for (int k = 0; k < 216; ++k) {
+        const Vec3 place{(k % 6 + 0.5) / 6.0, (k / 6 % 6 + 0.5) / 6.0, (k / 36 + 0.5) / 6.0};
+        setup.particles.push_back(particle_of(place, random.unit_vector(), 0.055));
+    }
+    return setup;
+}
+
+double kinetic_energy(const Simulation& simulation) {
+    double sum = 0.0;
+    for (const Vec3& v : simulation.particles().velocity) sum += 0.5 * length_squared(v);
+    return sum;
+}
+
+TEST(DenseContacts, AnElasticGasKeepsItsEnergy) {
+    Simulation simulation(gas_setup());
+    const double before = kinetic_energy(simulation);
+    advance(simulation, 100);
+    EXPECT_NEAR(kinetic_energy(simulation), before, 1e-12 * before);
+    EXPECT_GT(simulation.statistics().pair_impacts, 500U);
+    EXPECT_EQ(simulation.statistics().unsolved_steps, 0U);
+}
+
 TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
     const auto made = [] {
         SimulationSetup setup = box_setup(0.3, PairMethod::automatic);

@@ -54,10 +54,15 @@ Sums sums_of(const Particles& p) {
     return sums;
 }
 
+// With every method: nobody else is near.
 TEST(PairContacts, TwoSpheresMeetHeadOnAsTheClosedFormSays) {
-    for (const double e : {0.0, 0.4, 1.0}) {
+    for (const auto& [e, method] : {std::pair{0.0, PairMethod::automatic},
+                                    {0.4, PairMethod::events},
+                                    {0.4, PairMethod::contacts},
+                                    {1.0, PairMethod::automatic},
+                                    {1.0, PairMethod::contacts}}) {
         SCOPED_TRACE("restitution " + std::to_string(e));
-        SimulationSetup setup = pair_setup(0.25, 1.0, {.restitution = e});
+        SimulationSetup setup = pair_setup(0.25, 1.0, {.restitution = e, .method = method});
         Particle a = particle_of({0, 0, 0}, {2, 0, 0}, 0.1);
         Particle b = particle_of({1, 0, 0}, {-1, 0, 0}, 0.2);
         a.mass = 1.5;

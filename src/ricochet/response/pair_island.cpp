@@ -37,11 +37,12 @@ std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span
     return std::nullopt;
 }
 
-bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, std::size_t most_impacts) {
+bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit) {
     members_ = &members;
     scratch_ = &scratch;
     impacts_.clear();
     meetings_.clear();
+    most_of_one_ = 0;
     if (predictions_.size() < members.size()) predictions_.resize(members.size());
     boxes_.assign(members.size(), {});
     partners_.assign(members.size(), 0);
@@ -53,15 +54,19 @@ bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, s
     find_all();
     while (true) {
         const double time = times_.earliest();
-        if (!std::isfinite(time) || impacts_.size() > most_impacts) break;
+        if (!std::isfinite(time) || exceeds(limit)) break;
         std::vector<PairContact> contacts = contacts_at(time);
         keep_fastest(contacts, time);
         answer(contacts, time);
     }
     scratch.record_flown = false;
-    if (impacts_.size() > most_impacts) return false;
+    if (exceeds(limit)) return false;
     for (std::size_t m = 0; m < members.size(); ++m) commit(m);
     return true;
+}
+
+bool PairIsland::exceeds(const ImpactLimit& limit) const {
+    return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
 }
 
 /// The path of a member to the end of its part of the step.
@@ -298,7 +303,9 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
         return static_cast<std::size_t>(std::lower_bound(changed.begin(), changed.end(), m) - changed.begin());
     };
     for (PairContact& contact : contacts) {
-        ++(*members_)[contact.first].impacts, ++(*members_)[contact.second].impacts;
+        for (const std::size_t m : {contact.first, contact.second}) {
+            most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
+        }
         contact.first = number(contact.first), contact.second = number(contact.second);
     }
     // No direction parts those of one centre, as children of one place are.

@@ -57,6 +57,12 @@ struct IslandMember {
 [[nodiscard]] std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
                                                   double distance, double slow);
 
+/// Impacts of members of an island on each other in a step beyond which it is given up.
+struct ImpactLimit {
+    std::size_t in_all = std::numeric_limits<std::size_t>::max();
+    std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< of one member
+};
+
 /// Works islands off; keeps its memory for the next one. For one thread.
 class PairIsland {
 public:
@@ -66,9 +72,8 @@ public:
 
     /// Moves the members to the end of the step. The result does not depend on their order, but for the last bits of
     /// impacts that several of them share. scratch: says what is to be recorded; its lists are used. False where there
-    /// are more impacts than most_impacts: the members are anywhere then.
-    bool run(std::vector<IslandMember>& members, MoveScratch& scratch,
-             std::size_t most_impacts = std::numeric_limits<std::size_t>::max());
+    /// are more impacts than the limit: the members are anywhere then.
+    bool run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit = {});
 
     /// Impacts of the last run, in the order of time.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
@@ -106,6 +111,7 @@ private:
     void record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
+    [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
 
     const Response& response_;
     const PairContactSettings& settings_;
@@ -116,6 +122,7 @@ private:
     IslandNeighbours neighbours_;
     EarliestTime times_;                 // s, of each member's first meeting; infinite: it meets nobody
     std::vector<std::size_t> partners_;  // in it
+    std::uint32_t most_of_one_ = 0;      // impacts
     std::vector<Flight> resumed_;        // of each member, where it has been kicked in this step
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;

@@ -11,6 +11,9 @@ namespace {
 /// Spheres of an island that are looked at impact by impact, where impacts lose energy.
 constexpr std::size_t kMostInFreeIsland = 300;
 
+/// Impacts per sphere and step beyond which an island is dense.
+constexpr std::size_t kMostImpacts = 4;
+
 /// Plans of an island in a step, each with contacts looked for farther than in the one before.
 constexpr int kMostPlans = 8;
 
@@ -35,10 +38,19 @@ void keep_way(IslandMember& member, const ForceInput& from, const std::vector<Fl
 bool DenseIslands::begins_dense(const std::vector<IslandMember>& members) const {
     const PairContactSettings& settings = parts_.settings;
     if (!parts_.may_be_dense() || members.size() < 2) return false;
-    if (settings.method == PairMethod::contacts) return true;
     if (settings.restitution < 1.0 && members.size() > kMostInFreeIsland) return true;
     return contacts_.memory().has_pair_of(members.begin(), members.end(),
                                           [](const IslandMember& member) { return member.moving.id; });
+}
+
+/// A plan has one restitution for all that is connected, so that what loses nothing is planned by no method before it
+/// crowds.
+ImpactLimit DenseIslands::impacts_before(const std::vector<IslandMember>& members) const {
+    ImpactLimit limit;
+    if (!parts_.may_be_dense()) return limit;
+    limit.in_all = kMostImpacts * members.size();
+    if (parts_.settings.method == PairMethod::contacts && parts_.settings.restitution < 1.0) limit.of_each = 1;
+    return limit;
 }
 
 /// Islands in parallel have one each.

@@ -25,6 +25,9 @@ public:
     /// An island that is dense before anything has been tried. Where spheres pressed on each other in the last step
     /// they still do; many that lose energy soon will.
     [[nodiscard]] bool begins_dense(const std::vector<IslandMember>& members) const;
+    /// Beyond these an island that does not begin so is dense: spheres that meet alone in a step do so at their exact
+    /// time with every method.
+    [[nodiscard]] ImpactLimit impacts_before(const std::vector<IslandMember>& members) const;
     /// Moves the members of an island to the step's end. Several threads may run different ones.
     [[nodiscard]] DenseTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
 

@@ -13,9 +13,6 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
 
-/// Impacts per sphere and step beyond which an island is dense.
-constexpr std::size_t kMostImpacts = 4;
-
 bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
 }
@@ -94,11 +91,9 @@ void PairIslands::run(const TimeSpan& step) {
             island.round = round_;
             take_members(island, step);
             island.is_dense = dense_.begins_dense(island.members);
-            if (!island.is_dense && parts_.settings.method == PairMethod::automatic) {
-                island.is_dense = !worker.run(island.members, scratch, kMostImpacts * island.members.size());
+            if (!island.is_dense) {
+                island.is_dense = !worker.run(island.members, scratch, dense_.impacts_before(island.members));
                 if (island.is_dense) take_members(island, step);
-            } else if (!island.is_dense) {
-                worker.run(island.members, scratch);
             }
             if (island.is_dense) {
                 island.trace = dense_.run(island.members, step);

@@ -167,12 +167,13 @@ const ObjectSpec& particle_contacts_spec() {
          {"rolling_friction", &P::rolling_friction, kNotNegative, "",
           "Moment that resists turning relative to each other, over the reduced radius times the normal impulse."},
          {"method", &P::method, "How spheres that meet are moved.",
-          Choices{choice(PairMethod::automatic, "auto",
-                         "impact by impact, and as `contacts` where spheres press on each other or one impact would "
-                         "follow another"),
-                  choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-                  choice(PairMethod::contacts, "contacts",
-                         "all contacts of a step at once, with its length as the error")}},
+          Choices{
+              choice(PairMethod::automatic, "auto",
+                     "impact by impact, and as `contacts` where spheres press on each other or one impact would "
+                     "follow another"),
+              choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+              choice(PairMethod::contacts, "contacts",
+                     "all contacts of a step at once, with its length as the error, but for spheres that meet alone")}},
          {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
           "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the rest of "
           "the step, and the time left out is counted."}});

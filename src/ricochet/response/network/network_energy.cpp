@@ -130,6 +130,7 @@ void NetworkSolver::hand_over(std::span<NetworkBody> bodies) {
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const NetworkRow& row = rows_[i];
+        rebounds_[coloring_.order()[i]] = row.bound < -row.parting ? 1 : 0;
         NetworkImpulse& impulse = impulses_[coloring_.order()[i]];
         impulse.normal = row.push.normal;
         impulse.tangential = row.push.tangential;

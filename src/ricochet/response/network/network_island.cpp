@@ -214,7 +214,8 @@ std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
 std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
     std::vector<NetworkMemory::Entry> entries;
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-        if (solver_.impulses()[i].normal > 0.0) entries.push_back({keys_[i], solver_.impulses()[i]});
+        const NetworkImpulse& impulse = solver_.impulses()[i];
+        if (impulse.normal > 0.0) entries.push_back({keys_[i], impulse, solver_.rebounds()[i] != 0});
     }
     return entries;
 }

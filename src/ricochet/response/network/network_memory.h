@@ -33,6 +33,7 @@ public:
     struct Entry {
         NetworkKey key;
         NetworkImpulse impulse;
+        bool rebounds = false;  ///< an impact: the two part
     };
 
     /// Takes entries in any order, each key once.
@@ -53,15 +54,19 @@ public:
                                             [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
         return found != entries_.end() && found->key == key ? &found->impulse : nullptr;
     }
-    /// True where one of a list of particles pressed on another one.
+    /// True where one of a list of particles pressed on another one, and did not part from it.
     template <class Iterator, class IdOf>
     [[nodiscard]] bool has_pair_of(Iterator begin, Iterator end, const IdOf& id_of) const {
         if (entries_.empty()) return false;
         return std::any_of(begin, end, [&](const auto& particle) {
             const NetworkKey first = NetworkKey::of_pair(id_of(particle), 0);
-            const auto found = std::lower_bound(entries_.begin(), entries_.end(), first,
-                                                [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
-            return found != entries_.end() && found->key.particle == first.particle && !found->key.is_wall();
+            auto at = std::lower_bound(entries_.begin(), entries_.end(), first,
+                                       [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
+            const auto is_its = [&] {
+                return at != entries_.end() && at->key.particle == first.particle && !at->key.is_wall();
+            };
+            while (is_its() && at->rebounds) ++at;
+            return is_its();
         });
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
@@ -73,7 +78,7 @@ public:
     void archive(Archive& a) {
         archive_entries(a, entries_, [&](Entry& entry) {
             a(entry.key.particle), a(entry.key.other);
-            a(entry.impulse.normal), a(entry.impulse.tangential), a(entry.impulse.moment);
+            a(entry.impulse.normal), a(entry.impulse.tangential), a(entry.impulse.moment), a(entry.rebounds);
         });
     }
 

@@ -46,6 +46,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     changes_.assign(rows_.size(), {});
     directions_.assign(rows_.size(), {});
     impulses_.assign(contacts.size(), {});
+    rebounds_.assign(contacts.size(), 0);
 }
 
 NetworkRow NetworkSolver::row_of(const NetworkContact& contact, double duration) {

@@ -21,6 +21,8 @@ public:
                         const NetworkSettings& settings);
     /// Of the contacts of the last network, in their order.
     [[nodiscard]] std::span<const NetworkImpulse> impulses() const { return impulses_; }
+    /// Of the same, in their order: 1 where its restitution parts the two.
+    [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
     /// Of a connected impact: with the part f of its impulses energy changes by f (against + f curvature / 2), J.
@@ -63,6 +65,7 @@ private:
     std::vector<SweepChange> blocks_;
     ConnectedImpacts impacts_;
     std::vector<NetworkImpulse> impulses_;
+    std::vector<std::uint8_t> rebounds_;
 };
 
 }  // namespace ricochet

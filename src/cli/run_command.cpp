@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,7 @@
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/run_report.h"
 #include "ricochet/io/run_writer.h"
+#include "ricochet/io/scene_warnings.h"
 
 namespace ricochet {
 namespace {
@@ -350,9 +352,12 @@ int cli::run_scene(const RunArguments& arguments) {
     RunInfo info = run_info_of(scene);
     info.version = RICOCHET_VERSION;
     const Box3 region = particle_region(scene.setup);
+    const Vec3 fall = uniform_acceleration(scene.setup);
     LastState last(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
     Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
-    for (const std::string& warning : simulation.warnings()) {
+    std::vector<std::string> warnings = simulation.warnings();
+    std::ranges::move(pair_method_warnings(simulation, fall), std::back_inserter(warnings));
+    for (const std::string& warning : warnings) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
     using Earlier = OutputDirectory::Earlier;

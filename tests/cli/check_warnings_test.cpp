@@ -51,6 +51,16 @@ protected:
         (void)folder_.write("funnel.obj", obj_of(funnel_mesh(1.0, 0.1)));
     }
 
+    /// What a quiet run of ten steps prints there.
+    std::string warnings_of_run(const std::string& parts) {
+        const std::string simulation = R"("simulation": {"time_step": 0.01, "duration": 0.1},)";
+        const std::string scene = folder_.write("r.json", R"({"ricochet": 1, )" + simulation + parts + "}").string();
+        const std::string out = folder_.path("out").string();
+        const test::ProgramResult result = run_ricochet({"run", scene, "--output", out, "--quiet"});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return result.errors;
+    }
+
     /// What check prints to standard error for a scene of these parts; it must end with 0.
     std::string warnings(const std::string& parts) {
         const std::string scene =
@@ -260,8 +270,19 @@ TEST_F(CheckWarnings, MethodsThatCannotDoWhatASceneAsksOfSpheresAreNamed) {
     EXPECT_FALSE(names(R"("method": "events", "restitution": 0.5)", false));
     EXPECT_FALSE(names(R"("method": "events")", true));
     EXPECT_FALSE(names(R"("restitution": 0.5)", true));
-    EXPECT_TRUE(names(R"("method": "contacts")", false));
+    EXPECT_TRUE(names(R"("method": "contacts", "restitution": 0.95)", false));
+    EXPECT_FALSE(names(R"("method": "contacts")", false));
     EXPECT_FALSE(names(R"("method": "contacts", "restitution": 0.5)", true));
+}
+
+TEST_F(CheckWarnings, ARunNamesThemToo) {
+    const auto told = [&](const std::string& method) {
+        const std::string gravity = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],)";
+        const std::string contacts = R"("particle_contacts": {"restitution": 0.5, "method": ")" + method + R"("},)";
+        return warnings_of_run(gravity + contacts + R"("particles": [{"position": [0, 0, 1], "radius": 0.1}])");
+    };
+    EXPECT_NE(told("events").find("particle_contacts.method"), std::string::npos);
+    EXPECT_EQ(told("auto"), "");
 }
 
 }  // namespace

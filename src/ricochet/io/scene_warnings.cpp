@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -154,7 +155,7 @@ public:
 
     std::vector<std::string> lines() {
         review_surfaces();
-        review_pairs();
+        std::ranges::move(pair_method_warnings(simulation_, fall_), std::back_inserter(lines_));
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
         for (const Starts& starts : starts_) {
             review_positions(starts);
@@ -165,7 +166,6 @@ public:
 
 private:
     void review_surfaces();
-    void review_pairs();
     void review_collider(std::size_t i);
     void review_precision(const TriangleMesh& mesh, const std::string& where);
     void review_sides(const Starts& starts, const Solid& solid, const std::string& where);
@@ -320,23 +320,6 @@ bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const
     return begin <= end && fall != Vec3{};
 }
 
-/// Methods that cannot do what a scene asks for.
-void SceneReview::review_pairs() {
-    const std::optional<PairContactSettings>& pairs = simulation_.options().particle_contacts;
-    if (!pairs) return;
-    if (pairs->method == PairMethod::events && fall_ != Vec3{} && pairs->restitution < 1.0) {
-        lines_.emplace_back(
-            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
-            "their impacts of each step and stand still in the air; use auto");
-    }
-    if (pairs->method == PairMethod::contacts && pairs->restitution >= kNearlyElastic) {
-        lines_.push_back(fmt::format(
-            "particle_contacts.method: contacts: all impacts of a step are one, which loses energy in a gas "
-            "and shares out that of a cradle, whatever the restitution of {:g}; use auto or events",
-            pairs->restitution));
-    }
-}
-
 /// Explicit particles in overlap are told by the simulation itself.
 void SceneReview::review_positions(const Starts& starts) {
     // Where one position in twenty is free, one birth in thirty finds none.
@@ -361,6 +344,26 @@ void SceneReview::review_radius(const Starts& starts) {
 }
 
 }  // namespace
+
+std::vector<std::string> pair_method_warnings(const Simulation& simulation, const Vec3& fall) {
+    const std::optional<PairContactSettings>& pairs = simulation.options().particle_contacts;
+    std::vector<std::string> lines;
+    if (!pairs) return lines;
+    if (pairs->method == PairMethod::events && fall != Vec3{} && pairs->restitution < 1.0) {
+        lines.emplace_back(
+            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
+            "their impacts of each step and stand still in the air; use auto");
+    }
+    const bool is_nearly_elastic = pairs->restitution >= kNearlyElastic && pairs->restitution < 1.0;
+    if (pairs->method == PairMethod::contacts && is_nearly_elastic) {
+        lines.push_back(
+            fmt::format("particle_contacts.method: contacts: impacts that follow each other in a step are one, which "
+                        "loses energy in a gas and shares out that of a cradle, whatever the restitution of {:g}; use "
+                        "auto or events",
+                        pairs->restitution));
+    }
+    return lines;
+}
 
 std::vector<std::string> scene_warnings(const Simulation& simulation, std::span<const EmitterDescription> emitters,
                                         const Vec3& fall) {

@@ -1,5 +1,5 @@
 /// \file
-/// What is probably not meant in a scene that can be run: `ricochet check` says so.
+/// What is probably not meant in a scene that can be run: `ricochet check` says so, and `run` a part of it.
 #pragma once
 
 #include <span>
@@ -19,5 +19,8 @@ namespace ricochet {
 /// acceleration that is the same everywhere (uniform_acceleration()).
 [[nodiscard]] std::vector<std::string> scene_warnings(const Simulation& simulation,
                                                       std::span<const EmitterDescription> emitters, const Vec3& fall);
+
+/// Those of them about the method of particle contacts, which depends on little and is told with every run, too.
+[[nodiscard]] std::vector<std::string> pair_method_warnings(const Simulation& simulation, const Vec3& fall);
 
 }  // namespace ricochet

@@ -1065,6 +1065,8 @@ class Picture(Thing):
     mesh: A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.
     turn: How sprites are turned.
     turning: How fast sprites, and meshes of particles without a spin, turn on as they age. Unit: rad/s.
+    black_body: Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as a
+        white surface in the sun. Unit: K.
     stretch: Squash and stretch of spheres and meshes, at the same volume.
     ground: A level ground at this height along the upward axis. Unit: m.
     """

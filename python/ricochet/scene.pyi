@@ -897,6 +897,7 @@ class Picture(Thing):
         mesh: Optional[str] = ...,
         turn: Optional[str] = ...,
         turning: Any = ...,
+        black_body: Optional[float] = ...,
         stretch: Any = ...,
         ground: Optional[float] = ...,
     ) -> None: ...

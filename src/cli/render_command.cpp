@@ -176,6 +176,8 @@ void render(const RenderArguments& arguments) {
     }
     if (pictures.shows_image_colors()) {
         cli::print("in the colours of the sprite\n");
+    } else if (pictures.shows_heat_alone()) {
+        cli::print("glowing by their temperature\n");
     } else if (pictures.shows_own_colors()) {
         cli::print("in the particles' own colours\n");
     } else {

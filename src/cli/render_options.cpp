@@ -124,6 +124,7 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     style.drawing = parse_drawing(arguments.drawing);
     choose_file("--sprite", arguments.sprite, ParticleDrawing::sprites, style.sprite, style);
     choose_file("--mesh", arguments.mesh, ParticleDrawing::meshes, style.mesh, style);
+    if (arguments.black_body != 0.0) style.black_body = arguments.black_body;
     style.range = parse_range("--range", arguments.range);
     style.map = parse_color_map(arguments.color_map);
     if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
@@ -151,6 +152,7 @@ void check_numbers(const RenderArguments& arguments) {
     in_range("--exposure", arguments.exposure, 0.01, 100);
     in_range("--speed", arguments.speed, 1e-6, 1e6);
     if (arguments.shutter != -1.0) in_range("--shutter", arguments.shutter, 0, 1e6);
+    if (arguments.black_body != 0.0) in_range("--black-body", arguments.black_body, 500, 20000);
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
 }
 
@@ -170,6 +172,8 @@ void add_render_options(cli::Command command, RenderArguments& a) {
                     "or meshes (auto: soft with an opacity)")
         .show_default();
     command.add_option("--sprite", a.sprite, "PNG file that particles are drawn with, facing the camera");
+    command.add_option("--black-body", a.black_body,
+                       "K: particles shine by their array temperature, at this one as a white surface in the sun");
     command.add_option("--mesh", a.mesh, "Mesh file that particles are drawn as copies of, turned by their spin");
     command.add_option("--light", a.light, "day, noon, overcast, night or studio (default: the scene's, or day)");
     command.add_flag("--night", a.night, "The same as --light night");

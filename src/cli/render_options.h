@@ -22,6 +22,7 @@ struct RenderArguments {
     std::string drawing = "auto";
     std::string sprite;
     std::string mesh;
+    double black_body = 0.0;  // 0: the scene's
     std::string color_map = "plasma";
     std::string range;
     std::string collider_color = "plain";

@@ -66,7 +66,8 @@ void RunPictures::color_colliders(const RunFolder& folder) {
 
 std::vector<ColorBar> RunPictures::color_bars() const {
     std::vector<ColorBar> bars;
-    if (!own_colors_ && !plain_image_) bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
+    if (!own_colors_ && !plain_image_ && !embers_)
+        bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
     if (style_.collider_quantity) {
         bars.push_back(
             {style_.collider_quantity->name(), style_.collider_quantity->unit(), collider_range_, ColorMap::viridis});

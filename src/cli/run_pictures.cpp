@@ -16,6 +16,8 @@
 #include "ricochet/io/camera_frames.h"
 #include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
+#include "ricochet/render/black_body.h"
+#include "ricochet/render/sprites.h"
 
 namespace ricochet::cli {
 
@@ -33,6 +35,7 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
 constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
 constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
 constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
+constexpr Vec3 kEmberColor{0.06, 0.055, 0.05};
 constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
 constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 
@@ -135,6 +138,7 @@ void RunPictures::choose_looks(const VtkPolyData& frame) {
     const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
     if (style_.color_by.empty()) {
         plain_image_ = style_.drawing == ParticleDrawing::sprites && !has_colors;
+        embers_ = style_.black_body && !plain_image_ && !has_colors;
         style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
     }
     own_colors_ = style_.color_by == kColorAttribute;
@@ -261,6 +265,7 @@ PreviewMoving RunPictures::moving(const Moment& moment) {
         moving.lines.ends.push_back({a, b});
         moving.lines.radii.push_back(radius);
         moving.lines.colors.push_back(kRopeColor);
+        if (!emissions_.empty()) moving.lines.emissions.emplace_back();
         thread[a] = std::max(thread[a], radius);
         thread[b] = std::max(thread[b], radius);
     }
@@ -278,6 +283,7 @@ PreviewMoving RunPictures::moving(const Moment& moment) {
         moving.spheres.centers.push_back(frame.points[i]);
         moving.spheres.radii.push_back(radii[i]);
         moving.spheres.colors.push_back(shown[i]);
+        if (!emissions_.empty()) moving.spheres.emissions.push_back(emissions_[i]);
     }
     if (!moment.paths.empty()) set_ways(moment.paths, drawn, moving);
     if (draws_copies()) make_copies(moment, drawn, moving);
@@ -299,18 +305,18 @@ void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::siz
                 moving.lines.ends.push_back({first + i, first + i + 1});
                 moving.lines.radii.push_back(spheres.radii[k]);
                 moving.lines.colors.push_back(spheres.colors[k]);
+                if (!spheres.emissions.empty()) moving.lines.emissions.push_back(spheres.emissions[k]);
             }
         }
         spheres = {};
         return;
     }
     // Bends of gravity need few steps; the corner of an impact is cut by at most a step.
-    constexpr std::size_t kSmoothSteps = 9;
     const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
         return std::any_of(nodes.begin(), nodes.end(),
                            [](const PathNode& node) { return node.velocity_before != node.velocity_after; });
     });
-    const std::size_t steps = bends ? kMostWaySteps : kSmoothSteps;
+    const std::size_t steps = bends ? kMostWaySteps : kFewWaySteps;
     spheres.ways.resize(shown.size());
     for (std::size_t k = 0; k < shown.size(); ++k) {
         for (std::size_t step = 0; step < steps; ++step) {
@@ -323,6 +329,7 @@ void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::siz
 
 std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame) const {
     if (plain_image_) return std::vector<Vec3>(frame.points.size(), Vec3{1, 1, 1});
+    if (embers_) return std::vector<Vec3>(frame.points.size(), kEmberColor);
     const VtkArray* const own = own_colors_ ? find_array(frame.point_arrays, kColorAttribute) : nullptr;
     const auto* const vectors = own == nullptr ? nullptr : std::get_if<std::vector<Vec3>>(&own->values);
     if (vectors != nullptr) return *vectors;
@@ -333,10 +340,34 @@ std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame) const {
     return colors;
 }
 
+std::vector<Vec3> RunPictures::emissions(const VtkPolyData& frame) const {
+    constexpr double kSunlit = 4.0;  // light of a white surface in the sun
+    std::vector<Vec3> lights;
+    if (!style_.black_body) return lights;
+    const VtkArray* const array = find_array(frame.point_arrays, kTemperature);
+    if (array == nullptr) {
+        throw InputError(fmt::format("--black-body {}: the frames have no array {}; known arrays: {}",
+                                     *style_.black_body, kTemperature, known_arrays(frame)));
+    }
+    const BlackBody body(*style_.black_body);
+    for (const double kelvin : scalar_values(*array)) lights.push_back(kSunlit * body.light(kelvin));
+    return lights;
+}
+
+// Discs and images have one colour for their own light and that which falls on them.
+std::vector<Vec3> RunPictures::sprite_colors(const VtkPolyData& frame) const {
+    if (emissions_.empty()) return colors(frame);
+    if (style_.drawing == ParticleDrawing::glow) return emissions_;
+    std::vector<Vec3> sum = colors(frame);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += emissions_[i] / kSpriteDaylight;
+    return sum;
+}
+
 Image RunPictures::picture(double time, const PictureOptions& options) {
     Moment moment = timeline_.at(time, shutter());
     const VtkPolyData& frame = moment.frame;
     place_camera(frame);
+    emissions_ = emissions(frame);
     PreviewMoving shown = moving(moment);
     add_moving(std::move(moment.moving), shown);
     if (!draws_sprites()) {
@@ -349,7 +380,7 @@ Image RunPictures::picture(double time, const PictureOptions& options) {
     std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     const bool glow = style_.drawing == ParticleDrawing::glow;
-    Sprites sprites{frame.points, shown_radii(frame), colors(frame), std::move(opacities), glow};
+    Sprites sprites{frame.points, shown_radii(frame), sprite_colors(frame), std::move(opacities), glow};
     if (sprite_) {
         sprites.image = sprite_;
         sprites.angles = sprite_angles(frame);

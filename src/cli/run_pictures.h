@@ -34,6 +34,11 @@ inline constexpr double kParticleAlbedo = 0.8;  ///< of the colour map's colours
 
 /// Most places that a sphere has while the shutter is open.
 inline constexpr std::size_t kMostWaySteps = 65;
+/// The same where none of them hits anything.
+inline constexpr std::size_t kFewWaySteps = 9;
+
+/// Array by which particles shine, K.
+inline constexpr const char* kTemperature = "temperature";
 
 /// What particles are drawn as.
 enum class ParticleDrawing {
@@ -98,9 +103,10 @@ struct PictureStyle {
     std::optional<Lighting> light;
     std::optional<Background> background;
     std::optional<Ground> ground;
-    std::optional<double> shutter;  ///< s
-    std::filesystem::path sprite;   ///< PNG file of sprites; empty: the run's own
-    std::filesystem::path mesh;     ///< file of the mesh that particles are copies of; empty: the run's own
+    std::optional<double> shutter;     ///< s
+    std::optional<double> black_body;  ///< K, at which particles shine as a white surface in the sun
+    std::filesystem::path sprite;      ///< PNG file of sprites; empty: the run's own
+    std::filesystem::path mesh;        ///< file of the mesh that particles are copies of; empty: the run's own
 };
 
 /// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
@@ -132,6 +138,8 @@ public:
     }
     /// True when sprites have the colours of their image alone.
     [[nodiscard]] bool shows_image_colors() const { return plain_image_; }
+    /// True when particles have no colour but that of their heat.
+    [[nodiscard]] bool shows_heat_alone() const { return embers_; }
     /// The collider in which most particles are and that hides them from the camera outside; empty where there is none.
     [[nodiscard]] const std::string& hiding_collider() const { return hiding_; }
 
@@ -157,6 +165,8 @@ private:
     [[nodiscard]] std::vector<double> shown_values(const VtkPolyData& frame) const;
     void choose_looks(const VtkPolyData& frame);
     [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame) const;
+    [[nodiscard]] std::vector<Vec3> emissions(const VtkPolyData& frame) const;
+    [[nodiscard]] std::vector<Vec3> sprite_colors(const VtkPolyData& frame) const;
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
     [[nodiscard]] PreviewMoving moving(const Moment& moment);
@@ -195,6 +205,8 @@ private:
     std::optional<TriangleMesh> shape_mesh_;  // fitted into the ball of radius 1
     std::shared_ptr<const SpriteImage> sprite_;
     bool plain_image_ = false;
+    bool embers_ = false;
+    std::vector<Vec3> emissions_;  // of the particles of the frame that is drawn; empty: none
     RunTurning turning_;
     std::string hiding_;
     std::optional<Preview> preview_;

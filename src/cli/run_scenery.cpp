@@ -24,6 +24,7 @@ void RunPictures::choose_scenery(const RunInfo& info) {
         style_.drawing = drawing_from_name(own.particles).value_or(style_.drawing);
     }
     if (!style_.shutter) style_.shutter = own.shutter;
+    if (!style_.black_body) style_.black_body = own.black_body;
     if (!style_.light && !own.light.empty()) style_.light = lighting_from_name(own.light);
     if (!style_.background) style_.background = Background{own.background, own.transparent};
     if (!style_.ground && own.ground) style_.ground = Ground{Ground::Kind::at_height, *own.ground};

@@ -102,9 +102,9 @@ void RunPictures::widen_subject(const VtkPolyData& frame) {
 void RunPictures::require_room_for_copies() const {
     if (!draws_copies()) return;
     constexpr double kCopy = 600.0;      // with its entries in the lists of a picture and in Embree's hierarchy
-    constexpr double kWayPoint = 100.0;  // twice as a point, and in the hierarchy
+    constexpr double kWayPoint = 300.0;  // twice as a point, and in the hierarchy
     constexpr double kTriangle = 400.0;
-    const double ways = shutter() > 0.0 ? kMostWaySteps * kWayPoint : 0.0;
+    const double ways = shutter() > 0.0 ? kWayPoint * (timeline_.knows_impacts() ? kMostWaySteps : kFewWaySteps) : 0.0;
     const double triangles = shape_mesh_ ? static_cast<double>(shape_mesh_->triangles.size()) : 0.0;
     require_memory(static_cast<double>(most_particles_) * (kCopy + ways) + triangles * kTriangle,
                    fmt::format("a picture of {} particles as {}", most_particles_,
@@ -179,6 +179,7 @@ void RunPictures::make_copies(const Moment& moment, const std::vector<std::size_
     copies.ways = std::move(spheres.ways);
     if (shape_.stretch) stretch_copies(moment.frame, shown, moving);
     copies.colors = std::move(spheres.colors);
+    copies.emissions = std::move(spheres.emissions);
     spheres = {};
 }
 

@@ -149,6 +149,37 @@ TEST_F(Shapes, ABallThatLandsIsFlatterAtItsImpact) {
     EXPECT_NEAR(frame("14").second, 16, 1);
 }
 
+// At night what glows at the reference is brighter than anything, and what is at room temperature is dark.
+TEST_F(Shapes, HotParticlesShineAsBlackBodies) {
+    const std::string hot = R"("attributes": {"temperature": {"default": 1500}},
+        "particles": [{"position": [-1, 0, 0], "velocity": [0, 0.5, 0], "radius": 0.5}, {"position": [1, 0, 0], "velocity": [0, 0.5, 0], "radius": 0.5,
+                       "attributes": {"temperature": 300}}])";
+    const std::string shines = run("shines", hot + R"(, "picture": {"light": "night", "black_body": 1500})");
+    const std::string plain = run("plain", hot + R"(, "picture": {"light": "night"})");
+    std::vector<std::string> view = {"--camera", "0,-6,0,0,0,0,40"};
+    const std::string by_scene = picture(shines, view);
+    const Image image = read_png(folder_.path("p.png"));
+    const auto left = image.pixel(33, 32);
+    const auto right = image.pixel(62, 32);
+    EXPECT_GT(left[0], 200);
+    EXPECT_GT(left[0], left[1] + 20);
+    EXPECT_GT(left[1], left[2]);
+    EXPECT_LT(right[0], 60);
+    for (const char* drawing : {"spheres", "glow", "soft", "streaks"}) {
+        std::vector<std::string> options = view;
+        options.insert(options.end(), {"--draw", drawing, "--shutter", "0.1"});
+        const std::string without = picture(plain, options);
+        options.insert(options.end(), {"--black-body", "1500"});
+        EXPECT_TRUE(picture(plain, options) != without) << drawing;
+    }
+    view.insert(view.end(), {"--black-body", "1500"});
+    EXPECT_TRUE(picture(plain, view) == by_scene);
+    const ProgramResult cold = render(run("cold", kBalls), "c.png", {"--black-body", "1500"});
+    EXPECT_EQ(cold.exit_code, 2);
+    EXPECT_NE(cold.errors.find("the frames have no array temperature"), std::string::npos) << cold.errors;
+    EXPECT_EQ(render(plain, "c.png", {"--black-body", "20"}).exit_code, 2);
+}
+
 TEST_F(Shapes, ToldThatAClosedColliderHidesTheParticles) {
     const std::string box = run("box", R"("particles": [{"position": [0, 0, 0]}, {"position": [0.2, 0, 0]}],
         "colliders": [{"name": "crate", "type": "box", "size": [1, 1, 1]}])");

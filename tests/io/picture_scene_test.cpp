@@ -183,6 +183,16 @@ TEST_F(DrawnParticles, RefusesKeysThatWouldDoNothing) {
     EXPECT_NE(error(R"("picture": {"stretch": {"most": 0.5}})").find("picture.stretch.most: "), std::string::npos);
 }
 
+TEST_F(DrawnParticles, BlackBodiesNeedATemperature) {
+    const std::string hot = R"("attributes": {"temperature": {"default": 900}}, "picture": {"black_body": 1500})";
+    const test::TemporaryFolder run;
+    const RunInfo again = read_run_info(run.write("run.json", run_info_text(run_info_of(read(hot)))));
+    EXPECT_EQ(again.picture->black_body, 1500.0);
+    EXPECT_NE(error(R"("picture": {"black_body": 1500})").find("particles have no temperature"), std::string::npos);
+    EXPECT_NE(error(R"("attributes": {"temperature": {}}, "picture": {"black_body": 20})").find("picture.black_body"),
+              std::string::npos);
+}
+
 // Neither which files they are nor what is in them.
 TEST_F(DrawnParticles, FilesOfPicturesAreNoPartOfTheFingerprint) {
     const std::uint64_t plain = read(R"("picture": {"light": "night"})").fingerprint;

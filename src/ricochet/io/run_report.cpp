@@ -52,6 +52,7 @@ PictureDescription picture_of(const Json& json) {
     if (json.contains("turning")) {
         picture.turning = MeanSpread{json.at("turning").at(0).get<double>(), json.at("turning").at(1).get<double>()};
     }
+    if (json.contains("black_body")) picture.black_body = json.at("black_body").get<double>();
     if (json.contains("stretch")) picture.stretch = stretch_of(json.at("stretch"));
     return picture;
 }
@@ -68,6 +69,7 @@ Json json_of(const PictureDescription& picture) {
     if (!picture.mesh.empty()) json["mesh"] = picture.mesh;
     if (!picture.turn.empty()) json["turn"] = picture.turn;
     if (picture.turning) json["turning"] = {picture.turning->mean, picture.turning->spread};
+    if (picture.black_body) json["black_body"] = *picture.black_body;
     if (const auto& stretch = picture.stretch) {
         json["stretch"] = {
             {"speed", stretch->speed}, {"impact", stretch->impact}, {"time", stretch->time}, {"most", stretch->most}};

@@ -78,6 +78,9 @@ struct PictureDescription {
     std::string turn{};                           ///< how sprites are turned, by name; empty: upright
     std::optional<MeanSpread> turning{};          ///< rad/s, by which sprites and meshes without a spin turn on
     std::optional<StretchDescription> stretch{};  ///< nothing: they keep their shape
+    /// K: particles shine by their attribute `temperature`, at this one as a white surface in the sun; nothing: no
+    /// light.
+    std::optional<double> black_body{};
 };
 
 /// A scene, read and checked.

@@ -82,6 +82,7 @@ struct Preview::Impl {
     std::vector<Vec3> sphere_colors;     // in the order of the drawn spheres
     std::vector<Vec3> sphere_emissions;  // the same, or empty
     std::vector<Vec3> line_colors;       // in the order of the drawn lines
+    std::vector<Vec3> line_emissions;    // the same, or empty
     DrawnMesh cloth;
     ShapeCopies copies;
     bool has_moving = false;
@@ -158,7 +159,8 @@ PreviewHit Preview::Impl::moving_hit(const RTCRayHit& hit, const CopyHit& copy_h
     out.time = ray.time;
     out.roughness = is_line ? 1.0 : kSphereRoughness;
     out.color = is_line ? line_colors[hit.hit.primID] : sphere_colors[hit.hit.primID];
-    if (!is_line && !sphere_emissions.empty()) out.emission = sphere_emissions[hit.hit.primID];
+    const std::vector<Vec3>& emissions = is_line ? line_emissions : sphere_emissions;
+    if (!emissions.empty()) out.emission = emissions[hit.hit.primID];
     return out;
 }
 
@@ -230,6 +232,7 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
             drawn.push_back(i);
     }
     line_colors.clear();
+    line_emissions.clear();
     if (drawn.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
@@ -245,6 +248,7 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
         }
         firsts[k] = static_cast<std::uint32_t>(2 * k);
         line_colors.push_back(lines.colors[drawn[k]]);
+        if (!lines.emissions.empty()) line_emissions.push_back(lines.emissions[drawn[k]]);
     }
     attach(moving_scene.get(), geometry, kLines);
     has_moving = true;

@@ -43,20 +43,22 @@ struct PreviewSpheres {
     std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
 };
 
-/// Straight threads with round ends; all vectors but points have the same length.
+/// Straight threads with round ends; all vectors but points have the same length, the last may be empty.
 struct PreviewLines {
     std::vector<std::array<std::uint32_t, 2>> ends;  ///< indices into points
     std::vector<Vec3> points;
     std::vector<double> radii;  ///< m, > 0
     std::vector<Vec3> colors;
+    std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
 };
 
 /// Copies of the shape of Preview::set_shape(), or of a ball of radius 1 where none is set; all vectors have the same
-/// length, the last one may be empty.
+/// length, the last two may be empty.
 struct PreviewCopies {
     std::vector<AffineMap> places;  ///< into the world from the shape's own coordinates, when the shutter closes
     std::vector<Vec3> colors;
     std::vector<std::vector<Vec3>> ways{};  ///< of the shape's origin, as those of spheres; maps stay the same on them
+    std::vector<Vec3> emissions{};          ///< light of their own
 };
 
 /// What moves: changes from picture to picture.

@@ -54,7 +54,8 @@ RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& co
         copies_.push_back({inverse_of(map),
                            map.translation - origin,
                            {length(map.row_x), length(map.row_y), length(map.row_z)},
-                           copies.colors[i]});
+                           copies.colors[i],
+                           copies.emissions.empty() ? Vec3{} : copies.emissions[i]});
         if (copies.ways.empty()) continue;
         ways_.push_back(copies.ways[i]);
         for (Vec3& point : ways_.back()) point -= origin;
@@ -178,6 +179,7 @@ PreviewHit ShapeCopies::hit(const RTCRayHit& hit, const CopyHit& copy_hit, const
     out.point = ray.origin + out.distance * ray.direction;
     out.time = ray.time;
     out.color = copies_[index].color;
+    out.emission = copies_[index].emission;
     out.roughness = kSphereRoughness;
     if (scene_.get() == nullptr) {
         out.face = towards(world_normal(index, local.origin + out.distance * local.direction), ray.direction);

@@ -39,6 +39,7 @@ private:
         Vec3 center;                 // about the origin, when the shutter closes
         Vec3 half_size;              // of its box
         Vec3 color;
+        Vec3 emission;
     };
     // A ray in the shape's own coordinates; distances are those of the world's ray.
     struct LocalRay {

@@ -184,10 +184,21 @@ void check_stretch(const SceneContext& context, const ObjectView& view, const Pi
     }
 }
 
-PictureDescription picture_of(const SceneContext& context, const ObjectView& view, bool has_contact_log) {
+// Something must say how hot they are.
+void check_black_body(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup) {
+    if (!view.has("black_body")) return;
+    for (const AttributeDescription& attribute : setup.attributes) {
+        if (attribute.name == "temperature" && attribute.components == 1) return;
+    }
+    context.error(view, "black_body",
+                  "particles have no temperature, expected \"attributes\": {\"temperature\": {\"default\": 1500}}");
+}
+
+PictureDescription picture_of(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup) {
     auto picture = view.read<PictureDescription>();
+    check_black_body(context, view, setup);
     check_drawing(context, view, picture);
-    check_stretch(context, view, picture, has_contact_log);
+    check_stretch(context, view, picture, setup.options.record_contacts);
     picture.sprite = picture_file(context, view, "sprite");
     picture.mesh = picture_file(context, view, "mesh");
     return picture;
@@ -232,6 +243,10 @@ const ObjectSpec& picture_spec() {
           Without{"`upright`"}},
          {"turning", &P::turning, kCoordinate, "rad/s",
           "How fast sprites, and meshes of particles without a spin, turn on as they age.", Without{"not at all"}},
+         {"black_body", &P::black_body, between(500.0, 20000.0), "K",
+          "Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as a white "
+          "surface in the sun.",
+          Without{"no light of their own"}},
          {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
           Without{"they keep their shape"}, &stretch_spec()},
          {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
@@ -256,7 +271,7 @@ void build_pictures(const SceneContext& context, SceneDescription& scene) {
     }
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"), scene.setup);
     if (!context.root().has("picture")) return;
-    scene.picture = picture_of(context, context.root().object("picture"), scene.setup.options.record_contacts);
+    scene.picture = picture_of(context, context.root().object("picture"), scene.setup);
 }
 
 }  // namespace ricochet::detail

@@ -16,9 +16,10 @@ packages_test=(libgtest-dev libbenchmark-dev pkgconf)
 packages_format=(clang-format)
 packages_tidy=(clang-tidy)
 packages_clang=(clang)
+packages_mpi=(libopenmpi-dev openmpi-bin) # runs that several processes share
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
 # Blender, which one of them uses too, is left to who wants it: half a gigabyte.
-packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv)
+packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv "${packages_mpi[@]}")
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.
 
@@ -32,6 +33,11 @@ missing_packages() {
     for name in "$@"; do
         package_installed "$name" || echo "$name"
     done
+}
+
+# packages_installed NAME...: true when all of them are.
+packages_installed() {
+    [[ -z "$(missing_packages "$@")" ]]
 }
 
 # apt COMMAND...: apt-get without questions, as root or through sudo.

@@ -17,7 +17,9 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupts.h"
+#include "cli/shared_run.h"
 #include "cli/terminal.h"
+#include "mpi/mpi_ranks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
@@ -75,7 +77,14 @@ int parse_and_run(int argc, char** argv) {
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(line.program(), exit_code);
     check_command(line, argc, argv);
-    if (const auto printed = line.parse(argc, argv, "ricochet --help lists commands and options")) return *printed;
+    try {
+        if (const auto printed = line.parse(argc, argv, "ricochet --help lists commands and options")) return *printed;
+    } catch (...) {
+        // Of processes that share a run one tells what is wrong.
+        if (argc < 2 || argv[1] != std::string_view("run")) throw;
+        if (const auto failed = cli::fail_together(std::current_exception())) return *failed;
+        throw;
+    }
     return exit_code;
 }
 
@@ -127,5 +136,7 @@ int main(int argc, char** argv) {
     std::set_terminate(ricochet::terminate);
     ricochet::cli::reserve_standard_streams();
     ricochet::cli::end_at_interrupts();
-    return ricochet::run(argc, argv);
+    const int exit_code = ricochet::run(argc, argv);
+    ricochet::mpi::end_process(exit_code);
+    return exit_code;
 }

@@ -1,9 +1,9 @@
 #include "cli/commands.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -20,11 +20,12 @@
 
 #include "cli/arguments.h"
 #include "cli/interrupts.h"
+#include "cli/run_messages.h"
 #include "cli/run_scene.h"
+#include "cli/shared_run.h"
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
-#include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/checkpoint.h"
 #include "ricochet/io/run_folder.h"
@@ -37,17 +38,8 @@ namespace {
 
 using cli::InterruptGuard;
 using cli::RunArguments;
+using cli::seconds_since;
 using Clock = std::chrono::steady_clock;
-
-// Not below 0: a clock may be put back under a run that goes on for days.
-double seconds_since(Clock::time_point start) {
-    return std::max(0.0, std::chrono::duration<double>(Clock::now() - start).count());
-}
-
-// Nothing where no time has passed.
-std::string rate_text(std::uint64_t count, double seconds) {
-    return seconds > 0.0 ? cli::short_number(static_cast<double>(count) / seconds) : "-";
-}
 
 Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     try {
@@ -85,47 +77,13 @@ void check_target(const std::string& target, const SceneDescription& scene, cons
     if (is_own && is_same_file(parent, folder)) refuse("is a file of the run");
 }
 
-// The progress line of a run. Steps cost more as particles are born, so the time left is told from the latest steps.
-class RunProgress {
-public:
-    RunProgress(bool quiet, cli::Progress progress) : line_(quiet, progress) {}
-
-    // output_share: of the run's time so far.
-    void show(const Simulation& simulation, double output_share) {
-        if (!line_.due()) return;
-        const double seconds = seconds_since(last_time_);
-        const auto steps = static_cast<double>(simulation.step_index() - last_step_);
-        const std::uint64_t moved = simulation.statistics().particle_steps - last_particle_steps_;
-        seconds_per_step_ =
-            seconds_per_step_ == 0.0 ? seconds / steps : 0.8 * seconds_per_step_ + 0.2 * seconds / steps;
-        last_time_ = Clock::now();
-        last_step_ = simulation.step_index();
-        last_particle_steps_ = simulation.statistics().particle_steps;
-        const auto left = static_cast<double>(simulation.step_count() - simulation.step_index());
-        line_.show(fmt::format(
-            "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {:.0f} % on output  {} left",
-            100.0 * static_cast<double>(simulation.step_index()) / static_cast<double>(simulation.step_count()),
-            simulation.step_index(), simulation.step_count(),
-            cli::short_number(static_cast<double>(simulation.particles().size())), rate_text(moved, seconds),
-            100.0 * std::min(output_share, 1.0), cli::duration_text(left * seconds_per_step_)));
-    }
-
-private:
-    cli::ProgressLine line_;
-    Clock::time_point last_time_ = Clock::now();
-    std::uint64_t last_step_ = 0;
-    std::uint64_t last_particle_steps_ = 0;
-    double seconds_per_step_ = 0.0;
-};
-
 // What a run needs to know while it goes on.
 struct RunPlan {
     OutputOptions output;
     std::uint64_t fingerprint = 0;
     double earlier_seconds = 0.0;  // wall time before it was resumed
     Clock::time_point start = Clock::now();
-    bool quiet = false;
-    cli::Progress progress = cli::Progress::automatic;
+    const cli::SharedRun* run = nullptr;
 
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
     // Of the time so far; the clock need not have moved.
@@ -169,19 +127,21 @@ private:
 // Steps to the end, to the end of the step in which a signal came (to its begin where it can be stopped), or to the one
 // that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
 // the guard lives from then on.
-std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& writer, const RunPlan& plan,
-                                          std::optional<InterruptGuard>& guard, LastState& last) {
-    RunProgress progress(plan.quiet, plan.progress);
-    writer.write_frame(simulation);
+std::optional<std::string> step_and_write(Simulation& simulation, std::optional<RunWriter>& writer, const RunPlan& plan,
+                                          cli::RunProgress& progress, std::optional<InterruptGuard>& guard,
+                                          LastState& last) {
+    simulation.show_whole(Shown::particles, [&] { writer->write_frame(simulation); });
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
         if (!guard) guard.emplace();
-        writer.add_step(simulation);
+        simulation.show_whole(Shown::contacts, [&] { writer->add_step(simulation); });
         last.keep(simulation);
-        progress.show(simulation, plan.share(writer.output_seconds()));
-        return InterruptGuard::signal() == 0;
+        const cli::RunCounts counts =
+            plan.run->after_step({simulation.particles().size(), simulation.statistics().particle_steps});
+        progress.show(simulation, counts, plan.share(writer ? writer->output_seconds() : 0.0));
+        return plan.run->signal() == 0;
     };
-    while (!simulation.finished() && InterruptGuard::signal() == 0) {
+    while (!simulation.finished() && plan.run->signal() == 0) {
         try {
             simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step,
                                [&] { return InterruptGuard::signal() == 0 || !last.has_any(); });
@@ -193,9 +153,10 @@ std::optional<std::string> step_and_write(Simulation& simulation, RunWriter& wri
         }
         const std::uint64_t step = simulation.step_index();
         if (step % plan.output.every != 0) continue;
-        writer.write_frame(simulation);
+        simulation.show_whole(Shown::particles, [&] { writer->write_frame(simulation); });
         if (plan.output.checkpoint_every == 0 || step - last_checkpoint < plan.output.checkpoint_every) continue;
-        writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
+        simulation.show_whole(Shown::all,
+                              [&] { writer->write_checkpoint(simulation, plan.fingerprint, plan.seconds()); });
         last_checkpoint = step;
     }
     return std::nullopt;
@@ -207,119 +168,12 @@ void leave_checkpoint(const Simulation& simulation, RunWriter& writer, const Run
     writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
 }
 
-/// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
-constexpr double kLargeOverlap = 0.05;
-
-// What makes results wrong or files incomplete: also where nothing else is told.
-void print_losses(const std::string& scene, const SimulationStatistics& statistics) {
-    const auto warn = [&scene](std::uint64_t count, const char* what) {
-        if (count > 0) cli::print(stderr, "ricochet: {}: warning: {}: {}\n", scene, what, count);
-    };
-    warn(statistics.frozen, "particles stopped because their state was not finite or absurdly large (frozen)");
-    warn(statistics.lost_impulses,
-         "impulses that are not in the totals of the collider files, since they have 6.7e7 N s and more along an axis, "
-         "beyond what a total can hold; the motion itself is right (lost_impulses)");
-    if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
-        cli::print(
-            stderr,
-            "ricochet: {}: warning: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
-            "simulation.time_step smaller, or radii and masses more alike\n",
-            scene, statistics.overlap_largest);
-    }
-}
-
-void print_notes(const SimulationStatistics& statistics) {
-    const auto warn = [](std::uint64_t count, const char* what) {
-        if (count > 0) cli::print("  note: {}: {}\n", what, count);
-    };
-    warn(statistics.springs_broken, "springs that broke (springs_broken)");
-    warn(statistics.springs_lost, "springs that lost a particle at an end (springs_lost)");
-    warn(statistics.unsolved_steps, "steps not solved to the tolerance by the implicit method (unsolved_steps)");
-    warn(statistics.budget_exhausted, "times that a particle spent its bounces of a step (budget_exhausted)");
-    warn(statistics.squeezed,
-         "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
-    warn(statistics.started_inside - statistics.started_in_overlap,
-         "points born exactly on a surface (started_inside)");
-    warn(statistics.started_in_overlap, "spheres born in overlap with a surface (started_in_overlap)");
-    warn(statistics.stayed, "impacts that left the particle where it was (stayed)");
-    warn(statistics.births_refused_by_depth, "births refused beyond max_depth (births_refused_by_depth)");
-    warn(statistics.births_refused_by_population,
-         "births refused beyond most_particles (births_refused_by_population)");
-    warn(statistics.births_refused_by_overlap,
-         "births refused, since no free position for the sphere was found (births_refused_by_overlap)");
-}
-
-void print_report(const RunSummary& summary, const std::string& output) {
-    const SimulationStatistics& statistics = summary.statistics;
-    cli::print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}\n", summary.scene, statistics.steps,
-               summary.simulated_time, summary.wall_seconds, summary.threads,
-               summary.threads == 1 ? "thread" : "threads",
-               summary.interrupted ? " (interrupted)"
-               : summary.diverged  ? " (diverged)"
-                                   : "");
-    cli::print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
-               statistics.emitted, summary.particles_alive, statistics.particle_steps,
-               rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
-               statistics.bounces_per_step_max);
-    print_notes(statistics);
-    if (summary.leaks) {
-        const bool all_judged = statistics.started_in_overlap == 0;
-        cli::print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
-                   summary.energy_violations.value_or(0),
-                   all_judged ? "" : "; overlaps from birth count once the sphere has been free");
-    }
-    if (summary.leaks && summary.spheres_meet) {
-        cli::print("  spheres on each other: {} violations, largest overlap {:.2g} of a radius\n",
-                   statistics.pair_violations, statistics.overlap_verified);
-    }
-    cli::print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
-}
-
-// Lists what a verified run found wrong. Returns whether there was anything.
-bool print_violations(const Simulation& simulation) {
-    const SimulationStatistics& statistics = simulation.statistics();
-    const auto lines = cli::violation_lines(
-        simulation.violations(), statistics.violations + statistics.energy_violations + statistics.pair_violations,
-        simulation.colliders());
-    for (const std::string& line : lines) cli::print(stderr, "{}\n", line);
-    return !lines.empty();
-}
-
-// Puts the simulation where the interrupted run in the folder has stopped.
-std::optional<Checkpoint> resume(const RunArguments& arguments, const OutputDirectory& folder, Simulation& simulation,
-                                 RunPlan& plan) {
-    if (!arguments.resume) return std::nullopt;
-    Checkpoint checkpoint = read_checkpoint(folder.path() / kCheckpointFile, plan.fingerprint, simulation);
-    folder.remove_after(simulation.step_index());
-    plan.earlier_seconds = checkpoint.wall_seconds;
-    if (!arguments.quiet) {
-        cli::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
-                   simulation.time());
-    }
-    return checkpoint;
-}
-
 SceneDescription scene_of(const RunArguments& arguments) {
     cli::SceneArguments wanted = arguments.scene;
     if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
     SceneDescription scene = cli::load_scene(wanted);
     scene.setup.options.verify = arguments.verify;
     return scene;
-}
-
-// Largest resident set of this process so far.
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;  // Linux counts in kilobytes
-}
-
-void complete(RunSummary& summary, const RunInfo& info, const RunPlan& plan) {
-    summary.version = info.version;
-    summary.scene = info.scene;
-    summary.threads = thread_count();
-    summary.peak_memory_bytes = peak_memory_bytes();
-    summary.wall_seconds = plan.seconds();
 }
 
 void add_options(cli::Command command, RunArguments& a) {
@@ -330,7 +184,7 @@ void add_options(cli::Command command, RunArguments& a) {
     command
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
         .type_name("FILE.csv");
-    command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
+    command.add_option("--threads", a.threads, "Worker threads of a process (default: all processors)").type_name("N");
     command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
         .type_name("exact|rollback|project|penalty");
     cli::add_progress_options(command, a.progress, a.quiet);
@@ -342,35 +196,97 @@ void add_options(cli::Command command, RunArguments& a) {
                      "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
 }
 
-}  // namespace
+// Everything that a run is made of. Where ranks share it, the first one alone has folder and writer.
+struct PreparedRun {
+    SceneDescription scene{};  // its setup is in the simulation
+    RunInfo info{};
+    RunPlan plan{};
+    Box3 region{};  // of the particles
+    cli::Progress progress = cli::Progress::automatic;
+    std::optional<ThreadLimit> limit{};
+    std::optional<LastState> last{};
+    std::optional<Simulation> simulation{};
+    std::optional<OutputDirectory> folder{};
+    std::optional<RunWriter> writer{};
+};
 
-int cli::run_scene(const RunArguments& arguments) {
-    const ThreadLimit limit(cli::parse_thread_count(arguments.threads));
-    const Progress progress = parse_progress(arguments.progress);
-    SceneDescription scene = scene_of(arguments);
+// What can be said before a file of the folder is touched.
+void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
+    prepared.progress = cli::parse_progress(arguments.progress);
+    prepared.limit.emplace(run.threads_for(cli::parse_thread_count(arguments.threads)));
+    SceneDescription& scene = prepared.scene = scene_of(arguments);
     check_target(arguments.output_state, scene, arguments.output);
-    RunInfo info = run_info_of(scene);
-    info.version = RICOCHET_VERSION;
-    const Box3 region = particle_region(scene.setup);
+    prepared.info = run_info_of(scene);
+    prepared.info.version = RICOCHET_VERSION;
+    prepared.region = particle_region(scene.setup);
+    prepared.plan = RunPlan{.output = scene.output, .fingerprint = scene.fingerprint, .run = &run};
     const Vec3 fall = uniform_acceleration(scene.setup);
-    LastState last(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
-    Simulation simulation = make_simulation(std::move(scene.setup), scene.file);
-    std::vector<std::string> warnings = simulation.warnings();
-    std::ranges::move(pair_method_warnings(simulation, fall), std::back_inserter(warnings));
+    prepared.last.emplace(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
+    scene.setup.ranks = run.ranks();
+    prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
+    std::vector<std::string> warnings = prepared.simulation->warnings();
+    std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));
     for (const std::string& warning : warnings) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
     }
+}
+
+void open_folder(const RunArguments& arguments, PreparedRun& prepared) {
+    if (!prepared.plan.run->talks()) return;
     using Earlier = OutputDirectory::Earlier;
-    const OutputDirectory folder(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
+    prepared.folder.emplace(arguments.output, arguments.resume ? Earlier::keep : Earlier::remove);
     check_writable(arguments.output_state);
-    RunPlan plan{
-        .output = scene.output, .fingerprint = scene.fingerprint, .quiet = arguments.quiet, .progress = progress};
-    const std::optional<Checkpoint> resumed = resume(arguments, folder, simulation, plan);
-    RunWriter writer(folder.path(), info, simulation, region, resumed);
-    std::optional<InterruptGuard> guard;
-    const auto diverged = step_and_write(simulation, writer, plan, guard, last);
+}
+
+// Puts the simulation where the interrupted run in the folder has stopped.
+std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& prepared) {
+    if (!arguments.resume) return std::nullopt;
+    Simulation& simulation = *prepared.simulation;
+    Checkpoint checkpoint = read_checkpoint(std::filesystem::path(arguments.output) / kCheckpointFile,
+                                            prepared.plan.fingerprint, simulation);
+    if (prepared.folder) prepared.folder->remove_after(simulation.step_index());
+    prepared.plan.earlier_seconds = checkpoint.wall_seconds;
+    if (!arguments.quiet) {
+        cli::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
+                   simulation.time());
+    }
+    return checkpoint;
+}
+
+// Once the folder is this run's: no other one changes its checkpoint. Returns what must be the same on all ranks.
+std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& prepared) {
+    const std::optional<Checkpoint> resumed = resume(arguments, prepared);
+    const Simulation& simulation = *prepared.simulation;
+    if (prepared.folder) {
+        prepared.writer.emplace(prepared.folder->path(), prepared.info, simulation, prepared.region, resumed);
+    }
+    const RunPlan& plan = prepared.plan;
+    return {plan.fingerprint,
+            plan.output.every,
+            plan.output.checkpoint_every,
+            std::uint64_t{simulation.options().record_contacts},
+            simulation.step_count(),
+            simulation.step_index(),
+            std::bit_cast<std::uint64_t>(resumed ? resumed->wall_seconds : 0.0),
+            std::bit_cast<std::uint64_t>(resumed ? resumed->output_seconds : 0.0)};
+}
+
+// All of it; the exit code where another process could not do its part.
+std::optional<int> prepare_together(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
+    if (const auto failed = run.together([&] { prepare(arguments, run, prepared); })) return failed;
+    if (const auto failed = run.together([&] { open_folder(arguments, prepared); })) return failed;
+    std::vector<std::uint64_t> alike;
+    if (const auto failed = run.together([&] { alike = begin(arguments, prepared); })) return failed;
+    return run.require_alike(alike);
+}
+
+// The last files, of the whole run.
+RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, const cli::RunResources& of_others,
+                         const std::optional<std::string>& diverged) {
+    Simulation& simulation = *prepared.simulation;
+    RunWriter& writer = *prepared.writer;
     const bool is_interrupted = !simulation.finished() && !diverged;
-    if (is_interrupted) leave_checkpoint(simulation, writer, plan);
+    if (is_interrupted) leave_checkpoint(simulation, writer, prepared.plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
         const Clock::time_point start = Clock::now();
@@ -378,22 +294,56 @@ int cli::run_scene(const RunArguments& arguments) {
                         simulation.time());
         summary.output_seconds += seconds_since(start);
     }
-    complete(summary, info, plan);
+    summary.version = prepared.info.version;
+    summary.scene = prepared.info.scene;
+    const cli::RunResources here = cli::RunResources::of_this_process();
+    summary.processes = of_others.processes + here.processes;
+    summary.threads = static_cast<int>(of_others.threads + here.threads);
+    summary.peak_memory_bytes = of_others.peak_memory_bytes + here.peak_memory_bytes;
+    summary.wall_seconds = prepared.plan.seconds();
     summary.interrupted = is_interrupted;
     writer.write_summary(summary);
     // Only now: until all is on disk the run can go on from there.
     if (!diverged && !is_interrupted) writer.remove_checkpoint();
-    if (!arguments.quiet) print_report(summary, arguments.output);
-    print_losses(summary.scene, summary.statistics);
-    if (diverged) throw RunError(fmt::format("{}: {}", info.scene, *diverged));
-    if (print_violations(simulation)) return 1;
-    return summary.interrupted ? cli::kSignalled + InterruptGuard::signal() : 0;
+    return summary;
+}
+
+// Says how the run has ended, where this process talks, and returns the exit code. Throws RunError where it has
+// diverged.
+int report(const RunArguments& arguments, const Simulation& simulation, const std::optional<RunSummary>& summary,
+           const std::optional<std::string>& diverged, int signal) {
+    if (summary && !arguments.quiet) cli::print_report(*summary, arguments.output);
+    if (summary) cli::print_losses(summary->scene, summary->statistics);
+    if (summary && diverged) throw RunError(fmt::format("{}: {}", summary->scene, *diverged));
+    if (diverged || cli::print_violations(simulation)) return 1;
+    return simulation.finished() ? 0 : cli::kSignalled + signal;
+}
+
+}  // namespace
+
+int cli::run_scene(const RunArguments& arguments) {
+    const SharedRun run(arguments.shared ? SharedRun::With::launched : SharedRun::With::nobody);
+    PreparedRun prepared;
+    if (const auto failed = prepare_together(arguments, run, prepared)) return *failed;
+    Simulation& simulation = *prepared.simulation;
+    std::optional<InterruptGuard> guard;
+    std::optional<std::string> diverged;
+    {
+        RunProgress progress(arguments.quiet, run.talks() ? prepared.progress : Progress::never);
+        diverged = step_and_write(simulation, prepared.writer, prepared.plan, progress, guard, *prepared.last);
+    }
+    const RunResources of_others = run.resources_of_others();
+    std::optional<RunSummary> summary;
+    simulation.show_whole(Shown::all, [&] { summary = write_the_end(arguments, prepared, of_others, diverged); });
+    run.end();
+    return report(arguments, simulation, summary, diverged, run.signal());
 }
 
 void add_run_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<RunArguments>();
     cli::Command command = program.add_command("run", "Simulate a scene; write frames and a summary");
     add_options(command, *arguments);
+    arguments->shared = true;
     command.on_call([arguments, &exit_code] { exit_code = cli::run_scene(*arguments); });
 }
 

@@ -19,6 +19,7 @@ struct RunArguments {
     bool quiet = false;
     bool resume = false;
     bool verify = false;
+    bool shared = false;  ///< with the processes that mpirun has started beside this one, if it has
 };
 
 /// Runs the scene, writes its folder and reports. Returns the exit code: 0, 1 after violations, 128 + signal. Throws

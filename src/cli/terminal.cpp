@@ -12,6 +12,14 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet::cli {
+namespace {
+
+bool silent = false;
+
+}  // namespace
+
+void be_silent(bool is_to_be) { silent = is_to_be; }
+bool is_silent() { return silent; }
 
 void reserve_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -21,6 +29,7 @@ void reserve_standard_streams() {
 }
 
 void print_table(std::vector<std::vector<std::string>> table) {
+    if (is_silent()) return;
     for (auto& row : table) {
         for (std::string& cell : row) cell = printable(cell);
     }

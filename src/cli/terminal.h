@@ -22,6 +22,10 @@ namespace ricochet::cli {
 
 // Text on a terminal.
 
+/// Of the processes that share a run one talks: the others are silent until they have an error to tell.
+void be_silent(bool silent);
+[[nodiscard]] bool is_silent();
+
 /// What print() shows of an argument.
 template <class T>
 using Printed = std::conditional_t<std::is_convertible_v<const T&, std::string_view>, std::string, std::decay_t<T>>;
@@ -35,9 +39,10 @@ template <class T>
 }
 
 /// Prints as fmt::print() does, with all texts among the arguments as printable() makes them: they may be a stranger's.
-/// What the file does not take is lost; std::ferror() tells.
+/// What the file does not take is lost; std::ferror() tells. Nothing while be_silent() holds.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Printed<Args>...> format, const Args&... args) {
+    if (is_silent()) return;
     (void)std::fputs(fmt::format(format, printed(args)...).c_str(), file);
 }
 template <class... Args>

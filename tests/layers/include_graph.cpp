@@ -31,11 +31,12 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         {"generators", {"core", "geometry"}},  // the mesh generator's library
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
+        {"mpi", {"core"}},
         {"page", {"core", "geometry", "dynamics", "io", "render"}},
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
          {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare",
-          "bench", "page"}},
+          "bench", "mpi", "page"}},
     };
     return table;
 }
@@ -69,6 +70,7 @@ constexpr std::array kDoors = {
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // its print() checks formats as fmt does
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
     Door{"zlib\\.h", "src/page/packing\\.cpp|tests/page/.*\\.cpp"},
+    Door{"(mpi|sched)\\.h", "src/mpi/mpi_ranks\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
     Door{"(pybind11/|Python\\.h)", "src/python/.*"},
@@ -88,6 +90,7 @@ std::optional<std::string> layer_of(const std::string& path) {
     if (path == kUmbrella) return std::nullopt;
     if (path.starts_with("src/cli/")) return "cli";
     if (path.starts_with("src/bench/")) return "bench";
+    if (path.starts_with("src/mpi/")) return "mpi";
     if (path.starts_with("src/page/")) return "page";
     if (path.starts_with("src/python/")) return "python";
     if (path.starts_with("meshes/generators/")) return "generators";

@@ -294,6 +294,7 @@ std::string summary_text(const RunSummary& summary) {
     Json json;
     json["version"] = summary.version;
     json["scene"] = summary.scene;
+    if (summary.processes > 1) json["processes"] = summary.processes;
     json["threads"] = summary.threads;
     json["response"] = summary.response;
     json["seed"] = summary.seed;

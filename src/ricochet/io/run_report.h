@@ -65,10 +65,11 @@ struct ColliderSummary {
 
 /// Everything that summary.json says.
 struct RunSummary {
-    std::string version;  ///< of ricochet
-    std::string scene;    ///< the scene file as it was named
-    int threads = 0;
-    std::string response;  ///< by which impacts were answered
+    std::string version;          ///< of ricochet
+    std::string scene;            ///< the scene file as it was named
+    std::uint64_t processes = 1;  ///< that shared the run
+    int threads = 0;              ///< of all of them together
+    std::string response;         ///< by which impacts were answered
     std::uint64_t seed = 0;
     double time_step = 0.0;       ///< s
     double simulated_time = 0.0;  ///< s
@@ -85,7 +86,7 @@ struct RunSummary {
     double kinetic_energy = 0.0;                     ///< J
     std::optional<double> potential_energy;          ///< J; nothing where a force has no potential
     std::uint64_t state_hash = 0;
-    std::uint64_t peak_memory_bytes = 0;
+    std::uint64_t peak_memory_bytes = 0;  ///< of all processes, each at its peak
     std::vector<ColliderSummary> colliders;
     std::vector<BodyState> bodies;  ///< that impulses move, at the end
 };

@@ -1,0 +1,116 @@
+#include "cli/run_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "ricochet/core/hash.h"
+
+namespace ricochet::cli {
+namespace {
+
+// Nothing where no time has passed.
+std::string rate_text(std::uint64_t count, double seconds) {
+    return seconds > 0.0 ? short_number(static_cast<double>(count) / seconds) : "-";
+}
+
+/// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
+constexpr double kLargeOverlap = 0.05;
+
+void print_notes(const SimulationStatistics& statistics) {
+    const auto warn = [](std::uint64_t count, const char* what) {
+        if (count > 0) print("  note: {}: {}\n", what, count);
+    };
+    warn(statistics.springs_broken, "springs that broke (springs_broken)");
+    warn(statistics.springs_lost, "springs that lost a particle at an end (springs_lost)");
+    warn(statistics.unsolved_steps, "steps not solved to the tolerance by the implicit method (unsolved_steps)");
+    warn(statistics.budget_exhausted, "times that a particle spent its bounces of a step (budget_exhausted)");
+    warn(statistics.squeezed,
+         "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
+    warn(statistics.started_inside - statistics.started_in_overlap,
+         "points born exactly on a surface (started_inside)");
+    warn(statistics.started_in_overlap, "spheres born in overlap with a surface (started_in_overlap)");
+    warn(statistics.stayed, "impacts that left the particle where it was (stayed)");
+    warn(statistics.births_refused_by_depth, "births refused beyond max_depth (births_refused_by_depth)");
+    warn(statistics.births_refused_by_population,
+         "births refused beyond most_particles (births_refused_by_population)");
+    warn(statistics.births_refused_by_overlap,
+         "births refused, since no free position for the sphere was found (births_refused_by_overlap)");
+}
+
+}  // namespace
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::max(0.0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+void RunProgress::show(const Simulation& simulation, const RunCounts& counts, double output_share) {
+    if (!line_.due()) return;
+    const double seconds = seconds_since(last_time_);
+    const auto steps = static_cast<double>(simulation.step_index() - last_step_);
+    const std::uint64_t moved = counts.particle_steps - last_particle_steps_;
+    seconds_per_step_ = seconds_per_step_ == 0.0 ? seconds / steps : 0.8 * seconds_per_step_ + 0.2 * seconds / steps;
+    last_time_ = Clock::now();
+    last_step_ = simulation.step_index();
+    last_particle_steps_ = counts.particle_steps;
+    const auto left = static_cast<double>(simulation.step_count() - simulation.step_index());
+    line_.show(fmt::format(
+        "{:3.0f} %  step {} of {}  {} particles  {} particle-steps/s  {:.0f} % on output  {} left",
+        100.0 * static_cast<double>(simulation.step_index()) / static_cast<double>(simulation.step_count()),
+        simulation.step_index(), simulation.step_count(), short_number(static_cast<double>(counts.particles)),
+        rate_text(moved, seconds), 100.0 * std::min(output_share, 1.0), duration_text(left * seconds_per_step_)));
+}
+
+void print_losses(const std::string& scene, const SimulationStatistics& statistics) {
+    const auto warn = [&scene](std::uint64_t count, const char* what) {
+        if (count > 0) print(stderr, "ricochet: {}: warning: {}: {}\n", scene, what, count);
+    };
+    warn(statistics.frozen, "particles stopped because their state was not finite or absurdly large (frozen)");
+    warn(statistics.lost_impulses,
+         "impulses that are not in the totals of the collider files, since they have 6.7e7 N s and more along an axis, "
+         "beyond what a total can hold; the motion itself is right (lost_impulses)");
+    if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
+        print(stderr,
+              "ricochet: {}: warning: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
+              "simulation.time_step smaller, or radii and masses more alike\n",
+              scene, statistics.overlap_largest);
+    }
+}
+
+void print_report(const RunSummary& summary, const std::string& output) {
+    const SimulationStatistics& statistics = summary.statistics;
+    const std::string end = summary.interrupted ? " (interrupted)" : summary.diverged ? " (diverged)" : "";
+    const std::string processes = summary.processes > 1 ? fmt::format(" of {} processes", summary.processes) : "";
+    print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}{}\n", summary.scene, statistics.steps,
+          summary.simulated_time, summary.wall_seconds, summary.threads, summary.threads == 1 ? "thread" : "threads",
+          processes, end);
+    print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
+          statistics.emitted, summary.particles_alive, statistics.particle_steps,
+          rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
+          statistics.bounces_per_step_max);
+    print_notes(statistics);
+    if (summary.leaks) {
+        const bool all_judged = statistics.started_in_overlap == 0;
+        print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,
+              summary.energy_violations.value_or(0),
+              all_judged ? "" : "; overlaps from birth count once the sphere has been free");
+    }
+    if (summary.leaks && summary.spheres_meet) {
+        print("  spheres on each other: {} violations, largest overlap {:.2g} of a radius\n",
+              statistics.pair_violations, statistics.overlap_verified);
+    }
+    print("  state {} {:016x}; {} frames in {}\n", StateHash::kName, summary.state_hash, summary.frames, output);
+}
+
+bool print_violations(const Simulation& simulation) {
+    const SimulationStatistics& statistics = simulation.statistics();
+    const auto lines = violation_lines(
+        simulation.violations(), statistics.violations + statistics.energy_violations + statistics.pair_violations,
+        simulation.colliders());
+    for (const std::string& line : lines) print(stderr, "{}\n", line);
+    return !lines.empty();
+}
+
+}  // namespace ricochet::cli

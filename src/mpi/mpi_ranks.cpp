@@ -1,0 +1,161 @@
+#include "mpi/mpi_ranks.h"
+
+#include <mpi.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "mpi/launch.h"
+
+namespace ricochet::mpi {
+namespace {
+
+/// Counts of MPI are ints: longer messages go in pieces.
+constexpr std::size_t kPiece = std::size_t{1} << 30U;
+
+bool joined = false;
+bool agreed = false;  // to end
+
+/// How long a rank waits for others with a processor of its own; as long as talk takes where all are ready.
+constexpr std::chrono::microseconds kSpin{100};
+/// From then on it looks so often, and leaves the processor to those that it waits for.
+constexpr std::chrono::microseconds kPause{50};
+
+/// MPI's own waiting takes all of a processor or, with more ranks than those, loses it to others for whole time slices.
+void wait_for(MPI_Request& request) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int is_done = 0;;) {
+        MPI_Test(&request, &is_done, MPI_STATUS_IGNORE);
+        if (is_done != 0) return;
+        if (std::chrono::steady_clock::now() - begin > kSpin) std::this_thread::sleep_for(kPause);
+    }
+}
+
+class MpiRanks final : public Ranks {
+public:
+    MpiRanks(int rank, int size) : rank_(rank), size_(size) {}
+
+    [[nodiscard]] std::size_t rank() const override { return static_cast<std::size_t>(rank_); }
+    [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(size_); }
+    void sum(std::span<std::uint64_t> values) override { reduce(values, MPI_SUM); }
+    void least(std::span<std::uint64_t> values) override { reduce(values, MPI_MIN); }
+
+    [[nodiscard]] std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override {
+        const std::vector<std::uint64_t> sizes = sizes_of_all(bytes.size());
+        if (rank_ != 0) {
+            for_pieces(bytes.size(), [&](std::size_t first, int count) {
+                MPI_Request request = MPI_REQUEST_NULL;
+                MPI_Isend(bytes.data() + first, count, MPI_BYTE, 0, 0, MPI_COMM_WORLD, &request);
+                wait_for(request);
+            });
+            return {};
+        }
+        std::vector<std::vector<std::byte>> all{{bytes.begin(), bytes.end()}};
+        for (int from = 1; from < size_; ++from) {
+            std::vector<std::byte>& part = all.emplace_back(sizes[static_cast<std::size_t>(from)]);
+            for_pieces(part.size(), [&](std::size_t first, int count) {
+                MPI_Request request = MPI_REQUEST_NULL;
+                MPI_Irecv(part.data() + first, count, MPI_BYTE, from, 0, MPI_COMM_WORLD, &request);
+                wait_for(request);
+            });
+        }
+        return all;
+    }
+
+    [[nodiscard]] std::vector<std::vector<std::byte>> gather_to_all(std::span<const std::byte> bytes) override {
+        const std::vector<std::uint64_t> sizes = sizes_of_all(bytes.size());
+        std::vector<std::vector<std::byte>> all;
+        for (int from = 0; from < size_; ++from) {
+            std::vector<std::byte>& part = all.emplace_back(sizes[static_cast<std::size_t>(from)]);
+            if (from == rank_) std::copy(bytes.begin(), bytes.end(), part.begin());
+            for_pieces(part.size(), [&](std::size_t first, int count) {
+                MPI_Request request = MPI_REQUEST_NULL;
+                MPI_Ibcast(part.data() + first, count, MPI_BYTE, from, MPI_COMM_WORLD, &request);
+                wait_for(request);
+            });
+        }
+        return all;
+    }
+
+private:
+    static void reduce(std::span<std::uint64_t> values, MPI_Op how) {
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T, how, MPI_COMM_WORLD,
+                       &request);
+        wait_for(request);
+    }
+    [[nodiscard]] std::vector<std::uint64_t> sizes_of_all(std::size_t mine) const {
+        const std::uint64_t own = mine;
+        std::vector<std::uint64_t> sizes(size());
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Iallgather(&own, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD, &request);
+        wait_for(request);
+        return sizes;
+    }
+    template <class Visit>
+    static void for_pieces(std::size_t size, const Visit& visit) {
+        for (std::size_t first = 0; first < size; first += kPiece) {
+            visit(first, static_cast<int>(std::min(kPiece, size - first)));
+        }
+    }
+
+    int rank_;
+    int size_;
+};
+
+}  // namespace
+
+std::shared_ptr<Ranks> join() {
+    if (!was_launched()) return nullptr;
+    // It is wait_for() that gives way.
+    (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    joined = true;
+    int rank = 0;
+    int size = 1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    return std::make_shared<MpiRanks>(rank, size);
+}
+
+bool has_joined() { return joined; }
+
+// Ranks that mpirun binds to processors of their own share none; those that it does not bind share all of the machine.
+std::size_t ranks_on_these_processors() {
+    if (!joined) return 1;
+    MPI_Comm here = MPI_COMM_NULL;
+    int count = 1;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Comm_size(here, &count);
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    (void)::sched_getaffinity(0, sizeof own, &own);
+    std::vector<cpu_set_t> all(static_cast<std::size_t>(count));
+    MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, here);
+    MPI_Comm_free(&here);
+    const auto sharing = std::count_if(all.begin(), all.end(), [&own](const cpu_set_t& other) {
+        cpu_set_t common;
+        CPU_AND(&common, &own, &other);
+        return CPU_COUNT(&common) > 0;
+    });
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, sharing));
+}
+
+void agree_to_end() { agreed = true; }
+
+void end_process(int exit_code) {
+    if (!joined) return;
+    (void)std::fflush(nullptr);
+    if (!agreed) MPI_Abort(MPI_COMM_WORLD, exit_code);
+    MPI_Finalize();
+}
+
+}  // namespace ricochet::mpi

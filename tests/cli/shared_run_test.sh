@@ -1,0 +1,163 @@
+#!/usr/bin/env bash
+# Runs that several processes share, started by mpirun: the bits of one process, resumed by more and by fewer; what ends
+# one of them ends all, with one line, and leaves what a resumed run needs; what cannot be shared is refused.
+# shared_run_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS
+set -euo pipefail
+ricochet="$1"
+mpirun="$2"
+scenes="$3"
+folder="$4"
+kills="$5"
+# As root, on fewer processors than ranks, and in containers, which do not let processes read each other's memory. The
+# second line is for the fifth release.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
+export PRTE_ALLOW_RUN_AS_ROOT=1 PRTE_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+fail() {
+    echo "FAILED: $1"
+    exit 1
+}
+
+# ranks N ARGUMENTS...: a run by N processes of one thread each, which leave their process ids in FOLDER/pid.RANK.
+ranks() {
+    # shellcheck disable=SC2016  # the ranks fill these in
+    "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
+        "$folder" "$ricochet" run "${@:2}" --threads 1 --quiet
+}
+
+# expect_end NAME CODE WORDS: `code` and NAME.out are of a run that has ended with this exit code and one line of ours.
+expect_end() {
+    ((code == $2)) || fail "$1: exit code $code, expected $2: $(cat "$folder/$1.out")"
+    (($(grep -c '^ricochet: ' "$folder/$1.out") == 1)) || fail "$1: not one line: $(cat "$folder/$1.out")"
+    grep -q "^ricochet: .*$3" "$folder/$1.out" || fail "$1: not '$3': $(cat "$folder/$1.out")"
+}
+
+# What does not depend on the time it took, nor on who did it.
+summary_of() {
+    grep -vE '"(wall_seconds|output_seconds|processes|threads|peak_memory_bytes)"' "$folder/$1/summary.json" ||
+        fail "$1 has no summary"
+}
+
+# same_run A B: summaries and all files are the same, byte by byte.
+same_run() {
+    local file
+    diff <(summary_of "$1") <(summary_of "$2") || fail "$2 has another summary than $1"
+    diff <(ls -A "$folder/$1") <(ls -A "$folder/$2") || fail "$2 has other files than $1"
+    for file in "$folder/$1"/*; do
+        if [[ "$file" == */summary.json ]]; then continue; fi
+        cmp "$file" "$folder/$2/$(basename "$file")" || fail "$2 has another $(basename "$file")"
+    done
+    cmp "$folder/$1.csv" "$folder/$2.csv" || fail "$2 ends in another state than $1"
+}
+
+# same_checkpoint A B: but for the seconds spent (16 bytes after the first 16) and the check sum over all (the last 8).
+same_checkpoint() {
+    local name
+    for name in "$1" "$2"; do
+        tail -c +33 "$folder/$name/checkpoint.bin" | head -c -8 >"$folder/$name.state"
+    done
+    cmp "$folder/$1.state" "$folder/$2.state" || fail "$2 has another checkpoint than $1"
+}
+
+# Waits until run `run` has written that many frames into the folder, or has ended.
+wait_for_frames() {
+    until (($(compgen -G "$folder/$1/particles_*.vtp" | wc -l) >= $2)) || ! kill -0 "$run" 2>/dev/null; do
+        sleep 0.02
+    done
+}
+
+rm -rf "$folder"
+mkdir -p "$folder"
+
+# Emitters, children that are born at impacts and as trails, and the loads of colliders that move.
+for scene in fountain shattering bouncing_table; do
+    cut=(--set simulation.duration=0.6 --set output.contacts=true)
+    "$ricochet" run "$scenes/$scene.json" --output "$folder/$scene" --output-state "$folder/$scene.csv" "${cut[@]}" --quiet
+    for count in 1 2 3; do
+        ranks "$count" "$scenes/$scene.json" --output "$folder/$scene-$count" \
+            --output-state "$folder/$scene-$count.csv" "${cut[@]}"
+        same_run "$scene" "$scene-$count"
+    done
+done
+
+# A folder in the place of a frame ends the run when that frame is due. What is there goes on with other ranks.
+scene="$scenes/shattering.json"
+cut=(--set simulation.duration=1.2 --set output.every=10 --set output.checkpoint_every=20 --set output.contacts=true)
+"$ricochet" run "$scene" --output "$folder/whole" --output-state "$folder/whole.csv" "${cut[@]}" --quiet
+for count in 1 4; do
+    "$ricochet" run "$scene" --output "$folder/stopped-$count" --set simulation.duration=0.01 --quiet
+    mkdir -p "$folder/stopped-$count/particles_000090.vtp/obstacle"
+    code=0
+    ranks "$count" "$scene" --output "$folder/stopped-$count" "${cut[@]}" >"$folder/stopped-$count.out" 2>&1 || code=$?
+    expect_end "stopped-$count" 2 'particles_000090.vtp: not a regular file'
+done
+same_checkpoint stopped-1 stopped-4
+rm -r "$folder/stopped-4/particles_000090.vtp"
+mkdir -p "$folder/stopped-4/particles_000170.vtp/obstacle"
+code=0
+ranks 2 "$scene" --output "$folder/stopped-4" --resume "${cut[@]}" >"$folder/stopped-4.out" 2>&1 || code=$?
+expect_end stopped-4 2 'particles_000170.vtp: not a regular file'
+rm -r "$folder/stopped-4/particles_000170.vtp"
+ranks 3 "$scene" --output "$folder/stopped-4" --output-state "$folder/stopped-4.csv" --resume "${cut[@]}"
+same_run whole stopped-4
+
+# Processes are lost, one after the other; others go on from the checkpoint.
+cut=(--set "simulation.duration=$((2 + kills / 4))" --set output.every=5 --set output.checkpoint_every=5)
+scene="$scenes/fountain.json"
+"$ricochet" run "$scene" --output "$folder/alone" --output-state "$folder/alone.csv" "${cut[@]}" --quiet
+resume=()
+for ((k = 0; k < kills; ++k)); do
+    frames="$(compgen -G "$folder/killed/particles_*.vtp" | wc -l || true)"
+    ranks 3 "$scene" --output "$folder/killed" "${resume[@]}" "${cut[@]}" >"$folder/killed.out" 2>&1 &
+    run=$!
+    wait_for_frames killed "$((frames + 2 + k % 5))"
+    kill -0 "$run" 2>/dev/null || break # it was too fast
+    kill -9 "$(cat "$folder/pid.$((k % 3))")"
+    code=0
+    wait "$run" || code=$?
+    ((code != 0)) || fail "a run that lost a process ended with 0"
+    [[ ! -e "$folder/killed/summary.json" ]] || fail "a run that lost a process has a summary"
+    if [[ -f "$folder/killed/checkpoint.bin" ]]; then resume=(--resume); fi
+done
+echo "processes killed: $k"
+((k > 0)) || fail "no process was killed"
+ranks 2 "$scene" --output "$folder/killed" --output-state "$folder/killed.csv" "${resume[@]}" "${cut[@]}"
+same_run alone killed
+
+# A signal to one of them ends all after the same step, with a checkpoint. Meanwhile nobody else gets the folder.
+ranks 3 "$scene" --output "$folder/signal" --set simulation.duration=1000 >"$folder/signal.out" 2>&1 &
+run=$!
+wait_for_frames signal 3
+pid="$(cat "$folder/pid.1")"
+code=0
+ranks 2 "$scene" --output "$folder/signal" >"$folder/locked.out" 2>&1 || code=$?
+expect_end locked 1 'another run is writing into this folder'
+kill -TERM "$pid" || fail "the run ended early: $(cat "$folder/signal.out")"
+code=0
+wait "$run" || code=$?
+((code == 143)) || fail "a signal to one process: exit code $code, expected 143: $(cat "$folder/signal.out")"
+grep -q '"interrupted": true' "$folder/signal/summary.json" || fail "the summary does not say that it was interrupted"
+[[ -f "$folder/signal/checkpoint.bin" ]] || fail "a run that was ended by a signal has no checkpoint"
+
+# Wrong input is told once, also where it is another one's.
+refuse() {
+    code=0
+    ranks 3 "${@:3}" --output "$folder/refused" >"$folder/$1.out" 2>&1 || code=$?
+    expect_end "$1" 2 "$2"
+}
+refuse missing 'there is no file' "$folder/missing.json"
+refuse option 'not expected: --bogus' "$scene" --bogus
+refuse springs 'springs: ranks: found 3, expected 1' "$scenes/rope_and_cloth.json"
+refuse spheres 'particle_contacts: ranks: found 3, expected 1' "$scenes/granular_gas.json"
+refuse forces 'particle_forces: ranks: found 3, expected 1' "$scenes/galaxy.json"
+refuse bodies 'bodies: ranks: found 3, expected 1' "$scenes/turbine.json"
+refuse response 'response: ranks: found 3, expected 1' "$scene" --response penalty
+refuse verify 'verify: ranks: found 3, expected 1' "$scene" --verify
+[[ ! -e "$folder/refused" ]] || fail "what was refused has left a folder"
+code=0
+# shellcheck disable=SC2016
+"$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 2 bash -c \
+    'exec "$0" run "$1" --output "$2" --set simulation.duration=0.$((1 + OMPI_COMM_WORLD_RANK)) --quiet' \
+    "$ricochet" "$scene" "$folder/different" >"$folder/different.out" 2>&1 || code=$?
+expect_end different 2 'the 2 processes have found different scenes'
+echo "passed"

@@ -25,7 +25,8 @@ void print_notes(const SimulationStatistics& statistics) {
     };
     warn(statistics.springs_broken, "springs that broke (springs_broken)");
     warn(statistics.springs_lost, "springs that lost a particle at an end (springs_lost)");
-    warn(statistics.unsolved_steps, "steps not solved to the tolerance by the implicit method (unsolved_steps)");
+    warn(statistics.unsolved_steps,
+         "steps of the implicit method, or of spheres in contact, not solved to the tolerance (unsolved_steps)");
     warn(statistics.budget_exhausted, "times that a particle spent its bounces of a step (budget_exhausted)");
     warn(statistics.squeezed,
          "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
@@ -74,7 +75,7 @@ void print_losses(const std::string& scene, const SimulationStatistics& statisti
     if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
         print(stderr,
               "ricochet: {}: warning: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
-              "simulation.time_step smaller, or radii and masses more alike\n",
+              "simulation.time_step smaller, radii and masses more alike, or room where surfaces press on them\n",
               scene, statistics.overlap_largest);
     }
 }

@@ -160,6 +160,37 @@ TEST(DenseAmongMovers, ABeltGivesSpheresTwoSeventhsOfItsSpeed) {
     }
 }
 
+/// A straight column between plates that close on it faster than it can part, and one sphere alone.
+SimulationSetup pressed_setup(int count) {
+    SimulationSetup setup = moving_setup(0.25, steady({0, 0, -0.1}), 0.3);
+    const double top = 2.0 * kRadius * count + 0.005;
+    setup.colliders = {{"low", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0},
+                       {"high", PlaneShape{{0, 0, top}, {0, 0, -1}}, 0, "mover"}};
+    for (int k = 0; k < count; ++k) setup.particles.push_back(grain({0, 0, kRadius * (2 * k + 1)}));
+    return setup;
+}
+
+TEST(DenseAmongMovers, WhatAPressLeavesNoRoomIsGivenNoMoreThanItsSpeed) {
+    Simulation simulation(pressed_setup(1));
+    run(simulation);
+    EXPECT_GT(simulation.statistics().squeezed, 0U);
+    EXPECT_EQ(simulation.statistics().lost_impulses, 0U);
+    const double most = simulation.particles().mass[0] * (0.1 + 1e-3 * kG) * 250.0;  // in 250 steps
+    for (const std::size_t plate : {0U, 1U}) EXPECT_LT(length(simulation.collider_totals()[plate].impulse), 4.0 * most);
+}
+
+/// Its spheres are pressed into each other, which is counted; they part by no more than 0.01 of a radius a step.
+TEST(DenseAmongMovers, AColumnUnderAPressIsNotThrown) {
+    Simulation simulation(pressed_setup(5));
+    while (!simulation.finished()) {
+        simulation.step();
+        for (const Vec3& v : simulation.particles().velocity) ASSERT_LT(length(v), 0.5);
+    }
+    EXPECT_GT(simulation.statistics().unsolved_steps, 0U);
+    EXPECT_GT(simulation.statistics().overlap_largest, 0.05);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+}
+
 /// A press that closes on what fills it has nowhere to put it: clocks stand still, nothing goes through.
 TEST(DenseAmongMovers, APressLetsNothingThrough) {
     SimulationSetup setup = moving_setup(0.25, steady({0, 0, -0.3}), 0.3);

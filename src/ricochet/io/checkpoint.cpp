@@ -20,7 +20,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b36ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b37ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
 template <class Archive>

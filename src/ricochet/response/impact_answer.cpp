@@ -16,6 +16,10 @@ namespace {
 /// away.
 constexpr int kCornerPasses = 16;
 
+/// Part of the speeds of what takes part by which surfaces that move may still be approached after an impact that has
+/// an answer.
+constexpr double kAnswered = 1e-6;
+
 /// Boltzmann's constant, J/K (exact by the SI of 2019).
 constexpr double kBoltzmann = 1.380649e-23;
 
@@ -155,9 +159,27 @@ bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const 
     return true;
 }
 
+/// m/s, of the surfaces and of the particle.
+double ImpactAnswer::fastest(std::span<const ContactSurface> surfaces) const {
+    double speed = length(particle_.state.velocity);
+    for (const ContactSurface& surface : surfaces) speed = std::max(speed, length(velocity_of(surface)));
+    return speed;
+}
+
+/// Surfaces that close on each other leave a particle between them no velocity with which it would approach none of
+/// them: impulses would grow without bound.
+bool ImpactAnswer::close_on_it(std::span<const ContactSurface> surfaces, const Vec3& velocity, double speed) const {
+    const auto advances = [&](const ContactSurface& surface) { return advance_of(surface) > 0.0; };
+    if (std::none_of(surfaces.begin(), surfaces.end(), advances)) return false;
+    return std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
+        return advance_of(surface) - dot(velocity, surface.normal) > kAnswered * speed;
+    });
+}
+
 /// One impact on all surfaces, and on those that it leads to.
 void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Rebound rebound) {
     const double rounding = kProjectionRounding * length(particle_.state.velocity);
+    const double scale = fastest(surfaces);
     std::array<ImpactSurface, ImpactResult::kMostSurfaces> all;
     Foremost kept;
     for (int pass = 0; pass < kCornerPasses && approach(surfaces) > rounding; ++pass) {
@@ -171,6 +193,10 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
                                                  std::span(all).first(met.size()));
+        if (close_on_it(met, result.after.velocity, scale)) {
+            push_out_of_corner(surfaces);
+            return;
+        }
         for (std::size_t k = 0; k < met.size(); ++k) {
             if (result.push[k] == Vec3{}) continue;
             const Vec3 before = particle_.state.velocity;

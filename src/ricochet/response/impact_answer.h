@@ -120,6 +120,8 @@ private:
     [[nodiscard]] bool answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
                                     Rebound rebound);
     void answer_together(std::span<const ContactSurface> surfaces, Rebound rebound);
+    [[nodiscard]] double fastest(std::span<const ContactSurface> surfaces) const;
+    [[nodiscard]] bool close_on_it(std::span<const ContactSurface> surfaces, const Vec3& velocity, double speed) const;
     using Foremost = std::array<ContactSurface, ImpactResult::kMostSurfaces>;
     [[nodiscard]] std::span<const ContactSurface> foremost(std::span<const ContactSurface> surfaces,
                                                            Foremost& kept) const;

@@ -12,6 +12,10 @@ namespace {
 /// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
 constexpr std::size_t kBlock = 512;
 
+/// Parts of the smaller radius by which what overlaps is parted in a step at most: four times what spheres that are
+/// poured need. What surfaces press together without leaving it room overlaps deeply, and would be thrown.
+constexpr double kMostParting = 0.01;
+
 }  // namespace
 
 NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<const NetworkContact> contacts,
@@ -39,7 +43,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     rows_.clear();
     rolling_.clear();
     for (const std::uint32_t i : coloring_.order()) {
-        rows_.push_back(row_of(contacts[i], duration));
+        rows_.push_back(row_of(contacts[i], bodies, duration));
         if (contacts[i].rolling_friction > 0.0) add_rolling(contacts[i], bodies);
     }
     states_ = before_;
@@ -49,7 +53,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     rebounds_.assign(contacts.size(), 0);
 }
 
-NetworkRow NetworkSolver::row_of(const NetworkContact& contact, double duration) {
+NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
     NetworkRow row;
     row.a = contact.a;
     row.b = contact.b;
@@ -61,7 +65,10 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, double duration)
         }
     }
     row.normal = contact.normal;
-    row.parting = std::max(0.0, -kNetworkPushOut * contact.gap / duration);
+    const bool is_pair = contact.b != NetworkContact::kWall;
+    const double radius =
+        is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
+    row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
     row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
     row.friction = contact.friction;
     const NetworkState& a = before_[row.a];

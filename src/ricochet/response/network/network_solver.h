@@ -37,7 +37,8 @@ private:
     };
 
     void set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts, double duration);
-    [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, double duration);
+    [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies,
+                                    double duration);
     void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
     void apply_start();
     [[nodiscard]] double gain_of_impulses() const;

@@ -9,7 +9,6 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
-#include "support/counts.h"
 #include "support/simple_meshes.h"
 
 namespace ricochet {
@@ -40,7 +39,7 @@ SimulationSetup bouncing(ResponseKind kind, int shape, double radius) {
     if (shape == 2) setup.colliders = {{"floor", PlaneShape{{0, 0, -0.5}, {0, 0, 1}}, 0}};
     setup.forces.push_back(make_gravity({0, 0, -9.81}));
     RandomSequence random(8, 0, 0);
-    for (int k = 0; k < test::scaled(40); ++k) {
+    for (int k = 0; k < 40; ++k) {
         Particle particle;
         for (int axis = 0; axis < 3; ++axis) particle.position[axis] = random.uniform_around(0, 0.3);
         particle.velocity = 2.0 * random.unit_vector();

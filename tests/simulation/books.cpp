@@ -5,18 +5,11 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/flows.h"
+#include "support/integrators.h"
 
 namespace ricochet::test {
 namespace {
 
-constexpr std::array<IntegratorKind, 8> kIntegrators{IntegratorKind::ballistic,
-                                                     IntegratorKind::forward_euler,
-                                                     IntegratorKind::symplectic_euler,
-                                                     IntegratorKind::implicit_euler,
-                                                     IntegratorKind::midpoint,
-                                                     IntegratorKind::velocity_verlet,
-                                                     IntegratorKind::rk4,
-                                                     IntegratorKind::dormand_prince};
 constexpr std::array<const char*, kFeatures.size()> kFeatureNames{"springs", "children", "absorbing", "shattering",
                                                                   "flow"};
 
@@ -90,7 +83,7 @@ std::string name(const BookCase& c) {
 
 std::vector<BookCase> all_methods() {
     std::vector<BookCase> cases;
-    for (const IntegratorKind integrator : kIntegrators) {
+    for (const IntegratorKind integrator : kAllIntegrators) {
         for (const ResponseKind response : response_kinds()) cases.push_back({response, false, integrator});
         cases.push_back({ResponseKind::rollback, true, integrator});
     }

@@ -11,6 +11,7 @@
 
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
+#include "support/integrators.h"
 #include "support/simulations.h"
 
 namespace ricochet {
@@ -80,19 +81,11 @@ TEST(PairStepEnds, ASphereAtRestIsHitWhereAStepEnds) {
 }
 
 TEST(PairStepEnds, RoundNumbersMissNoImpactWhateverTheMethodAndTheIntegrator) {
-    const std::array kinds{IntegratorKind::ballistic,
-                           IntegratorKind::forward_euler,
-                           IntegratorKind::symplectic_euler,
-                           IntegratorKind::implicit_euler,
-                           IntegratorKind::midpoint,
-                           IntegratorKind::velocity_verlet,
-                           IntegratorKind::rk4,
-                           IntegratorKind::dormand_prince};
     for (std::uint64_t number = 0; number < 150; ++number) {
         RandomSequence random(kSeed, 0, number);
         const HeadOn scene = round_scene(random);
         const double e = one_of(std::array{0.0, 0.5, 1.0}, random);
-        for (const IntegratorKind kind : kinds) {
+        for (const IntegratorKind kind : test::kAllIntegrators) {
             for (const PairMethod method : {PairMethod::automatic, PairMethod::events, PairMethod::contacts}) {
                 SCOPED_TRACE("seed " + std::to_string(kSeed) + " number " + std::to_string(number) + " integrator " +
                              std::to_string(static_cast<int>(kind)) + " method " +

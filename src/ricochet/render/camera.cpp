@@ -82,6 +82,8 @@ double centering_shift(const std::vector<Vec3>& points, const Vec3& across, cons
 
 }  // namespace
 
+double half_height(const Camera& camera) { return std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0); }
+
 CameraFrame camera_frame(const Camera& camera) {
     const Vec3 forward = normalized(camera.target - camera.position);
     Vec3 right = cross(forward, camera.up);
@@ -102,7 +104,7 @@ Camera automatic_camera(const ViewSubject& subject, const Vec3& up, double aspec
     camera.position = 0.55 * east - 0.75 * north + 0.56 * up;
     camera.target = {0, 0, 0};
     const CameraFrame frame = camera_frame(camera);
-    const double tangent = std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0);
+    const double tangent = half_height(camera);
     std::vector<Vec3> centered = points;
     for (Vec3& p : centered) p -= box.center();
     const double distance =

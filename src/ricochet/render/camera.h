@@ -23,6 +23,8 @@ struct CameraFrame {
     Vec3 right, up, forward;
 };
 [[nodiscard]] CameraFrame camera_frame(const Camera& camera);
+/// The tangent of half the vertical field of view: half the height of what is seen at a distance of 1.
+[[nodiscard]] double half_height(const Camera& camera);
 
 /// What an automatic view should show.
 struct ViewSubject {

@@ -52,7 +52,7 @@ Painter::Painter(const Preview& preview, const Camera& camera, const PictureOpti
       options_(options),
       light_(light_for(options.lighting, camera)),
       lamps_(std::move(lamps)),
-      tangent_(std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0)),
+      tangent_(half_height(camera)),
       focus_(camera.focus_distance > 0.0 ? camera.focus_distance : length(camera.target - camera.position)),
       extent_(tangent_ * length(camera.target - camera.position)),
       tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "ricochet/core/parallel.h"
 
@@ -33,7 +32,7 @@ public:
           frame_(camera_frame(camera)),
           middle_x_(0.5 * width),
           middle_y_(0.5 * height),
-          scale_(0.5 * height / std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0)) {}
+          scale_(0.5 * height / half_height(camera)) {}
 
     // A disc of no strength where there is nothing to be seen.
     [[nodiscard]] Disc project(const Sprites& sprites, std::size_t i, const Preview& preview) const {

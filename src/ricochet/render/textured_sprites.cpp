@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "ricochet/core/parallel.h"
@@ -38,7 +37,7 @@ public:
           frame_(camera_frame(camera)),
           width_(width),
           height_(height),
-          scale_(0.5 * height / std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0)) {}
+          scale_(0.5 * height / half_height(camera)) {}
 
     // Of no strength where there is nothing to be seen.
     [[nodiscard]] Square square(const Sprites& sprites, std::size_t i) const {

@@ -1,0 +1,20 @@
+/// \file
+/// All integrators, for tests of what each of them must do.
+#pragma once
+
+#include <array>
+
+#include "ricochet/dynamics/integrator.h"
+
+namespace ricochet::test {
+
+inline constexpr std::array kAllIntegrators{IntegratorKind::ballistic,
+                                            IntegratorKind::forward_euler,
+                                            IntegratorKind::symplectic_euler,
+                                            IntegratorKind::implicit_euler,
+                                            IntegratorKind::midpoint,
+                                            IntegratorKind::velocity_verlet,
+                                            IntegratorKind::rk4,
+                                            IntegratorKind::dormand_prince};
+
+}  // namespace ricochet::test

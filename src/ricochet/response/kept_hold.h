@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/contact_manifold.h"
@@ -21,5 +22,18 @@ namespace ricochet {
 /// By these surfaces.
 [[nodiscard]] HeldAcceleration hold_by(const ResponseRules& rules, const MovingParticle& particle, const Vec3& pull,
                                        std::span<const ContactSurface> surfaces);
+
+/// A particle with sides and scratch memory of its own: what holds it is found by a mover that may change both.
+struct ProbedParticle {
+    explicit ProbedParticle(const MovingParticle& of) : sides(of.sides.begin(), of.sides.end()), particle(of) {
+        particle.sides = sides;
+    }
+    ProbedParticle(const ProbedParticle&) = delete;
+    ProbedParticle& operator=(const ProbedParticle&) = delete;
+
+    std::vector<SideMemory> sides;
+    MovingParticle particle;
+    MoveScratch scratch;
+};
 
 }  // namespace ricochet

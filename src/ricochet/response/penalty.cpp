@@ -7,6 +7,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact_answer.h"
+#include "ricochet/response/kept_hold.h"
 #include "ricochet/response/side_watch.h"
 
 namespace ricochet {
@@ -352,12 +353,9 @@ MoveOutcome PenaltyResponse::move(MovingParticle& particle, double duration, Mov
 }
 
 HeldAcceleration PenaltyResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
-    MovingParticle copy = particle;
-    std::vector<SideMemory> sides(particle.sides.begin(), particle.sides.end());
-    copy.sides = sides;
-    MoveScratch scratch;
+    ProbedParticle probe(particle);
     PenaltyScratch lists;
-    return PenaltyMover(rules_, distance_, damping_ratios_, copy, scratch, lists).hold(pull);
+    return PenaltyMover(rules_, distance_, damping_ratios_, probe.particle, probe.scratch, lists).hold(pull);
 }
 
 void PenaltyResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {

@@ -144,12 +144,10 @@ MoveOutcome ProjectResponse::move(MovingParticle& particle, double duration, Mov
 }
 
 HeldAcceleration ProjectResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
-    MovingParticle copy = particle;
-    std::vector<SideMemory> sides(particle.sides.begin(), particle.sides.end());
-    copy.sides = sides;
-    MoveScratch scratch;
+    ProbedParticle probe(particle);
     SideScratch lists;
-    return hold_by(rules_, particle, pull, Projector(rules_, distance_, copy, scratch, lists).touched());
+    return hold_by(rules_, particle, pull,
+                   Projector(rules_, distance_, probe.particle, probe.scratch, lists).touched());
 }
 
 void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {

@@ -200,6 +200,15 @@ TEST_P(ManyBounces, LeaveEveryParticleWhereItBelongs) {
     }
 }
 
+// Points that gather where friction holds them in a gap of a third of a degree, or beside a vertex at the origin, where
+// coordinates have no end: each of these took minutes.
+TEST(ManyBouncesOfOneCase, EndWherePointsGather) {
+    if (test::kSanitized) GTEST_SKIP() << "some minutes in such a build";
+    const std::array<std::pair<const char*, std::uint64_t>, 3> cases{
+        {{"flat", 2'000'029}, {"wedge", 11'000'000}, {"box", 498}}};
+    for (const auto& [name, seed] : cases) EXPECT_GT(run_case(*mesh_by_name(name), seed), 0U);
+}
+
 std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
     std::string name = info.param.substr(0, info.param.find('.'));
     std::replace(name.begin(), name.end(), '-', '_');

@@ -493,6 +493,11 @@ inline constexpr double kJump = 1e-3;
 /// more would hide another mistake. Smaller: slow turning points are left uncorrected. Larger: that.
 inline constexpr double kMostEnergyCorrection = 1e-2;
 
+/// Speed in contact, as a part of what the forces would give in the time that is left, that is none where it does not
+/// lead on. Reason: it leads a ten-billionth of the way that the forces would. Smaller: beside a vertex at the origin
+/// steps are spent on moves that no clock can tell. Larger: what begins to slide there is stopped.
+inline constexpr double kNegligibleSpeed = 1e-10;
+
 /// Rebound, as a part of the resting speed, of which the bounce cascade takes no time worth counting. Reason: falling
 /// through the contact offset ends at some 1e-7 m/s. Smaller: particles rattle between surfaces by their offsets.
 /// Larger: cascades end too early.

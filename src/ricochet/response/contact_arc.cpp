@@ -36,6 +36,7 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
     plan_ = plan_at(begin, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
     stuck_ = now.stuck;
+    jams_ = now.jams;
     for (std::size_t k = 0; k < materials_.count; ++k) holds_[k] = now.push[k] != Vec3{};
     const bool are_steady = !start.has_forces || forces.is_uniform_for(particle);
     has_potential_ = !are_steady && forces.is_conservative_for(particle);
@@ -163,11 +164,20 @@ ContactArc::Hold ContactArc::hold_on(const State& state, double t) const {
     if (std::all_of(plan.push.begin(), plan.push.end(), [](const Vec3& push) { return push == Vec3{}; })) {
         return Hold::none;
     }
+    if (plan.jams && !jams_) return Hold::jammed;
     for (std::size_t k = 0; k < materials_.count; ++k) {
         const bool slips = stuck_[k].to_slip && !plan.stuck[k].to_slip && plan.push[k] != Vec3{};
         if (slips && holds_[k] && materials_.surfaces[k].friction > 0.0) return Hold::slipping;
     }
     return Hold::as_before;
+}
+
+bool ContactArc::jumps(const State& before, const State& after) const {
+    const double radius = particle_.radius;
+    if (radius == 0.0) return false;
+    const double way = length(after.position - before.position);
+    return after.turned - before.turned > kJump ||
+           way > kJump * radius + kTouchingOffsets * geometry_.contact_offset(before.position);
 }
 
 /// True where slip or turning comes to a stop at its end, and friction has no direction there.

@@ -49,10 +49,13 @@ public:
     /// The state after t seconds, by the classical Runge-Kutta method, or the midpoint rule: on the surfaces that hold,
     /// along them, and with the energy that it has to have.
     [[nodiscard]] State at(double t) const;
-    /// How it is held there: as at the start; or something that stuck there slips; or a surface has turned further than
-    /// it does in an arc; or by nothing any more.
-    enum class Hold { as_before, slipping, turned, none };
+    /// How it is held there: as at the start; or something that stuck there slips; or what slips there jams; or a
+    /// surface has turned further than it does in an arc; or by nothing any more.
+    enum class Hold { as_before, slipping, jammed, turned, none };
     [[nodiscard]] Hold hold_on(const State& state, double t) const;
+    /// Between two times of which one is hardly later than the other: where a surface is too narrow for a sphere, the
+    /// nearest point jumps to another side, and takes the sphere with it.
+    [[nodiscard]] bool jumps(const State& before, const State& after) const;
     /// The particle, moving along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
     /// s, until it has turned by kMaxArcAngle, or something is about to stick.
@@ -106,6 +109,7 @@ private:
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start
     StuckSurfaces stuck_{};                   // from the start on
+    bool jams_ = false;                       // at the start
     bool has_potential_ = false;              // of forces that vary
     bool is_driven_ = false;                  // by a surface that moves
     bool keeps_energy_ = false;

@@ -61,10 +61,10 @@ ArcEnd end_of(const ContactArc& arc) {
     const double longest = arc.longest();
     if (!changes(longest)) return {longest};
     const Change change = first_change(longest, kHalvings, changes);
-    const Hold hold = hold_at(change.from);
-    if (hold != Hold::turned) return {change.from, hold == Hold::none};
-    // Where a surface is too narrow for a sphere, the nearest point jumps to another side.
-    return {change.before, false, arc.at(change.from).turned - arc.at(change.before).turned > kJump};
+    const ContactArc::State from = arc.at(change.from);
+    if (arc.jumps(arc.at(change.before), from)) return {change.before, false, true};
+    const Hold hold = arc.hold_on(from, change.from);
+    return {hold == Hold::turned ? change.before : change.from, hold == Hold::none};
 }
 
 }  // namespace
@@ -81,6 +81,10 @@ ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
     manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
+    if (goes_nowhere(pull, duration)) {
+        particle_.spin = Vec3{};
+        return {std::nullopt, false, true};
+    }
     if (!manifold_.bends() && !manifold_.is_turned(impact_)) {
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
@@ -94,6 +98,17 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         if (!turns && !needs_arc()) return follow_flat(plan_by_middle(begin, pull.pressure, duration), pull);
     }
     return follow_arc(pull, duration);
+}
+
+/// One interval after the other takes less time than the clock can tell, and what it does in them is nothing beside
+/// what its forces would do: next to a vertex at the origin, where coordinates have no end, from one face to the next.
+bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
+    constexpr int kMostTimeless = 24;
+    timeless_ = state_.time > clock_ ? 0 : timeless_ + 1;
+    clock_ = state_.time;
+    if (timeless_ < kMostTimeless) return false;
+    const double speed = length(state_.velocity) + state_.radius * length(particle_.spin);
+    return speed <= kNegligibleSpeed * length(pull.forces) * duration;
 }
 
 /// An interval of forces that vary, by those in its middle. Where these end it long before those of its start would,

@@ -3,6 +3,7 @@
 /// time.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "ricochet/collision/contact_scratch.h"
@@ -58,6 +59,7 @@ private:
         bool jams = false;            ///< it is stuck at its end
     };
 
+    [[nodiscard]] bool goes_nowhere(const Pull& pull, double duration);
     [[nodiscard]] bool forces_vary() const;
     [[nodiscard]] bool needs_arc() const;
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
@@ -80,6 +82,8 @@ private:
     ImpactAnswer& impact_;
     ContactManifold& manifold_;
     HeldSurfaces held_;
+    double clock_ = -std::numeric_limits<double>::infinity();  // s, at the last look
+    int timeless_ = 0;                                         // intervals in a row in which it stood still
 };
 
 }  // namespace ricochet

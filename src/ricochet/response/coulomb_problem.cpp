@@ -51,11 +51,12 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     return residual_ <= kCoulombResidual;
 }
 
-void CoulombProblem::solve_with_most(Effort effort, double friction) {
+double CoulombProblem::solve_with_most(Effort effort, double friction) {
     constexpr std::array kParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
     for (const double part : kParts) {
-        if (solve(effort, part * friction) || residual_ <= kNearlySolved) return;
+        if (solve(effort, part * friction) || residual_ <= kNearlySolved) return part;
     }
+    return kParts.back();
 }
 
 std::array<double, 2> CoulombProblem::force_of(std::size_t resistance) const {

@@ -78,8 +78,8 @@ public:
 
     /// Solves with as much of the friction as there is an answer for: all of it, also where rounding leaves the
     /// conditions met to kNearlySolved only, as between surfaces that press against each other; else less, down to
-    /// none.
-    void solve_with_most(Effort effort, double friction = 1.0);
+    /// none. Returns the part of the friction that it was solved with.
+    double solve_with_most(Effort effort, double friction = 1.0);
 
     /// False where the last answer meets the conditions to kNearlySolved only, or not at all.
     [[nodiscard]] bool is_solved() const { return residual_ <= kCoulombResidual; }

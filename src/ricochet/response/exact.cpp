@@ -69,6 +69,7 @@ private:
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_shared();
+    [[nodiscard]] Contact part_with(BodyId body, const Contact& contact) const;
     [[nodiscard]] std::optional<Contact> wait_for_body(const Contact& contact);
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
@@ -235,6 +236,17 @@ std::optional<Contact> ParticleMover::ride_unsettled(BodyId body, Contact* conta
     return next;
 }
 
+/// What a body has of a contact.
+Contact ParticleMover::part_with(BodyId body, const Contact& contact) const {
+    Contact own = contact;
+    own.count = 0;
+    for (const ContactSurface& surface : contact.all()) {
+        if (rules_.bodies->body_of(surface.surface) == body)
+            own.surfaces[static_cast<std::size_t>(own.count++)] = surface;
+    }
+    return own;
+}
+
 /// Contact with the surfaces of one frame, of those that take part: the first that can last.
 std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const Contact& contact,
                                                     const Motion& arriving) {
@@ -250,12 +262,7 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
     for (std::size_t k = count; k-- > 0;) {  // those at rest first
         if (k + 1 < count && bodies[k] == bodies[k + 1]) continue;
         if (rules_.bodies->is_deforming(bodies[k])) continue;  // it has no frame to ride in
-        Contact own = contact;
-        own.count = 0;
-        for (const ContactSurface& surface : contact.all()) {
-            if (rules_.bodies->body_of(surface.surface) != bodies[k]) continue;
-            own.surfaces[static_cast<std::size_t>(own.count++)] = surface;
-        }
+        const Contact own = part_with(bodies[k], contact);
         const double before = step_.remaining();
         const auto next =
             bodies[k] == kAtRest ? contact_phase_.begin(flight, own, arriving) : begin_ride(bodies[k], own, arriving);
@@ -351,10 +358,10 @@ std::optional<Contact> ParticleMover::wait_for_body(const Contact& contact) {
     });
     const Motion own{particle_.state.velocity, particle_.spin};
     const MomentumAccount account(step_);
-    Contact seen = contact;
+    const BodyId body = rules_.bodies->body_of(yielding->surface);
+    Contact seen = part_with(body, contact);  // its frame knows no other surfaces
     step_.log().note_impact();
-    const auto next = ride_unsettled(rules_.bodies->body_of(yielding->surface), &seen,
-                                     [&](ContactPhase& phase) { return phase.stay(seen); });
+    const auto next = ride_unsettled(body, &seen, [&](ContactPhase& phase) { return phase.stay(seen); });
     particle_.state.velocity = own.velocity;
     particle_.spin = own.spin;
     account.settle(yielding->surface);

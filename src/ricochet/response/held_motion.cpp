@@ -15,6 +15,10 @@ constexpr double kStageLimit = 2.5;
 /// What friction changes a sphere's slip by, over what it accelerates it with.
 constexpr double kSlipAcceleration = 3.5;
 
+/// The part of friction with which what slides has to have an answer; it jams where there is one with less only. With
+/// hardly less there is one where rounding, or a short search, has missed that.
+constexpr double kJammingFriction = 0.95;
+
 /// Plans that end at once, one after the other, before the last counts.
 constexpr int kMostPlans = 4;
 
@@ -54,6 +58,7 @@ public:
 
     [[nodiscard]] ContactInterval interval() {
         if (rests()) return {motion_, {}, {}, duration_, true, 0.0, false, push_, {}};
+        if (jams_ && duration_ > 0.0) return jammed();
         double duration = time_to_turn();
         double turn = turn_in(duration);
         if (turn > kMostStraightTurn) {
@@ -64,6 +69,7 @@ public:
         ContactInterval interval{motion_, acceleration_, spin_acceleration_, duration, false, turn, false, push_, {}};
         stop(interval);
         interval.is_stiff = is_stiff(interval.duration);
+        interval.jams = jams();
         return interval;
     }
 
@@ -81,6 +87,18 @@ private:
 
     [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
     [[nodiscard]] std::span<Resistance> resistances() { return {resistances_.data(), count_}; }
+
+    /// At the start, or in the middle of the interval.
+    [[nodiscard]] bool jams() const { return jams_ || jams_in_middle_; }
+
+    /// What slips stops at once: no force is the one that its friction asks for, only an impulse is (Stewart 2000).
+    [[nodiscard]] ContactInterval jammed() const {
+        ContactInterval interval{motion_, acceleration_, spin_acceleration_, 0.0, false, 0.0, false, push_, {}};
+        for (const Resistance& r : std::span(resistances_).first(count_))
+            is_stuck(interval.stuck[r.surface], r.kind) = true;
+        interval.ends_at_once = interval.jams = true;
+        return interval;
+    }
 
     void find_resistances(StuckSurfaces stuck) {
         const double scale = speed_scale(motion_, radius_, seen_);
@@ -115,7 +133,8 @@ private:
         const bool slides =
             std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
-        problem.solve_with_most(effort, grip_.pressure);
+        const double part = problem.solve_with_most(effort, grip_.pressure);
+        if (slides && part < kJammingFriction) (weight_ == 0.0 ? jams_ : jams_in_middle_) = true;
         for (std::size_t k = 0; k < surfaces_.size(); ++k) push_[k] = problem.push(k) * surfaces_[k].normal;
         for (std::size_t r = 0; r < count_; ++r) {
             const std::size_t k = resistances_[r].surface;
@@ -312,8 +331,17 @@ private:
     std::array<Vec3, kMostHolding> push_{};
     Vec3 acceleration_;
     Vec3 spin_acceleration_;
+    bool jams_ = false;  // what slides does so with less than all of its friction only
+    bool jams_in_middle_ = false;
     double weight_ = 0.0;  // 1/s, of the present rates in those that friction is against; 0: their directions count
 };
+
+/// What its forces would do in the time is so much more that where it would rest if it stood still, it does: friction
+/// that jams takes a part of what is left, and a part of that, for ever.
+bool hardly_moves(const Motion& motion, double radius, const Vec3& a, double duration) {
+    const double speed = length(motion.velocity) + radius * length(motion.spin);
+    return motion.velocity != Vec3{} && speed <= kNegligibleSpeed * length(a) * duration;
+}
 
 }  // namespace
 
@@ -327,6 +355,10 @@ ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a
     for (int k = 1;; ++k) {
         Plan plan(start, radius, a, surfaces, surfaces, grip, duration, stuck);
         const ContactInterval interval = plan.interval();
+        if (interval.jams && hardly_moves(start, radius, a, duration)) {
+            const ContactInterval still = Plan({}, radius, a, surfaces, surfaces, grip, duration, stuck).interval();
+            if (still.at_rest) return still;
+        }
         const bool goes_on = interval.ends_at_once || plan.drags(interval);
         if (k == kMostPlans || interval.at_rest || !goes_on) return interval;
         start = along_surfaces(start, radius, surfaces, interval.stuck);

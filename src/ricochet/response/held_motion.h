@@ -22,7 +22,8 @@ struct ContactInterval {
     bool is_stiff = false;   ///< friction could end a slip, if it were against it, before the interval ends
     std::array<Vec3, kMostHolding> push{};  ///< force over the mass with which each surface holds it, m/s^2
     StuckSurfaces stuck{};                  ///< from the end on
-    bool ends_at_once = false;              ///< a slip or turning ends within Grip::negligible_path
+    bool ends_at_once = false;              ///< a slip or turning ends within Grip::negligible_path, or jams
+    bool jams = false;                      ///< friction leaves no answer to what slips
 };
 
 /// How surfaces grip while a particle is pressed on.
@@ -41,8 +42,9 @@ inline constexpr double kShortestIntervals = 32.0;
 /// Plans the contact of a particle under acceleration a with surfaces that hold it (at most kMostHolding count), as if
 /// their normals stayed, for at most `duration` seconds. It ends where slip, rolling or spinning comes to a stop at one
 /// of them, and before friction has turned by kMaxHeadingTurn (kMostHeadingTurn where that is soon); friction has the
-/// direction of the middle of the interval. For a duration of 0 it says what the forces are. stuck: where slip and
-/// turning are an error of the motion that is given, and count as none.
+/// direction of the middle of the interval. What slips where friction leaves no answer jams: its slip stops at once.
+/// For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of the motion that is
+/// given, and count as none.
 [[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
                                             std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
                                             const StuckSurfaces& stuck = {});

@@ -79,5 +79,82 @@ TEST(MeshSweep, AMeshThatMovesIsMetWhereASphereThatMovesTheOtherWayMeetsIt) {
     }
 }
 
+// Where both begin in overlap, too: one rule for meshes at rest and moved as a whole.
+TEST(MeshSweep, SpheresInOverlapAreStoppedBesideAMovedMeshWhereTheyAreBesideOneAtRest) {
+    const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
+    const MeshQueries queries(mesh);
+    const Vec3 shift{0.75, -0.5, 0.25};
+    Points after = mesh.vertices;
+    for (Vec3& v : after) v += shift;
+    const std::vector<double> radii{0.25};
+    const int count = test::scaled(1000);
+    Points from = random_points(5, count);
+    for (std::size_t i = 0; i < from.size(); ++i)
+        from[i] = from[i] * ((0.8 + 0.4 * static_cast<double>(i) / count) / length(from[i]));
+    Points to = random_points(6, count);
+    Points back = to;
+    for (Vec3& p : back) p += -shift;
+    const MeshHits moving = queries.sweep_moving(from, to, radii, after);
+    const MeshHits resting = queries.sweep(from, back, radii);
+    int stopped = 0;
+    int free = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        ASSERT_EQ(moving.triangle[i] == kNoHit, resting.triangle[i] == kNoHit) << i;
+        if (moving.triangle[i] == kNoHit) {
+            ++free;
+            continue;
+        }
+        EXPECT_NEAR(moving.distance[i], resting.distance[i], 1e-9) << i;
+        ++stopped;
+    }
+    EXPECT_GT(stopped, count / 2);
+    EXPECT_GT(free, count / 50);
+}
+
+/// A wall at height 0 that goes to a height.
+MeshHits beside_a_wall(const Vec3& from, const Vec3& to, double height, double radius) {
+    const TriangleMesh wall{{{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}, {{0, 1, 2}}};
+    Points after = wall.vertices;
+    for (Vec3& v : after) v.z = height;
+    const std::vector<double> radii{radius};
+    return MeshQueries(wall).sweep_moving(std::span(&from, 1), std::span(&to, 1), radii, after);
+}
+
+TEST(MeshSweep, ASphereInOverlapIsFreeWhereTheDistanceDoesNotShrink) {
+    const Vec3 inside{0, 0, 0.5};
+    EXPECT_EQ(beside_a_wall(inside, inside, 0.0, 1.0).triangle[0], kNoHit);             // both rest
+    EXPECT_EQ(beside_a_wall(inside, {1, 0, 0.5}, 0.0, 1.0).triangle[0], kNoHit);        // along it
+    EXPECT_EQ(beside_a_wall(inside, {1, 0, 2.5}, 2.0, 1.0).triangle[0], kNoHit);        // carried along
+    EXPECT_EQ(beside_a_wall(inside, inside, -1.0, 1.0).triangle[0], kNoHit);            // it recedes
+    EXPECT_EQ(beside_a_wall(inside, {0, 0, 4}, 3.0, 1.0).triangle[0], kNoHit);          // it follows, slower
+    EXPECT_EQ(beside_a_wall(inside, {0, 0, -4}, 0.0, 1.0).distance[0], 0.0);            // it sinks in
+    EXPECT_EQ(beside_a_wall(inside, inside, 0.25, 1.0).distance[0], 0.0);               // the wall comes
+    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 0.5, 1.0).triangle[0], kNoHit);       // only touches, and leaves
+    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 1.5, 1.0).distance[0], 0.0);          // and is caught up with
+    EXPECT_EQ(beside_a_wall({0, 0, 0.5}, {0, 0, 0.5}, 0.25, 0.0).triangle[0], kNoHit);  // a point beside it
+    EXPECT_EQ(beside_a_wall({0, 0, 0}, {0, 0, 1}, 0.0, 0.0).distance[0], 0.0);          // one that begins on it
+}
+
+// A seesaw whose height at x is x t: a sphere under the side that rises goes over to the one that falls.
+TEST(MeshSweep, ASphereThatHasLeftAMovingTriangleOrSinksDeeperThanAtTheStartIsStopped) {
+    const MeshQueries seesaw({{{-4, -9, 0}, {-4, 9, 0}, {4, 0, 0}}, {{0, 1, 2}}});
+    const Points after{{-4, -9, -4}, {-4, 9, -4}, {4, 0, 4}};
+    const std::vector<double> radii{0.5};
+    const auto stopped_at = [&](const Vec3& from, const Vec3& to) {
+        return seesaw.sweep_moving(std::span(&from, 1), std::span(&to, 1), radii, after).distance[0];
+    };
+    const auto gap = [](double from, double to, double t) {
+        return ((from + t * (to - from)) * t + 0.4) / std::sqrt(1.0 + t * t);
+    };
+    const double left = stopped_at({2, 0, -0.4}, {-3, 0, -0.4});
+    EXPECT_GT(gap(2, -3, 0.2), 0.5);
+    EXPECT_GT(left, 0.25);
+    EXPECT_NEAR(gap(2, -3, left), 0.5, 1e-9);
+    const double sunk = stopped_at({1, 0, -0.4}, {-3, 0, -0.4});
+    EXPECT_GT(sunk, 0.2);
+    EXPECT_NEAR(gap(1, -3, sunk), 0.4, 1e-9);
+    EXPECT_EQ(stopped_at({-1, 0, -0.4}, {-1, 0, -0.4}), 0.0);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -101,8 +101,10 @@ public:
     /// mesh's. A sphere that overlaps the mesh from the start is stopped when it approaches.
     [[nodiscard]] MeshHits sweep(std::span<const Vec3> from, std::span<const Vec3> to,
                                  std::span<const double> radii) const;
-    /// The same while the mesh's vertices go straight from where they are to `vertices_after`: no contact is missed. In
-    /// contact from the start is a contact at fraction 0.
+    /// The same while the mesh's vertices go straight from where they are to `vertices_after`: no contact is missed. A
+    /// point on the mesh at the start meets it at fraction 0. A sphere that overlaps a triangle from the start and does
+    /// not approach it then is stopped where it comes nearer than at the start, and where it meets it again after it
+    /// has come off; that it has is seen every 64th of the way.
     [[nodiscard]] MeshHits sweep_moving(std::span<const Vec3> from, std::span<const Vec3> to,
                                         std::span<const double> radii, std::span<const Vec3> vertices_after) const;
 

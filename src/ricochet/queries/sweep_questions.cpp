@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/box_tree.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/moving_triangle.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
 #include "ricochet/geometry/sweep/sphere_sweep.h"
@@ -129,6 +131,59 @@ std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& 
     return best;
 }
 
+/// Steps of the way in which a sphere that overlaps a moving triangle is looked for off it.
+constexpr int kLooksForTheWayOut = 64;
+
+/// The rest of a way from a time on, rounded.
+MovingPoint rest_of(const MovingPoint& way, double from) { return {way.at(from), way.to}; }
+
+/// The first contact after the sphere has come off the triangle.
+std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, double radius,
+                                                   const MovingTriangle& triangle) {
+    for (int k = 1; k < kLooksForTheWayOut; ++k) {
+        const double from = static_cast<double>(k) / kLooksForTheWayOut;
+        if (!is_apart(point, radius, triangle, from, from)) continue;
+        const auto& [a, b, c] = triangle.corners;
+        auto contact =
+            first_contact(rest_of(point, from), radius, {{rest_of(a, from), rest_of(b, from), rest_of(c, from)}});
+        if (!contact) return std::nullopt;
+        if (contact->time == 0.0) continue;  // off by less than the rounding of the rest
+        contact->time = std::min(1.0, from + (1.0 - from) * contact->time);
+        return contact;
+    }
+    return std::nullopt;
+}
+
+/// Of a sphere that touches or overlaps the triangle from the start, `at_start` being that contact: as beside a
+/// triangle at rest (SphereSweep) it is stopped at once when the distance shrinks. Else it is free until it comes
+/// nearer than at the start, which beside a triangle that moves as a whole it never does, or comes back.
+std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
+                                                  const MovingTriangle& triangle, const MovingContact& at_start) {
+    const auto& [a, b, c] = triangle.corners;
+    const ClosestPointOnTriangle nearest = closest_point_on_triangle(point.from, a.from, b.from, c.from);
+    const double distance = std::sqrt(nearest.distance_squared);
+    Vec3 relative = point.to - point.from;
+    for (int k = 0; k < 3; ++k) {
+        const MovingPoint& corner = triangle.corners[static_cast<std::size_t>(k)];
+        relative -= at_start.barycentric[k] * (corner.to - corner.from);
+    }
+    const double speed = length(relative);
+    if (dot(nearest.offset, relative) < -kMinApproach * distance * speed) return at_start;
+    const double nearer_still = distance * (1.0 - 0x1p-40) - kMinApproach * speed;
+    std::optional<MovingContact> sunk;
+    if (nearer_still > 0.0) sunk = first_contact(point, nearer_still, triangle);
+    const auto back = contact_after_leaving(point, radius, triangle);
+    if (!sunk || (back && back->time < sunk->time)) return back;
+    return sunk;
+}
+
+/// The first contact of a point or a sphere with a triangle when both move.
+std::optional<MovingContact> meeting_of(const MovingPoint& point, double radius, const MovingTriangle& triangle) {
+    const auto contact = first_contact(point, radius, triangle);
+    if (!contact || contact->time > 0.0 || radius == 0.0) return contact;
+    return contact_from_overlap(point, radius, triangle, *contact);
+}
+
 /// The mesh on its way from where it is to where it will be.
 class MovingMesh {
 public:
@@ -155,7 +210,7 @@ public:
         for (const std::uint32_t triangle : near) {
             const MovingTriangle moving = moving_triangle(triangle);
             if (best && best->fraction < 1.0 && is_apart(point, radius, moving, 0.0, best->fraction)) continue;
-            const auto contact = first_contact(point, radius, moving);
+            const auto contact = meeting_of(point, radius, moving);
             if (contact) keep_first(best, {triangle, contact->time, place(moving, *contact)});
         }
         return best;

@@ -1,7 +1,9 @@
 // Particles, forces and callbacks that change between steps.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -188,6 +190,37 @@ TEST(Changes, JoinCoupledMotionAndLoseSprings) {
     simulation.advance(5);
     EXPECT_EQ(simulation.statistics().springs_lost, 1U);
     EXPECT_TRUE(simulation.springs().is_intact(0));
+}
+
+std::string what_run_error_says(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const RunError& error) {
+        return error.what();
+    }
+    return "no RunError";
+}
+
+TEST(Changes, AreRefusedInAStepAndAfterOneThatFailedEachWithItsReason) {
+    SimulationSetup setup;
+    Simulation* running = nullptr;
+    std::string within;
+    setup.forces.push_back(make_acceleration([&](const ForceInput&) -> Vec3 {
+        within = what_run_error_says([&] { running->add_particle({}); });
+        throw std::runtime_error("no force today");
+    }));
+    setup.particles.emplace_back();
+    Simulation simulation(std::move(setup));
+    running = &simulation;
+    EXPECT_THROW(simulation.step(), std::runtime_error);
+    EXPECT_NE(within.find("between its steps"), std::string::npos) << within;
+    for (const std::string& after : {what_run_error_says([&] { simulation.add_particle({}); }),
+                                     what_run_error_says([&] { simulation.remove_particle(0); }),
+                                     what_run_error_says([&] { simulation.set_forces({}); })}) {
+        EXPECT_NE(after.find("the last step or restore() of this simulation has ended with an error"),
+                  std::string::npos)
+            << after;
+    }
 }
 
 TEST(OnContact, IsGivenTheRecordsOfEveryStepInTheirOrder) {

@@ -236,6 +236,30 @@ TEST(SenselessArguments, ForcesSpringsAndEmittersAreRefused) {
                           [](auto& s, double x) { s.reference_camera.emplace().field_of_view_degrees = x; });
 }
 
+/// A force of a user's own, with a name or without.
+class OwnForce : public ParticlesForce {
+public:
+    explicit OwnForce(std::string name) : name_(std::move(name)) {}
+    void add_accelerations(const ParticlesView&, std::span<Vec3>) const override {}
+    [[nodiscard]] std::optional<double> potential_energy(const ParticlesView&) const override { return 0.0; }
+    [[nodiscard]] std::string name() const override { return name_; }
+
+private:
+    std::string name_;
+};
+
+TEST(SenselessArguments, ForcesOnAllTogetherAreRefusedByTheirName) {
+    const auto beside_implicit = [](const std::string& name) {
+        return [name](SimulationSetup& s) {
+            s.options.integrator = IntegratorKind::implicit_euler;
+            s.particles_forces.push_back({std::make_shared<OwnForce>(name)});
+        };
+    };
+    expect_refused({"whirl: integrator: found implicit_euler, expected an explicit one", beside_implicit("whirl")});
+    expect_refused({"force between particles 0: integrator: found implicit_euler", beside_implicit("")});
+    expect_refused({"force between particles 0: force", [](auto& s) { s.particles_forces.push_back({nullptr}); }});
+}
+
 TEST(SenselessArguments, FunctionsOfASimulationRefuseThem) {
     Simulation simulation(sensible());
     simulation.step();

@@ -44,6 +44,8 @@ public:
     [[nodiscard]] virtual bool depends_on_velocity() const { return true; }
     /// Names of the particles' attributes that it wants to see.
     [[nodiscard]] virtual std::vector<std::string> attributes() const { return {}; }
+    /// How messages name it; empty: as a force between particles, by its number.
+    [[nodiscard]] virtual std::string name() const { return {}; }
 };
 
 /// A force of a simulation, and the particles between which it acts: those of these ids and those born of these

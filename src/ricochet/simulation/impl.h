@@ -66,7 +66,9 @@ struct Simulation::Impl {
     /// every step.
     [[nodiscard]] bool may_defer() const;
 
+    /// RunError that says whether a step runs, or one has ended with an error.
     void require_between_steps() const;
+    [[noreturn]] static void refuse_after_error();
     void report_contacts();
 
     /// Makes room for so many more particles.
@@ -148,6 +150,7 @@ struct Simulation::Impl {
     Retirement retirement;
     ContactCallback callback;       ///< of on_contact(); may be empty
     bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error
+    bool is_stepping = false;       ///< it runs
     bool is_reporting = false;      ///< the callback runs
     bool has_new_callback = false;  ///< on_contact() was called by the callback
 };

@@ -301,6 +301,7 @@ void Simulation::on_contact(ContactCallback callback) {
 
 void Simulation::Impl::require_between_steps() const {
     if (!inside_step) return;
+    if (!is_stepping) refuse_after_error();
     throw RunError("particles, forces and callbacks of a simulation can be changed between its steps only");
 }
 

@@ -14,6 +14,18 @@ namespace {
 /// which the particle would look for it.
 constexpr double kWakingReach = 0x1p-36;
 
+/// True while it lives.
+class Raised {
+public:
+    explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
+    ~Raised() { flag_ = false; }
+    Raised(const Raised&) = delete;
+    Raised& operator=(const Raised&) = delete;
+
+private:
+    bool& flag_;
+};
+
 }  // namespace
 
 void Simulation::step() {
@@ -52,6 +64,7 @@ bool Simulation::Impl::may_defer() const {
 // Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
+    const Raised stepping(is_stepping);
     emit_particles(step);
     std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
     do {
@@ -64,14 +77,15 @@ void Simulation::Impl::step() {
     report_contacts();
 }
 
+void Simulation::Impl::refuse_after_error() {
+    throw RunError(
+        "the last step or restore() of this simulation has ended with an error; make it anew or restore a saved state");
+}
+
 // After an error inside a step, particles in free flight may be a step ahead of the others.
 TimeSpan Simulation::Impl::begin_step() {
     if (is_reporting) throw RunError("a contact callback must not step its simulation");
-    if (inside_step) {
-        throw RunError(
-            "the last step or restore() of this simulation has ended with an error; make it anew or restore a saved "
-            "state");
-    }
+    if (inside_step) refuse_after_error();
     inside_step = true;
     recorder.begin_step();
     birth_records.clear();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
@@ -23,7 +24,8 @@ void validate_flow_walls(const SimulationSetup& setup) {
 void validate_particles_forces(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
         const ParticlesForceEntry& entry = setup.particles_forces[k];
-        const Subject subject("force between particles", k);
+        const std::string own_name = entry.force ? entry.force->name() : std::string();
+        const Subject subject = own_name.empty() ? Subject("force between particles", k) : Subject(own_name);
         if (!entry.force) subject.refuse("force", "a null pointer", "a force");
         for (const std::uint32_t emitter : entry.emitters) {
             subject.require_index(emitter, setup.emitters.size(), "emitter", "emitters");
@@ -35,11 +37,11 @@ void validate_particles_forces(const SimulationSetup& setup) {
         }
         if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
         if (setup.options.particle_contacts) {
-            subject.refuse("particle_contacts", "spheres that meet", "none beside forces between particles");
+            subject.refuse("particle_contacts", "spheres that meet", "none beside a force on all particles together");
         }
         if (setup.options.integrator.kind == IntegratorKind::implicit_euler && !setup.solver) {
             subject.refuse("integrator", name_of(setup.options.integrator.kind),
-                           "an explicit one: the equations of implicit_euler do not hold forces between particles");
+                           "an explicit one: the equations of implicit_euler do not hold forces on all together");
         }
     }
 }

@@ -15,7 +15,9 @@
 
 #include "ricochet/core/hash.h"
 #include "ricochet/core/printable.h"
+#include "ricochet/io/scene.h"
 #include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene_forces.h"
 
 namespace ricochet::detail {
 
@@ -259,3 +261,39 @@ std::uint64_t scene_fingerprint(const JsonNode& root) {
 }
 
 }  // namespace ricochet::detail
+
+namespace ricochet {
+namespace {
+
+/// The same value whichever way it is written: 2 or 2.0, keys in any order.
+void make_plain(detail::JsonNode& node) {
+    if (const auto number = node.number()) node.value = *number;
+    if (detail::JsonNode::Array* list = node.array()) {
+        for (detail::JsonNode& entry : *list) make_plain(entry);
+    }
+    if (detail::JsonNode::Object* object = node.object()) {
+        for (detail::JsonMember& member : *object) make_plain(member.value);
+        std::sort(object->begin(), object->end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    }
+}
+
+}  // namespace
+
+std::uint64_t forces_fingerprint(std::string_view text, const std::vector<std::string>& overrides) {
+    detail::Diagnostics diagnostics("scene", overrides);
+    std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
+    if (!root) throw SceneError(diagnostics.errors());
+    for (std::size_t i = 0; i < overrides.size(); ++i) detail::apply_override(*root, i, diagnostics);
+    StateHash hash;
+    const detail::ValueHasher hasher(hash);
+    for (const std::string_view key : {"forces", "particle_forces", "flows"}) {
+        detail::JsonNode* const node = root->find(key);
+        const bool has_any = node != nullptr && ((node->array() != nullptr && !node->array()->empty()) ||
+                                                 (node->object() != nullptr && !node->object()->empty()));
+        if (has_any) make_plain(*node);
+        std::visit(hasher, has_any ? node->value : decltype(node->value){});
+    }
+    return hash.value();
+}
+
+}  // namespace ricochet

@@ -3,49 +3,122 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+import re
 from typing import Any, Callable
+
+import numpy as np
+
+from ._core import InputError
+
+# What a compiled force is called with.
+_ARGUMENTS = ("time", "position", "velocity", "mass", "radius", "force")
 
 
 class CompiledForce:
     """A force that runs without Python: what :func:`compiled_force` makes."""
 
-    def __init__(self, function: Callable[..., None]) -> None:
+    def __init__(self, function: Callable[..., None], check_indices: bool = True) -> None:
         self.function = function
-        self._callback = _compile(function)
+        self.check_indices = bool(check_indices)
+        self._compiled, self._callback = _compile(function, self.check_indices)
 
     @property
     def address(self) -> int:
         return int(self._callback.address)
 
+    def _call(self, time: float, position: Any, velocity: Any, mass: Any, radius: Any) -> None:
+        """The same from Python, which sees what the function raises."""
+        self._compiled(time, position, velocity, mass, radius, np.zeros_like(position))
+
     def __reduce__(self) -> Any:
-        return CompiledForce, (self.function,)
+        return CompiledForce, (self.function, self.check_indices)
 
 
-def compiled_force(function: Callable[..., None]) -> CompiledForce:
+def compiled_force(function: Callable[..., None], check_indices: bool = True) -> CompiledForce:
     """Compiles a force with Numba, to be called without the interpreter's lock.
 
     The function is given ``(time, position, velocity, mass, radius, force)`` and writes newtons into the rows of
-    ``force``, which are zero. It must be pure: the same input, the same forces.
+    ``force``, which are zero; the other arrays are read-only. It must be pure: the same input, the same forces. What
+    it raises ends the step, as of a function that is not compiled; an index beyond an array is an IndexError, unless
+    check_indices is False: then it reads or writes memory that is not its own, and the function may be faster.
+
+    Raises :class:`ricochet.InputError` where Numba cannot compile it.
     """
-    return CompiledForce(function)
+    return CompiledForce(function, check_indices)
 
 
-def _compile(function: Callable[..., None]) -> Any:
-    numba = importlib.import_module("numba")
+def _compile(function: Callable[..., None], check_indices: bool) -> Any:
+    try:
+        numba = importlib.import_module("numba")
+    except ImportError as error:
+        raise InputError(f"compiled_force: Numba cannot be imported ({error}); install python3-numba") from None
+    function = getattr(function, "py_func", function)  # what numba.njit has made already
+    name = getattr(function, "__name__", type(function).__name__)
+    _require_arguments(function, name)
+    try:
+        return _compiled(numba, function, check_indices)
+    except (numba.core.errors.NumbaError, TypeError, ValueError, NotImplementedError, AssertionError) as error:
+        raise InputError(
+            f"compiled_force: {name}: Numba cannot compile it: {_reason(str(error))}; expected a function of "
+            f"({', '.join(_ARGUMENTS)}) that writes newtons into the rows of force and returns nothing"
+        ) from None
+
+
+def _compiled(numba: Any, function: Callable[..., None], check_indices: bool) -> Any:
+    """The function for callers from Python, and for those from C++, to which it returns 0 where it has raised."""
     types = numba.types
-    inner = numba.njit(function)
+
+    def array(axes: int, readonly: bool = True) -> Any:
+        return types.Array(types.float64, axes, "C", readonly=readonly)
+
+    arrays = [array(2), array(2), array(1), array(1), array(2, readonly=False)]
+    inner = numba.njit(types.void(types.float64, *arrays), boundscheck=check_indices)(function)
     carray = numba.carray
-    numbers = types.CPointer(types.float64)
 
     def call(time, count, position, velocity, mass, radius, force):  # type: ignore[no-untyped-def]
-        inner(
-            time,
-            carray(position, (count, 3)),
-            carray(velocity, (count, 3)),
-            carray(mass, (count,)),
-            carray(radius, (count,)),
-            carray(force, (count, 3)),
-        )
+        try:
+            inner(
+                time,
+                carray(position, (count, 3)),
+                carray(velocity, (count, 3)),
+                carray(mass, (count,)),
+                carray(radius, (count,)),
+                carray(force, (count, 3)),
+            )
+        except Exception:
+            return 0
+        return 1
 
-    signature = types.void(types.float64, types.int64, numbers, numbers, numbers, numbers, numbers)
-    return numba.cfunc(signature)(call)
+    numbers = types.CPointer(types.float64)
+    signature = types.int32(types.float64, types.int64, numbers, numbers, numbers, numbers, numbers)
+    return inner, numba.cfunc(signature)(call)
+
+
+def _require_arguments(function: Any, name: str) -> None:
+    if not inspect.isfunction(function):
+        raise InputError(f"compiled_force: found {type(function).__name__}, expected a function written in Python")
+    try:
+        inspect.signature(function).bind(*_ARGUMENTS)
+    except TypeError:
+        raise InputError(
+            f"compiled_force: {name}: found the arguments {inspect.signature(function)}, expected "
+            f"({', '.join(_ARGUMENTS)})"
+        ) from None
+
+
+def _reason(text: str) -> str:
+    """Numba's many lines in one: what is wrong, and on which line of the source."""
+    text = re.sub(r"\x1b\[[0-9;]*m", "", text)
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    cause = next((line for line in lines if not line.startswith("Failed in")), "it does not say why")
+    deepest = re.findall(r"^\s*(?:Numba)?TypeError: (.*)$", text, re.MULTILINE)
+    if deepest:
+        cause = deepest[-1]
+    place = re.search(r'^File "([^"]*)", line (\d+)', text, re.MULTILINE)
+    return cause[:300] + (f" ({_file_name(place[1])}, line {place[2]})" if place else "")
+
+
+def _file_name(path: str) -> str:
+    """The last part of a path of either kind."""
+    return re.split(r"[/\\]", path)[-1]

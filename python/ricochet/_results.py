@@ -53,7 +53,8 @@ class Particles(NamedTuple):
 
 
 class ForceInput(NamedTuple):
-    """What a force of Python is given: the particles, in the order in which it is to return their forces."""
+    """What a force of Python is given: the particles, in the order in which it is to return their forces. Arrays are
+    read-only copies, which may be kept."""
 
     time: float
     id: npt.NDArray[np.uint64]

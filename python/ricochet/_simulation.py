@@ -7,6 +7,7 @@ import json
 import math
 import os
 import tempfile
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Callable, List, Optional, Tuple, Union
@@ -26,6 +27,8 @@ SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 _NAME = "scene"
 # Stands for the folder that meshes are written to while a scene is read.
 _MESHES = "/ricochet-meshes"
+# Levels of lists and dictionaries, as many as the tool reads.
+_DEEPEST = 64
 
 
 class Simulation(_core.Simulation):
@@ -45,7 +48,10 @@ class Simulation(_core.Simulation):
     forces
         Forces of your own besides the scene's: functions that get a :class:`ricochet.ForceInput` of all particles and
         return their forces in newtons, shape (n, 3), or what :func:`ricochet.compiled_force` makes of one. They must be
-        pure: the same input, the same forces.
+        pure: the same input, the same forces. With them the integrator "ballistic", which scenes have that name none,
+        moves all particles as "velocity_verlet".
+
+    What the tool would warn of is a Python warning (UserWarning), and stays in :attr:`warnings`.
 
     Raises :class:`ricochet.InputError` with all that is wrong, one line each, as the tool prints it.
     """
@@ -62,7 +68,9 @@ class Simulation(_core.Simulation):
         changes = _changes(overrides)
         meshes: List[Mesh] = []
         text, file = _text_of(scene, meshes)
-        self._begin(text, file, meshes, changes, bool(contacts), bool(verify), list(forces))
+        self._begin(text, file, meshes, changes, bool(contacts), bool(verify), _force_list(forces))
+        for warning in self.warnings:
+            warnings.warn(warning, UserWarning, stacklevel=2)
 
     def _begin(
         self,
@@ -101,11 +109,12 @@ class Simulation(_core.Simulation):
 
     def run(self, until: Optional[float] = None, progress: bool = False) -> None:
         """Runs to a time in seconds, or to the end."""
-        steps = self.step_count - self.step_index if until is None else self._steps_to(float(until))
+        steps = self.step_count - self.step_index if until is None else self._steps_to(_time(until))
         self.advance(steps, progress)
 
     def __reduce__(self) -> Any:
-        return _restored, (*self._made_from, self.save())
+        state = self.save()  # refuses one that has not been made
+        return _restored, (*self._made_from, state)
 
 
 def _changes(overrides: Any) -> List[str]:
@@ -114,9 +123,25 @@ def _changes(overrides: Any) -> List[str]:
     if not isinstance(overrides, Mapping):
         raise InputError(f"overrides: found {type(overrides).__name__}, expected a dictionary")
     return [
-        f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"
+        f"{key}={value if isinstance(value, str) else _json(value, f'overrides: {_short(key)}')}"
         for key, value in overrides.items()
     ]
+
+
+def _force_list(forces: Any) -> List[Force]:
+    try:
+        return list(forces)
+    except TypeError:
+        raise InputError(f"forces: found {type(forces).__name__}, expected a list of functions") from None
+
+
+def _short(value: Any) -> str:
+    """As messages show it."""
+    try:
+        text = repr(value)
+    except Exception:
+        text = type(value).__name__
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def _restored(*state: Any) -> Simulation:
@@ -129,7 +154,16 @@ def _restored(*state: Any) -> Simulation:
 def _count(steps: Any) -> int:
     if isinstance(steps, (int, np.integer)) and not isinstance(steps, bool) and 0 <= steps < 2**64:
         return int(steps)
-    raise InputError(f"steps: found {steps!r}, expected a whole number of at least 0")
+    raise InputError(f"steps: found {_short(steps)}, expected a whole number of at least 0")
+
+
+def _time(until: Any) -> float:
+    if not isinstance(until, (str, bytes)):
+        try:
+            return float(until)
+        except (TypeError, ValueError, OverflowError):
+            pass
+    raise InputError(f"until: found {_short(until)}, expected a time in seconds, or None for the end")
 
 
 class _NoBar:
@@ -155,7 +189,7 @@ def _bar(total: int) -> Any:
 
 def _text_of(scene: Any, meshes: List[Mesh]) -> Tuple[str, str]:
     if isinstance(scene, Mapping):
-        return json.dumps(_with_mesh_files(scene, meshes), indent=1, default=_plain), _NAME
+        return _json(_with_mesh_files(scene, meshes), _NAME, indent=1), _NAME
     if isinstance(scene, (str, os.PathLike)):
         file = os.fspath(scene)
         try:
@@ -165,21 +199,37 @@ def _text_of(scene: Any, meshes: List[Mesh]) -> Tuple[str, str]:
     raise InputError(f"scene: found {type(scene).__name__}, expected a file's name or a dictionary")
 
 
+def _json(value: Any, where: str, indent: Optional[int] = None) -> str:
+    try:
+        return json.dumps(value, indent=indent, default=_plain)
+    except InputError:
+        raise
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(f"{where}: cannot be written as JSON ({error})") from None
+
+
 def _plain(value: Any) -> Any:
     """What json cannot write of itself."""
     if isinstance(value, (np.ndarray, np.generic)):
+        if value.dtype.kind in "fc" and not np.isfinite(value).all():
+            raise InputError("scene: found nan or inf in an array, expected finite numbers")
         return value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise InputError(f"scene: found {type(value).__name__}, expected numbers, texts, lists and dictionaries")
 
 
-def _with_mesh_files(value: Any, meshes: List[Mesh]) -> Any:
+def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
     """A copy in which meshes are names of files that are written when the scene is read."""
+    if depth > _DEEPEST:
+        raise InputError(
+            f"scene: found lists and dictionaries nested deeper than {_DEEPEST} levels, expected fewer: one may contain "
+            "itself"
+        )
     if isinstance(value, Mapping):
-        return {_key(key): _with_mesh_files(entry, meshes) for key, entry in value.items()}
+        return {_key(key): _with_mesh_files(entry, meshes, depth + 1) for key, entry in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
-        return [_with_mesh_files(entry, meshes) for entry in value]
+        return [_with_mesh_files(entry, meshes, depth + 1) for entry in value]
     if isinstance(value, Mesh) or hasattr(value, "faces") or hasattr(value, "cells_dict"):
         # A mesh answers with the vertices that it has now.
         mesh = as_mesh(value)
@@ -201,4 +251,4 @@ def _write(mesh: Mesh, file: Path) -> None:
 def _key(key: Any) -> str:
     if isinstance(key, str):
         return key
-    raise InputError(f"scene: found the key {key!r}, expected texts as keys")
+    raise InputError(f"scene: found the key {_short(key)}, expected texts as keys")

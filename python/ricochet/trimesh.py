@@ -38,7 +38,6 @@ class RayMeshIntersector:
         ray_directions: Any,
         return_locations: bool = False,
         multiple_hits: bool = True,
-        **_: Any,
     ) -> Any:
         """Triangle and ray of all hits (or of the first of each ray), and the points where return_locations."""
         ray, triangle, point = self._hits(ray_origins, ray_directions, multiple_hits)
@@ -48,7 +47,7 @@ class RayMeshIntersector:
         """The first triangle that each ray hits, -1 for none."""
         return self._queries.first_hits(ray_origins, ray_directions).triangle
 
-    def intersects_any(self, ray_origins: Any, ray_directions: Any, **_: Any) -> npt.NDArray[np.bool_]:
+    def intersects_any(self, ray_origins: Any, ray_directions: Any) -> npt.NDArray[np.bool_]:
         """Whether each ray hits anything."""
         return self._queries.occluded(ray_origins, ray_directions)
 

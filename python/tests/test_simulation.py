@@ -208,56 +208,6 @@ class Simulation(unittest.TestCase):
         simulation.run(until=0.1, progress=True)
         self.assertEqual(simulation.step_index, 10)
 
-    def oscillators(self, **keys):
-        """Two masses on springs to the origin, k = 4 N/m."""
-        scene = bouncing(forces=[], colliders=[], simulation={"time_step": 0.001, "duration": 10.0, "integrator": "rk4"},
-                         particles=[{"position": [1, 0, 0]}, {"position": [0, 2, 0], "mass": 4.0}])
-        return ricochet.Simulation(scene, **keys)
-
-    def test_forces_of_python_act_on_all_at_once(self):
-        seen = []
-
-        def spring(particles):
-            seen.append(particles)
-            return -4.0 * particles.position
-
-        simulation = self.oscillators(forces=[spring])
-        simulation.run(until=1.0)
-        expected = [[np.cos(2.0), 0, 0], [0, 2 * np.cos(1.0), 0]]
-        np.testing.assert_allclose(simulation.particles.position, expected, atol=1e-9)
-        np.testing.assert_array_equal(seen[0].position, [[1, 0, 0], [0, 2, 0]])  # kept copies
-        np.testing.assert_array_equal(seen[0].mass, [1, 4])
-
-    def test_what_a_force_throws_comes_out_of_the_step(self):
-        def breaks(particles):
-            raise KeyError("broken")
-
-        with self.assertRaisesRegex(KeyError, "broken"):
-            self.oscillators(forces=[breaks]).step()
-        for wrong in (lambda p: None, lambda p: p.position[:1], lambda p: p.position * np.nan, lambda p: "text",
-                      lambda p: p.mass):
-            with self.assertRaises(ricochet.InputError):
-                self.oscillators(forces=[wrong]).step()
-        with self.assertRaises(ricochet.InputError):
-            self.oscillators(forces=[7])
-
-    def test_compiled_forces_come_to_the_same_bits(self):
-        try:
-            import numba  # noqa: F401
-        except ImportError:
-            self.skipTest("numba is not installed")
-
-        def spring(time, position, velocity, mass, radius, force):
-            for i in range(len(mass)):
-                for k in range(3):
-                    force[i, k] = -4.0 * position[i, k]
-
-        compiled = self.oscillators(forces=[ricochet.compiled_force(spring)])
-        plain = self.oscillators(forces=[lambda p: -4.0 * p.position])
-        compiled.run(until=1.0)
-        plain.run(until=1.0)
-        self.assertEqual(compiled.state_hash, plain.state_hash)
-
     def test_a_picture_is_an_array(self):
         simulation = ricochet.Simulation(ROOT / "scenes" / "bouncing_ball.json")
         simulation.run(until=0.5)

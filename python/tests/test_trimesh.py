@@ -34,6 +34,12 @@ class RayMeshIntersector(unittest.TestCase):
         np.testing.assert_array_equal(self.ray.intersects_any(self.origins, self.directions), [True, False])
         np.testing.assert_array_equal(self.ray.contains_points([[0.5, 0.5, 0.5], [2, 0, 0]]), [True, False])
 
+    def test_keywords_that_it_does_not_know_are_refused_by_name(self):
+        for ask in (self.ray.intersects_id, self.ray.intersects_any, self.ray.intersects_location,
+                    self.ray.intersects_first):
+            with self.assertRaisesRegex(TypeError, "max_hits"):
+                ask(self.origins, self.directions, max_hits=1)
+
     def test_a_package_that_is_installed_can_use_it(self):
         try:
             import trimesh

@@ -9,6 +9,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/printable.h"
 
 namespace ricochet::python {
 namespace {
@@ -23,18 +24,53 @@ std::string expected_shape(py::ssize_t columns) {
     return columns == 0 ? "one row of numbers" : fmt::format("numbers of shape (n, {})", columns);
 }
 
+std::string kind_of(const py::handle& object) { return py::str(py::type::handle_of(object).attr("__name__")); }
+
+/// What NumPy has said, in one line and short.
+std::string reason_of(const py::error_already_set& error) {
+    const std::string text = py::str(error.value());
+    return printable(text.substr(0, text.find('\n')), 160);
+}
+
+/// The first entry of an array of objects that is no number, or why it has no place in an array of numbers.
+std::string first_odd_entry(const py::array& array) {
+    const py::object flat = array.attr("ravel")();
+    for (const py::handle& entry : flat) {
+        const bool is_whole = PyLong_Check(entry.ptr()) != 0;
+        if (is_whole && PyLong_AsDouble(entry.ptr()) == -1.0 && PyErr_Occurred() != nullptr) {
+            PyErr_Clear();
+            return "a whole number beyond the range of doubles";
+        }
+        if (is_whole || PyFloat_Check(entry.ptr()) != 0) continue;
+        return kind_of(entry);
+    }
+    return "whole numbers of more than 64 bits (as doubles: numpy.asarray(..., dtype=float))";
+}
+
+/// What is masked would count as any other number.
+void refuse_masked(const py::handle& object, const char* name, const std::string& expected) {
+    const py::module_ masked = py::module_::import("numpy.ma");
+    if (!masked.attr("is_masked")(object).cast<bool>()) return;
+    throw InputError(fmt::format("{}: found masked entries, expected {}; fill or remove them", name, expected));
+}
+
 /// As NumPy sees it; an object of Python's own kinds (None, a dictionary, ragged lists) is no array of numbers.
 py::array as_array(const py::handle& object, const char* name, const std::string& expected) {
+    const bool is_plain = Py_TYPE(object.ptr()) == py::detail::npy_api::get().PyArray_Type_;
+    if (!is_plain && py::hasattr(object, "mask")) refuse_masked(object, name, expected);
     py::array array;
     try {
         array = py::module_::import("numpy").attr("asarray")(object);
     } catch (py::error_already_set& error) {
         if (error.matches(PyExc_MemoryError) || error.matches(PyExc_KeyboardInterrupt)) throw;
-        throw InputError(fmt::format("{}: found {}, expected {}", name,
-                                     std::string(py::str(py::type::handle_of(object).attr("__name__"))), expected));
+        throw InputError(
+            fmt::format("{}: found {} ({}), expected {}", name, kind_of(object), reason_of(error), expected));
     }
     const char kind = array.dtype().kind();
     if (kind == 'f' || kind == 'i' || kind == 'u' || kind == 'b') return array;
+    if (kind == 'O' && array.size() > 0) {
+        throw InputError(fmt::format("{}: found {}, expected {}", name, first_odd_entry(array), expected));
+    }
     throw InputError(fmt::format("{}: found {}, expected {}", name, std::string(py::str(array.dtype())), expected));
 }
 
@@ -47,7 +83,18 @@ bool has_shape(const py::array& array, py::ssize_t columns) {
 Doubles as_doubles(const py::array& array, const char* name) {
     Doubles doubles = Doubles::ensure(array);
     if (doubles) return doubles;
-    throw InputError(fmt::format("{}: these numbers cannot be made doubles", name));
+    std::string reason;
+    try {
+        return py::module_::import("numpy").attr("ascontiguousarray")(array, "f8");
+    } catch (py::error_already_set& error) {
+        if (error.matches(PyExc_KeyboardInterrupt)) throw;
+        reason = error.matches(PyExc_MemoryError)
+                     ? fmt::format("which is {:.3g} GB as doubles in C order, more than there is memory for",
+                                   8e-9 * static_cast<double>(array.size()))
+                     : fmt::format("which NumPy cannot make doubles ({})", reason_of(error));
+    }
+    throw InputError(fmt::format("{}: found {} of shape {}, {}", name, std::string(py::str(array.dtype())),
+                                 shape_of(array), reason));
 }
 
 std::unique_ptr<ThreadLimit>& thread_limit() {

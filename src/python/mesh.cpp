@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/queries/mesh_queries.h"
@@ -223,6 +224,12 @@ void bind_mesh(py::module_& module) {
              [](const MeshQueries& m) {
                  return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
                                     m.mesh().vertices.size());
+             })
+        // Without it the old protocols of pickle look for a base class that could be copied.
+        .def("__reduce__",
+             [](const py::object& mesh) {
+                 return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
+                                       py::make_tuple(py::type::of(mesh)), mesh.attr("__getstate__")());
              })
         .def(py::pickle([](const MeshQueries& m) { return py::make_tuple(vertices_of(m), faces_of(m)); },
                         [](const py::tuple& state) {

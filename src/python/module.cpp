@@ -1,5 +1,6 @@
 // The module ricochet._core.
 #include "python/arrays.h"
+#include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/scene.h"
@@ -17,6 +18,7 @@ PYBIND11_MODULE(_core, module) {
                "Let questions and steps use so many threads; 0 is all that the machine has. No result depends on it.");
     module.def("thread_count", &thread_count, "How many threads questions and steps use now.");
     module.def("scene_schema", &scene_schema, "The JSON Schema of scenes, as text.");
+    python::guard_root_class();
     python::bind_mesh(module);
     python::bind_simulation(module);
 }

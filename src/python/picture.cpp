@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "python/arrays.h"
+#include "python/made_objects.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/made_objects.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
 #include "ricochet/queries/mesh_queries.h"
@@ -52,6 +53,8 @@ py::dict attributes_of(const Handle& handle) {
 double value_of(const Doubles& list, std::size_t i) { return list.size() == 1 ? *list.data() : list.data()[i]; }
 
 Doubles one_or_each(const py::handle& object, const char* name, std::size_t count) {
+    if (object.is_none())
+        throw InputError(fmt::format("{}: found None, expected a number or one row of numbers", name));
     Doubles list = numbers_or_one(object, name);
     if (list.size() != 1) require_same_length(static_cast<std::size_t>(list.size()), count, name);
     return list;
@@ -235,7 +238,7 @@ py::dict statistics_of(const Handle& handle) {
 
 /// How many steps it takes to come to a time, s, from where the simulation is.
 std::uint64_t steps_to(const Simulation& simulation, double time) {
-    if (!(time >= 0.0)) throw InputError(fmt::format("time: found {}, expected at least 0 s", time));
+    if (!(time >= 0.0)) throw InputError(fmt::format("until: found {}, expected a time of at least 0 s", time));
     const double steps = std::ceil(time / simulation.options().time_step - 1e-6);
     const auto last = static_cast<double>(simulation.step_count());
     const auto wanted = static_cast<std::uint64_t>(std::min(steps, last));
@@ -251,10 +254,41 @@ auto reader(Value (Simulation::*function)() const) {
 
 std::unique_ptr<Handle> made(std::string text, std::string file, std::vector<std::string> overrides, bool contacts,
                              bool verify, const std::vector<py::object>& forces) {
-    std::vector<ParticlesForceEntry> entries;
-    for (const py::object& force : forces) entries.push_back({force_of(force)});
+    UserForces own;
+    for (std::size_t k = 0; k < forces.size(); ++k) own.push_back(force_of(forces[k], k));
     return std::make_unique<Handle>(std::move(text), std::move(file), std::move(overrides), contacts, verify,
-                                    std::move(entries));
+                                    std::move(own));
+}
+
+/// The simulation in an object of Python; null where its __init__ has not run.
+Handle* handle_in(PyObject* object) {
+    auto* const instance = reinterpret_cast<py::detail::instance*>(object);
+    return static_cast<Handle*>(instance->get_value_and_holder().value_ptr());
+}
+
+int traverse(PyObject* object, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(object));
+    const Handle* const handle = handle_in(object);
+    return handle == nullptr ? 0 : visit_functions(handle->forces(), visit, arg);
+}
+
+int clear(PyObject* object) {
+    if (const Handle* const handle = handle_in(object)) let_go_of_functions(handle->forces());
+    return 0;
+}
+
+void deallocate(PyObject* object) {
+    PyObject_GC_UnTrack(object);
+    py::detail::pybind11_object_dealloc(object);
+}
+
+/// A force may be a method of who holds the simulation: Python finds such cycles.
+void take_part_in_garbage_collection(PyHeapTypeObject* heap_type) {
+    PyTypeObject& type = heap_type->ht_type;
+    type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type.tp_traverse = &traverse;
+    type.tp_clear = &clear;
+    type.tp_dealloc = &deallocate;
 }
 
 void bind_state(py::class_<Handle>& type) {
@@ -319,14 +353,21 @@ void bind_changes(py::class_<Handle>& type) {
             "save", [](const Handle& handle) { return py::bytes(handle.save()); },
             "All that steps have left behind, for restore() in a simulation of the same scene.")
         .def(
-            "restore", [](Handle& handle, const py::bytes& state) { handle.restore(state); }, arg("state"));
+            "restore",
+            [](Handle& handle, const py::buffer& state) {
+                const auto bytes = py::reinterpret_steal<py::object>(PyBytes_FromObject(state.ptr()));
+                if (!bytes) throw py::error_already_set();
+                handle.restore(py::cast<std::string>(bytes));
+            },
+            arg("state"), "Takes over what save() has returned, in a simulation of the same scene and forces.");
 }
 
 }  // namespace
 
 void bind_simulation(py::module_& module) {
     using py::arg;
-    py::class_<Handle> type(module, "Simulation", "A simulation of a scene that is given as text.");
+    py::class_<Handle> type(module, "Simulation", "A simulation of a scene that is given as text.",
+                            py::custom_type_setup(&take_part_in_garbage_collection));
     type.def(py::init(&made), arg("text"), arg("file"), arg("overrides"), arg("contacts"), arg("verify"),
              arg("forces"));
     bind_state(type);

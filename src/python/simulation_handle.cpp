@@ -1,5 +1,7 @@
 #include "python/simulation_handle.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstring>
@@ -7,13 +9,71 @@
 #include <span>
 #include <utility>
 
+#include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
+#include "ricochet/core/printable.h"
+#include "ricochet/io/scene_forces.h"
 
 namespace ricochet::python {
 namespace {
 
 /// How often a run looks for Ctrl-C and shows how far it is.
 constexpr std::chrono::milliseconds kLookAround{100};
+
+constexpr const char* kBallisticWarning =
+    "forces: with them the integrator ballistic moves all particles as velocity_verlet; say \"velocity_verlet\" or "
+    "another one in simulation.integrator";
+
+/// Begins every saved state; its last digit changes with the layout.
+constexpr std::uint64_t kSavedFormat = 0x5249434f50590001ULL;
+
+/// A saved state.
+struct Saved {
+    std::uint64_t scene_forces = 0;
+    std::string forces;  ///< the user's own, by name
+    std::string state;   ///< the library's, which a checksum ends
+};
+
+/// The bytes as they come; InputError where there are not so many.
+ByteSource source_of(std::span<const char>& rest) {
+    return [&rest](std::span<std::byte> part) {
+        if (part.size() > rest.size()) throw InputError("restore: the saved state ends too early");
+        std::memcpy(part.data(), rest.data(), part.size());
+        rest = rest.subspan(part.size());
+    };
+}
+
+bool is_whole(const std::string& state) {
+    std::uint64_t checksum = 0;
+    if (state.size() < sizeof(checksum)) return false;
+    const std::size_t size = state.size() - sizeof(checksum);
+    std::memcpy(&checksum, state.data() + size, sizeof(checksum));
+    StateHash hash;
+    hash.add(std::as_bytes(std::span(state.data(), size)));
+    return hash.value() == checksum;
+}
+
+/// All that can be known before a simulation is changed.
+Saved saved_in(const std::string& bytes) {
+    std::span<const char> rest(bytes);
+    BinaryReader reader(source_of(rest));
+    std::uint64_t format = 0;
+    if (bytes.size() >= sizeof(format)) reader(format);
+    if (format != kSavedFormat) {
+        throw InputError("restore: found other bytes, expected those that save() of this version has returned");
+    }
+    Saved saved;
+    reader(saved.scene_forces);
+    reader(saved.forces);
+    reader(saved.state);
+    if (!rest.empty()) {
+        throw InputError(fmt::format(
+            "restore: found {} bytes behind the end of the state, expected the bytes of one save()", rest.size()));
+    }
+    if (!is_whole(saved.state)) throw InputError("restore: the state is damaged: its checksum is wrong");
+    return saved;
+}
 
 /// What goes on between the steps of a run, with the GIL taken back for as long as it takes.
 class Watch {
@@ -47,17 +107,21 @@ private:
 }  // namespace
 
 SimulationHandle::SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides,
-                                   bool keeps_contacts, bool verifies, std::vector<ParticlesForceEntry> forces)
+                                   bool keeps_contacts, bool verifies, UserForces forces)
     : text_(std::move(text)),
       file_(std::move(file)),
       overrides_(std::move(overrides)),
       keeps_contacts_(keeps_contacts),
       verifies_(verifies),
-      scene_(parse_scene(text_, file_, overrides_)) {
+      scene_(parse_scene(text_, file_, overrides_)),
+      forces_(std::move(forces)) {
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
-    for (ParticlesForceEntry& force : forces) scene_.setup.particles_forces.push_back(std::move(force));
+    if (!forces_.empty() && scene_.setup.options.integrator.kind == IntegratorKind::ballistic) {
+        scene_.warnings.emplace_back(kBallisticWarning);
+    }
+    for (const auto& force : forces_) scene_.setup.particles_forces.push_back({force});
     simulation_ = std::make_unique<Simulation>(std::move(scene_.setup));
     if (!keeps_contacts) return;
     simulation_->on_contact([this](std::span<const ContactRecord> records) {
@@ -116,24 +180,43 @@ std::vector<ContactRecord> SimulationHandle::take_contacts() {
     return std::exchange(contacts_, {});
 }
 
+std::string SimulationHandle::forces_named() const {
+    std::string names;
+    for (const auto& force : forces_) names += (names.empty() ? "" : ", ") + force->name();
+    return names.empty() ? "none" : names;
+}
+
 std::string SimulationHandle::save() const {
-    return read([](const Simulation& simulation) {
-        std::string bytes;
-        simulation.save([&](std::span<const std::byte> part) {
-            bytes.append(reinterpret_cast<const char*>(part.data()), part.size());
-        });
-        return bytes;
-    });
+    std::string bytes;
+    const ByteSink sink = [&](std::span<const std::byte> part) {
+        bytes.append(reinterpret_cast<const char*>(part.data()), part.size());
+    };
+    Saved saved{forces_fingerprint(text_, overrides_), forces_named(), {}};
+    read([&](const Simulation& simulation) { simulation.save(sink); });
+    saved.state.swap(bytes);
+    BinaryWriter writer(sink);
+    writer(kSavedFormat);
+    writer(saved.scene_forces);
+    writer(saved.forces);
+    writer(saved.state);
+    return bytes;
 }
 
 void SimulationHandle::restore(const std::string& bytes) {
+    const Saved saved = saved_in(bytes);
+    if (saved.forces != forces_named()) {
+        throw InputError(
+            fmt::format("restore: found a state made under the forces {}, expected one under this "
+                        "simulation's own: {}",
+                        printable(saved.forces, 200), forces_named()));
+    }
+    if (saved.scene_forces != forces_fingerprint(text_, overrides_)) {
+        throw InputError(
+            "restore: found a state made under other forces or flows of the scene, expected those of this simulation");
+    }
     change([&](Simulation& simulation) {
-        std::span<const char> rest(bytes);
-        simulation.restore([&](std::span<std::byte> part) {
-            if (part.size() > rest.size()) throw InputError("the saved state ends too early");
-            std::memcpy(part.data(), rest.data(), part.size());
-            rest = rest.subspan(part.size());
-        });
+        std::span<const char> rest(saved.state);
+        simulation.restore(source_of(rest));
     });
 }
 

@@ -25,12 +25,15 @@ struct LentParticles {
     Particles kept;  ///< after that
 };
 
+/// The user's own forces: those that force_of() has made.
+using UserForces = std::vector<std::shared_ptr<const ParticlesForce>>;
+
 class SimulationHandle {
 public:
-    /// forces: of the user's own, besides the scene's. text: a scene; file: its name in messages, to whose folder its
+    /// forces: besides the scene's. text: a scene; file: its name in messages, to whose folder its
     /// paths are relative.
     SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides, bool keeps_contacts,
-                     bool verifies, std::vector<ParticlesForceEntry> forces);
+                     bool verifies, UserForces forces);
     ~SimulationHandle();
     SimulationHandle(const SimulationHandle&) = delete;
     SimulationHandle& operator=(const SimulationHandle&) = delete;
@@ -64,7 +67,11 @@ public:
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
     [[nodiscard]] bool keeps_contacts() const { return keeps_contacts_; }
     [[nodiscard]] bool verifies() const { return verifies_; }
+    [[nodiscard]] const UserForces& forces() const { return forces_; }
+    /// The library's state, and which forces it was made under.
     [[nodiscard]] std::string save() const;
+    /// Throws InputError for what save() has not given, or a simulation with other forces has; then nothing has
+    /// changed. Then what Simulation::restore() throws.
     void restore(const std::string& bytes);
 
 private:
@@ -81,6 +88,7 @@ private:
     };
 
     void keep_lent();
+    [[nodiscard]] std::string forces_named() const;
 
     std::string text_;
     std::string file_;
@@ -88,6 +96,7 @@ private:
     bool keeps_contacts_;
     bool verifies_;
     SceneDescription scene_;  ///< without its setup
+    UserForces forces_;
     Vec3 up_{0, 0, 1};
     std::unique_ptr<Simulation> simulation_;
     std::vector<ContactRecord> contacts_;
@@ -95,8 +104,13 @@ private:
     mutable std::atomic<bool> is_busy_ = false;
 };
 
-/// A force that is a function of Python, or a compiled one. Throws InputError for anything else.
-[[nodiscard]] std::shared_ptr<const ParticlesForce> force_of(const py::object& force);
+/// A force that is a function of Python, or a compiled one; its number is for messages. Throws InputError for anything
+/// else.
+[[nodiscard]] std::shared_ptr<const ParticlesForce> force_of(const py::object& force, std::size_t number);
+/// For Python's search for cycles: what force_of() has made keeps a function alive, which may keep the simulation
+/// alive.
+[[nodiscard]] int visit_functions(const UserForces& forces, visitproc visit, void* arg);
+void let_go_of_functions(const UserForces& forces);
 void bind_picture(py::class_<SimulationHandle>& type);
 
 }  // namespace ricochet::python

@@ -1,0 +1,150 @@
+"""Objects that have not been made, arguments that say what is wrong with them, and nesting without an end."""
+
+import pickle
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+import ricochet
+import ricochet.trimesh
+from support import BOX_FACES, BOX_VERTICES, bouncing
+
+POINTS = np.array([[0.5, 0.5, 0.5]])
+
+# Every method and property of a class, of an object whose __init__ has not run.
+ASKS_ALL = """
+import sys
+import ricochet
+kind = getattr(ricochet, sys.argv[1])
+made = kind.__new__(kind)
+points = [[0.5, 0.5, 0.5]]
+asked = 0
+for name in sorted(set(dir(ricochet._core.__dict__[sys.argv[1]])) - set(dir(object)) | {"__repr__", "__reduce__"}):
+    if name in ("__init__", "__new__", "__class__", "__setstate__", "__module__", "read"):
+        continue
+    for arguments in ((), (points,), (points, points), (b"",), (1,), (1, None)):
+        try:
+            value = getattr(made, name)
+            value(*arguments)
+        except TypeError as error:
+            if "has not been made" in str(error):
+                asked += 1
+                break
+    else:
+        raise SystemExit(f"{name} says nothing")
+print(asked)
+"""
+
+
+class NotMade(unittest.TestCase):
+    def test_objects_refuse_every_question(self):
+        for kind, least in (("Mesh", 15), ("Simulation", 20)):
+            asked = subprocess.run([sys.executable, "-c", ASKS_ALL, kind], capture_output=True, text=True)
+            self.assertEqual(asked.returncode, 0, f"{kind}: {asked.stdout} {asked.stderr}")
+            self.assertGreaterEqual(int(asked.stdout), least)
+
+    def test_objects_are_refused_as_arguments(self):
+        mesh = ricochet.Mesh.__new__(ricochet.Mesh)
+        for call in (lambda: mesh.inside(POINTS), lambda: len(mesh), lambda: ricochet.as_mesh(mesh).vertices,
+                     lambda: ricochet.Simulation(bouncing(colliders=[{"type": "mesh", "file": mesh}])),
+                     lambda: ricochet.trimesh.RayMeshIntersector(mesh).contains_points(POINTS),
+                     lambda: pickle.dumps(mesh),
+                     lambda: pickle.dumps(ricochet.Simulation.__new__(ricochet.Simulation))):
+            with self.assertRaisesRegex(TypeError, "has not been made"):
+                call()
+
+    def test_the_class_that_all_derive_from_makes_no_objects(self):
+        root = ricochet.Mesh.__base__
+
+        class Own(root):
+            pass
+
+        for make in (root, lambda: root.__new__(root), Own, lambda: Own.__new__(Own)):
+            with self.assertRaisesRegex(TypeError, "cannot be made"):
+                make()
+
+    def test_meshes_go_through_every_protocol_of_pickle(self):
+        mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            twin = pickle.loads(pickle.dumps(mesh, protocol))
+            np.testing.assert_array_equal(twin.vertices, mesh.vertices)
+            simulation = pickle.loads(pickle.dumps(ricochet.Simulation(bouncing()), protocol))
+            simulation.step()
+
+    def test_classes_of_the_users_may_not_use_themselves_before_they_are_made(self):
+        test = self
+
+        class Early(ricochet.Mesh):
+            def __init__(self):
+                with test.assertRaisesRegex(TypeError, "Early: this object has not been made"):
+                    self.inside(POINTS)
+                super().__init__(BOX_VERTICES, BOX_FACES)
+
+        self.assertTrue(Early().inside(POINTS)[0])
+
+        class Failed(ricochet.Simulation):
+            def __init__(self):
+                try:
+                    super().__init__({"ricochet": 1, "nothing": 1})
+                except ricochet.InputError:
+                    pass
+                with test.assertRaisesRegex(TypeError, "Failed: this object has not been made"):
+                    self.step()
+                super().__init__(bouncing())
+
+        Failed().step()
+
+
+class Messages(unittest.TestCase):
+    def refused(self, said, call, *arguments, **keys):
+        with self.assertRaisesRegex(ricochet.InputError, said) as caught:
+            call(*arguments, **keys)
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_say_what_has_no_place_in_an_array(self):
+        mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
+        self.refused(r"points: found NoneType", mesh.inside, [[None, 0, 0]])
+        self.refused(r"points: found dict", mesh.inside, [[{}, 0, 0]])
+        self.refused(r"points: found str|points: found <U1", mesh.inside, [["a", "b", "c"]])
+        self.refused(r"points: found whole numbers of more than 64 bits", mesh.inside, [[2**70, 0, 0]])
+        self.refused(r"points: found a whole number beyond the range of doubles", mesh.inside, [[10**400, 0, 0]])
+        self.refused(r"points: found list \(.+\), expected numbers", mesh.inside, [[1, 2], [3]])
+        self.refused(r"points: found float64 of shape \(100000000000000, 3\), which is 2.4e\+06 GB", mesh.inside,
+                     np.broadcast_to(np.zeros(3), (10**14, 3)))
+
+    def test_of_masked_entries_and_of_none_for_a_number(self):
+        mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
+        points = np.ma.masked_array(np.full((2, 3), 0.5), mask=[[True, False, False], [False] * 3])
+        self.refused("points: found masked entries", mesh.inside, points)
+        self.assertTrue(mesh.inside(np.ma.masked_array(points.data)).all())
+        self.refused("mass: found None", ricochet.Simulation(bouncing()).add_particles, [[0, 0, 1.0]], mass=None)
+        self.refused("scene: found nan or inf in an array", ricochet.Simulation,
+                     bouncing(particles=[{"position": np.array([0.0, np.nan, 0.0])}]))
+
+    def test_of_scenes_that_never_end(self):
+        endless = []
+        endless.append(endless)
+        self.refused("nested deeper than 64 levels", ricochet.Simulation, bouncing(particles=endless))
+        deep = 1
+        for _ in range(100000):
+            deep = [deep]
+        self.refused("nested deeper than 64 levels", ricochet.Simulation, bouncing(particles=deep))
+        self.refused("overrides: 'particles': cannot be written as JSON", ricochet.Simulation, bouncing(),
+                     {"particles": endless})
+        self.refused("overrides: 'particles': cannot be written as JSON", ricochet.Simulation, bouncing(),
+                     {"particles": deep})
+        odd = np.empty(1, dtype=object)
+        odd[0] = odd
+        self.refused("scene: cannot be written as JSON", ricochet.Simulation, bouncing(particles=odd))
+
+    def test_of_times(self):
+        simulation = ricochet.Simulation(bouncing())
+        for until in ("x", "1.0", b"1", [], {}, 10**400, np.nan, -1.0, 1j, object()):
+            self.refused("^until: found .*, expected a time", simulation.run, until)
+        simulation.run(np.float32(0.5))
+        self.assertEqual(simulation.step_index, 50)
+
+
+if __name__ == "__main__":
+    unittest.main()

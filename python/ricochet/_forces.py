@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import os
 import re
 from typing import Any, Callable
 
@@ -60,20 +61,29 @@ def _compile(function: Callable[..., None], check_indices: bool) -> Any:
         return _compiled(numba, function, check_indices)
     except (numba.core.errors.NumbaError, TypeError, ValueError, NotImplementedError, AssertionError) as error:
         raise InputError(
-            f"compiled_force: {name}: Numba cannot compile it: {_reason(str(error))}; expected a function of "
+            f"compiled_force: {name}: Numba cannot compile it: {_reason(str(error), function)}; expected a function of "
             f"({', '.join(_ARGUMENTS)}) that writes newtons into the rows of force and returns nothing"
         ) from None
 
 
 def _compiled(numba: Any, function: Callable[..., None], check_indices: bool) -> Any:
-    """The function for callers from Python, and for those from C++, to which it returns 0 where it has raised."""
+    """The function for callers from Python, and for those from C++, to which it returns 0 where it has raised. Arrays
+    but the last are read-only to it."""
     types = numba.types
 
     def array(axes: int, readonly: bool = True) -> Any:
         return types.Array(types.float64, axes, "C", readonly=readonly)
 
+    users = numba.njit(boundscheck=check_indices)(function)
+
+    def pass_on(time, position, velocity, mass, radius, force):  # type: ignore[no-untyped-def]
+        users(time, position, velocity, mass, radius, force)
+
     arrays = [array(2), array(2), array(1), array(1), array(2, readonly=False)]
-    inner = numba.njit(types.void(types.float64, *arrays), boundscheck=check_indices)(function)
+    inner = numba.njit(types.void(types.float64, *arrays))(pass_on)
+    returned = users.nopython_signatures[0].return_type
+    if returned != types.none:
+        raise ValueError(f"it returns {returned}")
     carray = numba.carray
 
     def call(time, count, position, velocity, mass, radius, force):  # type: ignore[no-untyped-def]
@@ -107,7 +117,7 @@ def _require_arguments(function: Any, name: str) -> None:
         ) from None
 
 
-def _reason(text: str) -> str:
+def _reason(text: str, function: Any) -> str:
     """Numba's many lines in one: what is wrong, and on which line of the source."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", text)
     lines = [line.strip() for line in text.splitlines() if line.strip()]
@@ -115,10 +125,8 @@ def _reason(text: str) -> str:
     deepest = re.findall(r"^\s*(?:Numba)?TypeError: (.*)$", text, re.MULTILINE)
     if deepest:
         cause = deepest[-1]
-    place = re.search(r'^File "([^"]*)", line (\d+)', text, re.MULTILINE)
-    return cause[:300] + (f" ({_file_name(place[1])}, line {place[2]})" if place else "")
-
-
-def _file_name(path: str) -> str:
-    """The last part of a path of either kind."""
-    return re.split(r"[/\\]", path)[-1]
+    own = os.path.basename(function.__code__.co_filename)
+    for path, line in re.findall(r'^File "([^"]*)", line (\d+)', text, re.MULTILINE):
+        if os.path.basename(path) == own:
+            return f"{cause[:300]} ({own}, line {line})"
+    return cause[:300]

@@ -152,6 +152,15 @@ class CompiledForces(unittest.TestCase):
             compiled.run(until=1.0)
             self.assertEqual(compiled.state_hash, plain.state_hash)
 
+    def test_may_have_more_arguments_with_defaults(self):
+        def spring(time, position, velocity, mass, radius, force, stiffness=4.0):
+            force[:] = -stiffness * position
+
+        compiled, plain = (oscillators(forces=[f]) for f in (ricochet.compiled_force(spring), pull))
+        compiled.step()
+        plain.step()
+        self.assertEqual(compiled.state_hash, plain.state_hash)
+
     def test_may_have_been_compiled_by_the_user(self):
         import numba
 
@@ -204,7 +213,7 @@ class CompiledForces(unittest.TestCase):
             pass
 
         for function, said in ((writes, "Cannot modify readonly array"), (names, "not_there"), (text, "setitem"),
-                               (answers, "returns nothing"), (few, r"found the arguments \(time, position\)"),
+                               (answers, "it returns array"), (few, r"found the arguments \(time, position\)"),
                                (7, "found int"), (len, "found builtin_function_or_method"), (None, "found NoneType")):
             with self.assertRaisesRegex(ricochet.InputError, said) as caught:
                 ricochet.compiled_force(function)

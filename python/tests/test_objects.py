@@ -50,6 +50,8 @@ class NotMade(unittest.TestCase):
                      lambda: ricochet.Simulation(bouncing(colliders=[{"type": "mesh", "file": mesh}])),
                      lambda: ricochet.trimesh.RayMeshIntersector(mesh).contains_points(POINTS),
                      lambda: pickle.dumps(mesh),
+                     lambda: ricochet.Simulation(
+                         bouncing(), forces=[ricochet.CompiledForce.__new__(ricochet.CompiledForce)]),
                      lambda: pickle.dumps(ricochet.Simulation.__new__(ricochet.Simulation))):
             with self.assertRaisesRegex(TypeError, "has not been made"):
                 call()

@@ -7,6 +7,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,15 @@ class Simulation(unittest.TestCase):
             ricochet.Simulation(bouncing(materials={"rubber": things.Material(restitutoin=0.8)}))
         with self.assertRaisesRegex(ValueError, "simulation.time_step"):
             ricochet.Simulation(bouncing(), {"simulation.time_step": -1})
+
+    def test_what_the_tool_warns_of_is_a_warning_but_that_nothing_moves(self):
+        with self.assertWarnsRegex(UserWarning, "materials.wool: no collider uses this material"):
+            simulation = ricochet.Simulation(bouncing(materials={"rubber": {}, "wool": {}}))
+        self.assertEqual(len(simulation.warnings), 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            empty = ricochet.Simulation(bouncing(particles=[]))
+        self.assertEqual(empty.add_particles([[0, 0, 1.0]]).tolist(), [0])
 
     def test_overrides_are_those_of_the_tool(self):
         simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 0.5})

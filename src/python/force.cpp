@@ -132,6 +132,10 @@ void let_go_of_functions(const UserForces& forces) {
 std::shared_ptr<const ParticlesForce> force_of(const py::object& force, std::size_t number) {
     const py::object compiled = py::module_::import("ricochet._forces").attr("CompiledForce");
     if (py::isinstance(force, compiled)) {
+        if (!py::hasattr(force, "_callback")) {
+            throw py::type_error(fmt::format(
+                "forces[{}]: CompiledForce: this object has not been made: compiled_force() makes one", number));
+        }
         return std::make_shared<CompiledForce>(force, name_of(force.attr("function"), number));
     }
     if (PyCallable_Check(force.ptr()) == 0) {

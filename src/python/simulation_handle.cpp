@@ -118,6 +118,8 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
+    // Here particles can be added.
+    std::erase_if(scene_.warnings, [](const std::string& warning) { return warning.ends_with("nothing will move"); });
     if (!forces_.empty() && scene_.setup.options.integrator.kind == IntegratorKind::ballistic) {
         scene_.warnings.emplace_back(kBallisticWarning);
     }

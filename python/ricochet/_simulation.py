@@ -82,14 +82,16 @@ class Simulation(_core.Simulation):
         verify: bool,
         forces: List[Force],
     ) -> None:
-        self._made_from = (text, file, meshes, changes, contacts, verify, forces)
+        if "_made_from" in vars(self):
+            raise InputError("Simulation: this object has been made already; make another one")
         if not meshes:
             super().__init__(text, file, changes, contacts, verify, forces)
-            return
-        with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
-            for number, mesh in enumerate(meshes):
-                _write(mesh, Path(folder) / f"{number}.off")
-            super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify, forces)
+        else:
+            with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
+                for number, mesh in enumerate(meshes):
+                    _write(mesh, Path(folder) / f"{number}.off")
+                super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify, forces)
+        self._made_from = (text, file, meshes, changes, contacts, verify, forces)
 
     def step(self) -> None:
         """Makes one step."""

@@ -95,7 +95,11 @@ class NotMade(unittest.TestCase):
                     self.step()
                 super().__init__(bouncing())
 
-        Failed().step()
+        made = Failed()
+        made.step()
+        with self.assertRaisesRegex(ricochet.InputError, "has been made already"):
+            ricochet.Simulation.__init__(made, bouncing(particles=[]))
+        self.assertEqual(len(pickle.loads(pickle.dumps(made)).particles.id), 2)
 
 
 class Messages(unittest.TestCase):
@@ -112,7 +116,7 @@ class Messages(unittest.TestCase):
         self.refused(r"points: found whole numbers of more than 64 bits", mesh.inside, [[2**70, 0, 0]])
         self.refused(r"points: found a whole number beyond the range of doubles", mesh.inside, [[10**400, 0, 0]])
         self.refused(r"points: found list \(.+\), expected numbers", mesh.inside, [[1, 2], [3]])
-        self.refused(r"points: found float64 of shape \(100000000000000, 3\), which is 2.4e\+06 GB", mesh.inside,
+        self.refused(r"points: a copy of shape \(100000000000000, 3\) as doubles: asks for about 2.4 PB", mesh.inside,
                      np.broadcast_to(np.zeros(3), (10**14, 3)))
 
     def test_of_masked_entries_and_of_none_for_a_number(self):

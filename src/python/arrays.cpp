@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/printable.h"
 
@@ -81,20 +82,19 @@ bool has_shape(const py::array& array, py::ssize_t columns) {
 }
 
 Doubles as_doubles(const py::array& array, const char* name) {
+    if (static_cast<std::size_t>(array.size()) > kFewNumbers && !Doubles::check_(array)) {
+        require_memory(8.0 * static_cast<double>(array.size()),
+                       fmt::format("{}: a copy of shape {} as doubles", name, shape_of(array)));
+    }
     Doubles doubles = Doubles::ensure(array);
     if (doubles) return doubles;
-    std::string reason;
     try {
         return py::module_::import("numpy").attr("ascontiguousarray")(array, "f8");
     } catch (py::error_already_set& error) {
         if (error.matches(PyExc_KeyboardInterrupt)) throw;
-        reason = error.matches(PyExc_MemoryError)
-                     ? fmt::format("which is {:.3g} GB as doubles in C order, more than there is memory for",
-                                   8e-9 * static_cast<double>(array.size()))
-                     : fmt::format("which NumPy cannot make doubles ({})", reason_of(error));
+        throw InputError(fmt::format("{}: found {} of shape {}, which NumPy cannot make doubles ({})", name,
+                                     std::string(py::str(array.dtype())), shape_of(array), reason_of(error)));
     }
-    throw InputError(fmt::format("{}: found {} of shape {}, {}", name, std::string(py::str(array.dtype())),
-                                 shape_of(array), reason));
 }
 
 std::unique_ptr<ThreadLimit>& thread_limit() {

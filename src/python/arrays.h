@@ -22,6 +22,9 @@ namespace py = pybind11;
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// Entries up to which a copy is made without a look at what memory there is. Few bytes may show many: broadcast_to().
+inline constexpr std::size_t kFewNumbers = std::size_t{1} << 20;
+
 /// Numbers of shape (count, columns) as doubles; columns 0: of shape (count). An array that is so already is not
 /// copied. Throws InputError "name: found ..., expected ..." for anything else, also for text and complex numbers.
 [[nodiscard]] Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns);

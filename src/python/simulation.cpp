@@ -11,6 +11,7 @@
 #include "python/made_objects.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/memory_limit.h"
 #include "ricochet/queries/mesh_queries.h"
 
 namespace ricochet::python {
@@ -71,6 +72,10 @@ py::array add_particles(Handle& handle, const py::object& position, const py::ob
                         const py::object& radius, const py::object& spin, const py::object& lifetime) {
     const Doubles places = numbers(position, "position", 3);
     const auto count = static_cast<std::size_t>(places.shape(0));
+    if (count > kFewNumbers) {
+        require_memory(static_cast<double>(count) * (sizeof(Particle) + 2 * sizeof(Vec3)),
+                       fmt::format("add_particles: {} particles", count));
+    }
     const std::vector<Vec3> velocities = vectors_or_zero(velocity, "velocity", count);
     const std::vector<Vec3> spins = vectors_or_zero(spin, "spin", count);
     const Doubles masses = one_or_each(mass, "mass", count);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ def as_mesh(source: Any) -> Mesh:
     if vertices is not None and faces is not None:
         return Mesh(vertices, faces)
     cells = getattr(source, "cells_dict", None)
-    if cells is not None and hasattr(source, "points"):
+    if isinstance(cells, Mapping) and hasattr(source, "points"):
         return _from_cells(source.points, cells)
     raise InputError(
         f"mesh: found {type(source).__name__}, expected a file's name, a ricochet.Mesh, or an object with "

@@ -1,5 +1,6 @@
 """Objects that have not been made, arguments that say what is wrong with them, and nesting without an end."""
 
+import os
 import pickle
 import subprocess
 import sys
@@ -118,6 +119,16 @@ class Messages(unittest.TestCase):
         self.refused(r"points: found list \(.+\), expected numbers", mesh.inside, [[1, 2], [3]])
         self.refused(r"points: a copy of shape \(100000000000000, 3\) as doubles: asks for about 2.4 PB", mesh.inside,
                      np.broadcast_to(np.zeros(3), (10**14, 3)))
+
+    def test_name_files_whose_names_are_no_text(self):
+        name = os.fsdecode(b"/not-there-\xff.obj")
+        self.refused(r"^/not-there-\\xff.obj: no such file", ricochet.Mesh.read, name)
+
+        class Cells:
+            points = BOX_VERTICES
+            cells_dict = 5
+
+        self.refused("^mesh: found Cells, expected", ricochet.as_mesh, Cells())
 
     def test_of_masked_entries_and_of_none_for_a_number(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)

@@ -1,18 +1,58 @@
 // The module ricochet._core.
+#include <cstring>
+#include <exception>
+#include <utility>
+
 #include "python/arrays.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/scene.h"
 
+namespace {
+
+namespace py = pybind11;
+using namespace ricochet;
+
+/// The classes of errors as Python knows them; they live as long as the process.
+struct ErrorClasses {
+    PyObject* input = nullptr;
+    PyObject* run = nullptr;
+    PyObject* diverged = nullptr;
+};
+ErrorClasses error_classes;
+
+/// Messages may hold names of files, which need not be UTF-8.
+void raise(PyObject* type, const char* what) {
+    const auto size = static_cast<py::ssize_t>(std::strlen(what));
+    const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(what, size, "backslashreplace"));
+    if (text) PyErr_SetObject(type, text.ptr());
+}
+
+void translate(std::exception_ptr error) {
+    try {
+        if (error) std::rethrow_exception(std::move(error));
+    } catch (const DivergedError& diverged) {
+        raise(error_classes.diverged, diverged.what());
+    } catch (const RunError& run) {
+        raise(error_classes.run, run.what());
+    } catch (const InputError& input) {
+        raise(error_classes.input, input.what());
+    }
+}
+
+void add_errors(py::module_& module) {
+    error_classes.input = py::exception<InputError>(module, "InputError", PyExc_ValueError).release().ptr();
+    error_classes.run = py::exception<RunError>(module, "RunError", PyExc_RuntimeError).release().ptr();
+    error_classes.diverged = py::exception<DivergedError>(module, "DivergedError", error_classes.run).release().ptr();
+    py::register_exception_translator(&translate);
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_core, module) {
-    namespace py = pybind11;
-    using namespace ricochet;
     module.doc() = "The compiled part of the package ricochet.";
-    // What is registered later is asked first.
-    py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
-    const auto run_error = py::register_exception<RunError>(module, "RunError", PyExc_RuntimeError);
-    py::register_exception<DivergedError>(module, "DivergedError", run_error.ptr());
+    add_errors(module);
     module.attr("__version__") = RICOCHET_VERSION;
     module.def("set_threads", &python::set_threads, py::arg("threads"),
                "Let questions and steps use so many threads; 0 is all that the machine has. No result depends on it.");

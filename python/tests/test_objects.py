@@ -103,6 +103,47 @@ class NotMade(unittest.TestCase):
         self.assertEqual(len(pickle.loads(pickle.dumps(made)).particles.id), 2)
 
 
+# A daemon thread that is in C++ code, or in a force, when the interpreter ends.
+ENDS = """
+import sys, threading, time
+import ricochet
+sys.path.insert(0, sys.argv[1])
+from support import ball, bouncing
+what = sys.argv[2]
+options = {"time_step": 1e-6, "duration": 1e5, "integrator": "rk4"}
+began = threading.Event()
+def force(particles):
+    began.set()
+    return -particles.position
+if what == "mesh":
+    mesh = ricochet.Mesh(*ball(4))
+    points = mesh.vertices.repeat(20, axis=0)
+    def run():
+        while True:
+            began.set()
+            mesh.closest_points(points)
+else:
+    forces = [force] if what == "force" else []
+    simulation = ricochet.Simulation(bouncing(simulation=options), forces=forces)
+    def run():
+        if what == "steps":
+            began.set()
+        simulation.advance(10**10)
+threading.Thread(target=run, daemon=True).start()
+began.wait()
+time.sleep(0.15)
+print("ends")
+"""
+
+
+class Ends(unittest.TestCase):
+    def test_of_the_interpreter_are_quiet_while_a_daemon_thread_runs(self):
+        for what in ("steps", "force", "mesh"):
+            ended = subprocess.run([sys.executable, "-c", ENDS, os.path.dirname(__file__), what], capture_output=True,
+                                   text=True, timeout=60)
+            self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "ends\n", ""), what)
+
+
 class Messages(unittest.TestCase):
     def refused(self, said, call, *arguments, **keys):
         with self.assertRaisesRegex(ricochet.InputError, said) as caught:

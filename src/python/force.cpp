@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/gil.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/printable.h"
@@ -66,7 +67,7 @@ public:
     using UserForce::UserForce;
 
     void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const override {
-        const py::gil_scoped_acquire acquired;
+        const Locked locked;
         const py::object view =
             py::module_::import("ricochet._results")
                 .attr("ForceInput")(particles.time, copied(particles.ids), copied(particles.positions),
@@ -102,7 +103,7 @@ public:
 private:
     /// Compiled code cannot say what it has raised: the same call from Python does.
     [[noreturn]] void raise_again(const ParticlesView& particles) const {
-        const py::gil_scoped_acquire acquired;
+        const Locked locked;
         function().attr("_call")(particles.time, copied(particles.positions), copied(particles.velocities),
                                  copied(particles.masses), copied(particles.radii));
         throw RunError(

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/gil.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
@@ -31,7 +32,7 @@ TriangleMesh mesh_of(const py::handle& vertices, const py::handle& faces) {
 template <class Ask>
 auto ask(const MeshQueries& mesh, const Ask& question) {
     const MeshQueries asked = mesh;
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return question(asked);
 }
 
@@ -130,7 +131,7 @@ void set_vertices(MeshQueries& mesh, const py::object& vertices) {
     const Doubles positions = numbers(vertices, "vertices", 3);
     MeshQueries moved = mesh;
     {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         moved.set_vertices(points(positions));
     }
     mesh = moved;
@@ -156,7 +157,7 @@ py::array bounds_of(const MeshQueries& mesh) {
 }
 
 MeshQueries read(const std::filesystem::path& file) {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return MeshQueries(read_mesh(file.string()).mesh);
 }
 
@@ -203,7 +204,7 @@ void bind_mesh(py::module_& module) {
     py::class_<MeshQueries> type(module, "Mesh", kMeshText);
     type.def(py::init([](const py::object& vertices, const py::object& faces) {
                  TriangleMesh mesh = mesh_of(vertices, faces);
-                 const py::gil_scoped_release released;
+                 const Unlocked unlocked;
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))

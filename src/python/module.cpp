@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/gil.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -59,6 +60,7 @@ PYBIND11_MODULE(_core, module) {
     module.def("thread_count", &thread_count, "How many threads questions and steps use now.");
     module.def("scene_schema", &scene_schema, "The JSON Schema of scenes, as text.");
     python::guard_root_class();
+    python::wait_for_threads_at_exit();
     python::bind_mesh(module);
     python::bind_simulation(module);
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "python/gil.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
@@ -82,10 +83,11 @@ public:
 
     /// False when the run is to end.
     bool operator()() {
+        stay_if_ending();
         const auto now = std::chrono::steady_clock::now();
         if (now < next_) return true;
         next_ = now + kLookAround;
-        const py::gil_scoped_acquire acquired;
+        const Locked locked;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             if (!progress_.is_none()) progress_();
@@ -148,7 +150,7 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
     const Turn turn(*this);
     Watch watch(progress);
     {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         keep_lent();
         simulation_->advance(count, [&] { return watch(); });
     }

@@ -232,6 +232,7 @@ py::dict statistics_of(const Handle& handle) {
     d["unsimulated_time"] = s.unsimulated_time, d["budget_exhausted"] = s.budget_exhausted;
     d["started_inside"] = s.started_inside, d["started_in_overlap"] = s.started_in_overlap;
     d["stayed"] = s.stayed, d["squeezed"] = s.squeezed, d["frozen"] = s.frozen;
+    d["body_parts"] = s.body_parts;
     d["violations"] = s.violations, d["energy_violations"] = s.energy_violations;
     d["overlap_verified"] = s.overlap_verified, d["pair_violations"] = s.pair_violations;
     d["born_in_overlap"] = s.born_in_overlap;

@@ -103,7 +103,8 @@ struct SimulationStatistics {
     std::uint64_t springs_lost = 0;       ///< removed because a particle at an end was gone
     /// Steps whose implicit equations were not solved to the tolerance, or the contacts in which did not settle.
     std::uint64_t unsolved_steps = 0;
-    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond 1e75
+    std::uint64_t frozen = 0;      ///< particles stopped because their state was not finite or beyond 1e75
+    std::uint64_t body_parts = 0;  ///< parts of steps, of scenes with bodies that impulses move; at least one a step
 };
 
 /// Per-triangle totals of one mesh collider, since the start.

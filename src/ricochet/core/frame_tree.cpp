@@ -180,14 +180,19 @@ const BodyPath& path_at(const std::vector<BodyPath>& paths, double time) {
     return later == paths.begin() ? paths.front() : *(later - 1);
 }
 
+/// The first of some paths that ends at a time or after it.
+template <class Iterator>
+Iterator first_path_to(Iterator begin, Iterator end, double time) {
+    return std::partition_point(begin, end, [time](const BodyPath& path) { return path.end < time; });
+}
+
 /// Of all of them that are valid within [from, to].
 MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double to) {
     MotionBounds all;
-    for (const BodyPath& path : paths) {
-        const bool is_first = &path == &paths.front();
-        const bool is_last = &path == &paths.back();
-        if ((path.end < from && !is_last) || (path.begin > to && !is_first)) continue;
-        const MotionBounds one = path.bounds(from, to);
+    const auto first = first_path_to(paths.begin(), paths.end() - 1, from);
+    for (auto path = first; path != paths.end(); ++path) {
+        if (path->begin > to && path != first) break;
+        const MotionBounds one = path->bounds(from, to);
         for (std::size_t n = 1; n < all.origin.size(); ++n) {
             all.origin[n] = std::max(all.origin[n], one.origin[n]);
             all.rotation[n] = std::max(all.rotation[n], one.rotation[n]);
@@ -238,12 +243,32 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
     }
 }
 
-void FrameTree::set_paths(std::size_t frame, std::vector<BodyPath> paths) {
+void FrameTree::require_driven(std::size_t frame, bool has_paths) const {
     require_index(frame, size(), "frame");
-    if (!frames_[frame].is_driven || paths.empty()) {
+    if (!frames_[frame].is_driven || !has_paths) {
         throw InputError(fmt::format("frame '{}': it is not driven, or there are no paths", frames_[frame].name));
     }
+}
+
+void FrameTree::set_paths(std::size_t frame, std::vector<BodyPath> paths) {
+    require_driven(frame, !paths.empty());
     paths_[frame] = std::move(paths);
+}
+
+void FrameTree::append_path(std::size_t frame, const BodyPath& path) {
+    require_driven(frame, true);
+    paths_[frame].push_back(path);
+}
+
+void FrameTree::replace_last_path(std::size_t frame, const BodyPath& path) {
+    require_driven(frame, frame < size() && !paths_[frame].empty());
+    paths_[frame].back() = path;
+}
+
+void FrameTree::forget_paths(std::size_t frame, double before) {
+    require_driven(frame, frame < size() && !paths_[frame].empty());
+    std::vector<BodyPath>& paths = paths_[frame];
+    paths.erase(paths.begin(), first_path_to(paths.begin(), paths.end() - 1, before));
 }
 
 void FrameTree::step_into(MovingPose& pose, std::size_t frame, double time) const {
@@ -308,9 +333,10 @@ double FrameTree::next_key(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
     double next = std::numeric_limits<double>::infinity();
     for (const std::size_t k : chains_[frame]) {
-        for (const BodyPath& path : paths_[k]) {
-            if (path.end > time) next = std::min(next, path.end);
-        }
+        const std::vector<BodyPath>& paths = paths_[k];
+        const auto later =
+            std::partition_point(paths.begin(), paths.end(), [time](const BodyPath& path) { return path.end <= time; });
+        if (later != paths.end()) next = std::min(next, later->end);
         for (const FrameMotion& motion : frames_[k].motions) next = std::min(next, next_key_of(motion, time));
     }
     return next;

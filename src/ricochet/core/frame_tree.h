@@ -116,9 +116,15 @@ public:
     /// How a driven frame has moved, and will: paths that follow each other without a gap, at least one. What comes
     /// before and after is as the first and the last of them say. Throws InputError for other frames.
     void set_paths(std::size_t frame, std::vector<BodyPath> paths);
+    /// Of the same list, without a copy of it: another path comes after the last one, or takes the place of the last
+    /// one, and those in front are forgotten that end before a time, s, but for the last one.
+    void append_path(std::size_t frame, const BodyPath& path);
+    void replace_last_path(std::size_t frame, const BodyPath& path);
+    void forget_paths(std::size_t frame, double before);
     [[nodiscard]] const std::vector<BodyPath>& paths(std::size_t frame) const { return paths_[frame]; }
 
 private:
+    void require_driven(std::size_t frame, bool has_paths) const;
     void step_into(MovingPose& pose, std::size_t frame, double time) const;
 
     std::vector<FrameDescription> frames_;

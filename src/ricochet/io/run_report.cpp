@@ -236,6 +236,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["started_in_overlap"] = statistics.started_in_overlap;
     json["stayed"] = statistics.stayed;
     if (statistics.squeezed > 0) json["squeezed"] = statistics.squeezed;
+    if (statistics.body_parts > 0) json["body_parts"] = statistics.body_parts;
     json["lost_impulses"] = statistics.lost_impulses;
     json["springs_broken"] = statistics.springs_broken;
     json["springs_lost"] = statistics.springs_lost;

@@ -60,7 +60,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     const bool can_last = step_.remaining() > 0.0 &&
                           support_.rebounds_slowly(contact, arriving, forces_now(flight), flight.kick_duration);
     const auto support = can_last ? find_support(flight, contact) : std::nullopt;
-    const bool is_slow = support && (is_stuck || length(arriving.velocity) < rules_.settings.resting_speed);
+    const bool is_slow = support && (is_stuck || length(arriving.velocity) < step_.resting_speed());
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (!support) return can_last ? drift(flight) : std::nullopt;
     if (slow_contacts_ > kMaxSlowContacts) {
@@ -104,7 +104,7 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
     manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
     gather();
     // What the step's own kick put into the velocity is not the speed of a departure.
-    const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : rules_.settings.resting_speed;
+    const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : step_.resting_speed();
     const auto support = support_.after_rebounds(forces_now(flight), fastest);
     if (support || !is_kicked(flight)) return support;
     // Its force has acted already: what pulls it off here does not, and a surface that bends towards its way holds.
@@ -131,7 +131,7 @@ void ContactPhase::land(const Motion& arriving) {
 /// towards them and that the forces pull off: it goes along the surface instead, and the forces act at the end of that.
 std::optional<Contact> ContactPhase::drift(const Flight& flight) {
     if (rules_.settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
-    const auto support = support_.after_rebounds(Vec3{}, rules_.settings.resting_speed);
+    const auto support = support_.after_rebounds(Vec3{}, step_.resting_speed());
     if (!support) return std::nullopt;
     const Vec3 forces = forces_now(flight);
     const Vec3 velocity = state_.velocity;
@@ -160,7 +160,7 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
         state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
     }
     impact_.push(support.surface, state_.velocity - before, false);
-    const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * rules_.settings.resting_speed;
+    const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();
     const double restitution = slow_restitution(support.surface);
     if (!(pressing > 0.0) || rattles || restitution == 1.0) return {};
     return spend_cascade(support, cascade_duration(rebound, pressing, restitution));
@@ -327,7 +327,7 @@ Vec3 ContactPhase::forces_now(const Flight& flight) const {
 
 /// Restitution of the bounces of a cascade.
 double ContactPhase::slow_restitution(SurfaceId surface) const {
-    return impact_.material_of(surface).restitution_at(rules_.settings.resting_speed);
+    return impact_.material_of(surface).restitution_at(step_.resting_speed());
 }
 
 }  // namespace ricochet

@@ -31,14 +31,14 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         if (!(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        if (rebound >= rules_.settings.resting_speed) return false;  // no slow rebound is as fast
+        if (rebound >= step_.resting_speed()) return false;  // no slow rebound is as fast
         return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));
     });
 }
 
 /// True when bounces on the surface die out.
 bool ContactSupport::has_losses(const ContactSurface& surface) const {
-    return impact_.material_of(surface.surface).can_hold(rules_.settings.resting_speed);
+    return impact_.material_of(surface.surface).can_hold(step_.resting_speed());
 }
 
 /// The speed of rebounds, m/s, below which bounces on a surface are contact. Without losses they die out between it and
@@ -46,7 +46,7 @@ bool ContactSupport::has_losses(const ContactSurface& surface) const {
 /// is touched. kicked: a kick's bounces stay as they are.
 double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                     bool dies_out) const {
-    const double resting_speed = rules_.settings.resting_speed;
+    const double resting_speed = step_.resting_speed();
     if (has_losses(surface)) return resting_speed;
     if (kicked || impact_.material_of(surface.surface).is_random()) return 0.0;
     if (dies_out) return resting_speed;
@@ -68,7 +68,7 @@ std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces,
 }
 
 std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
-    const Pushes pushes = pushes_together(forces, rules_.settings.resting_speed);
+    const Pushes pushes = pushes_together(forces, step_.resting_speed());
     const ContactManifold::Holding holding = manifold_.holding(impact_);
     std::array<HoldingSurface, kMostHolding> surfaces;
     std::size_t count = 0;
@@ -127,7 +127,7 @@ ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, doubl
 double ContactSupport::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
                                          bool die_out) const {
     if (has_losses(surface)) return fastest;
-    const double slow = slow_rebound(surface, forces, fastest > rules_.settings.resting_speed, die_out);
+    const double slow = slow_rebound(surface, forces, fastest > step_.resting_speed(), die_out);
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 

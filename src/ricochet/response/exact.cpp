@@ -7,6 +7,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_phase.h"
+#include "ricochet/response/contact_with_bodies.h"
 #include "ricochet/response/kept_hold.h"
 #include "ricochet/response/momentum_account.h"
 #include "ricochet/response/riding.h"
@@ -55,7 +56,11 @@ private:
     [[nodiscard]] double planned_duration(bool is_first) const;
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
     std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
+    [[nodiscard]] bool has_budget() {
+        return particle_.bounces_before + step_.outcome().bounces < rules_.settings.bounce_budget;
+    }
     [[nodiscard]] bool has_room();
+    bool goes_along(std::optional<Contact>& contact);
     [[nodiscard]] bool has_moving(const Contact& contact) const {
         return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
             return rules_.bodies->body_of(surface.surface) != kAtRest;
@@ -64,7 +69,6 @@ private:
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] bool is_let_go_by_jump() const;
-    [[nodiscard]] double weight_on(BodyId body) const;
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
@@ -99,11 +103,11 @@ MoveOutcome ParticleMover::run() {
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
-        while (contact && !outcome.is_absorbed() && outcome.bounces < rules_.settings.bounce_budget && has_room()) {
+        while (contact && !outcome.is_absorbed() && has_budget() && has_room()) {
             contact = answer(flight, *contact);
         }
         if (outcome.is_absorbed()) break;
-        if (contact) {
+        if (contact && !goes_along(contact)) {
             step_.stop();
             break;
         }
@@ -132,6 +136,23 @@ bool ParticleMover::has_room() {
     return before - step_.remaining() > kLeastWayOut * step_.duration();
 }
 
+/// What a body that yields lets go, as slowly as can be, touches it again and again without an impulse. It goes along
+/// with it for a while, until they have come apart. contact: replaced by what comes to it meanwhile. False where it is
+/// no such touch.
+bool ParticleMover::goes_along(std::optional<Contact>& contact) {
+    if (rides_ == nullptr || !has_budget() || !(step_.remaining() > 0.0)) return false;
+    const auto touched = contact->all();
+    const bool yields = std::any_of(touched.begin(), touched.end(), [&](const ContactSurface& surface) {
+        return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));
+    });
+    if (!yields || step_.impact().approach(touched) > slowest_rebound(rules_, *rides_, particle_, *contact))
+        return false;
+    const double before = step_.remaining();
+    step_.begin_part(particle_.state.time + 2.0 * kLeastWayOut * step_.duration());
+    contact = wait_for_body(Contact(*contact));
+    return step_.remaining() < before;
+}
+
 /// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several, and of meshes
 /// that deform, until those of one are left.
 std::optional<Contact> ParticleMover::resume() {
@@ -149,25 +170,7 @@ bool ParticleMover::is_let_go_by_jump() const {
     };
     if (std::none_of(held.begin(), held.end(), has_jumped)) return false;
     if (!particle_.ridden) return true;
-    const RecordedMotion motion{particle_.state.position, particle_.state.velocity, particle_.spin};
-    HomeFrame frame(rules_.bodies);
-    frame.set(rules_.bodies->body_of(held[0]));
-    const double jump = length(frame.in_frame(motion, particle_.state.time).velocity);
-    return jump * weight_on(frame.body()) > rules_.settings.resting_speed;
-}
-
-/// Its mass over that with which a body yields to it, where that is above 1: what it pays to go along is a jump of a
-/// lighter body by so much more.
-double ParticleMover::weight_on(BodyId body) const {
-    if (!rules_.bodies->yields(body)) return 1.0;
-    const double time = particle_.state.time;
-    const Mobility mobility = rules_.bodies->mobility(body, time);
-    const Vec3 along =
-        rules_.bodies->world(body)
-            .nearest(particle_.contact.surfaces[0], rules_.bodies->pose(body, time).image(particle_.state.position))
-            .normal;
-    const Vec3 push = rules_.bodies->pose(body, time).world_from_frame.direction(along);
-    return std::max(1.0, particle_.state.mass * dot(mobility.change_at(particle_.state.position, push), push));
+    return lets_go(rules_, *rides_, particle_, rules_.bodies->body_of(held[0]));
 }
 
 std::optional<Contact> ParticleMover::resume_among_bodies() {
@@ -335,8 +338,11 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const Motion arriving{particle_.state.velocity, particle_.spin};
     if (rides_ != nullptr && has_moving(contact)) step_.impact().note_driven();
     // A slow one cuts no step short: it begins contact.
-    const bool is_fast = rides_ != nullptr && step_.impact().approach(contact.all()) > rules_.settings.resting_speed;
-    step_.impact().reflect(contact.all());
+    const double slow =
+        rides_ == nullptr ? rules_.settings.resting_speed : slowest_rebound(rules_, *rides_, particle_, contact);
+    step_.set_resting_speed(slow);
+    const bool is_fast = rides_ != nullptr && step_.impact().approach(contact.all()) > slow;
+    step_.impact().reflect(contact.all(), is_fast);
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
@@ -346,7 +352,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const bool has_begun = next || particle_.contact.count > 0 || step_.remaining() < before;
     if (rides_ == nullptr || has_begun) return next;
     // It goes on into a body that leaves it, but is where its path has it until the move's end.
-    if (step_.impact().approach_of_paths(contact.all()) > rules_.settings.resting_speed) return wait_for_body(contact);
+    if (step_.impact().approach_of_paths(contact.all()) > slow) return wait_for_body(contact);
     step_.impact().go_with_paths(contact.all());
     return next;
 }

@@ -34,9 +34,9 @@ bool can_be_followed(const Path& path) {
     return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
 }
 
-void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces) {
+void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces, bool is_fast) {
     const Vec3 before = particle_.state.velocity;
-    if (scratch_.record_loads) book_.begin_impact(approach(surfaces));
+    if (scratch_.record_loads) book_.begin_impact(is_fast ? approach(surfaces) : 0.0);
     answer(surfaces, Rebound::by_material);
     book_.end_impact();
     shatter_by(particle_.state.velocity - before);

@@ -35,7 +35,9 @@ public:
     /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
     /// Bodies that yield move, for the particle, with what it has given to them in this move; where they are does not
     /// change by that before the move's end.
-    void reflect(std::span<const ContactSurface> surfaces);
+    void reflect(std::span<const ContactSurface> surfaces) { reflect(surfaces, true); }
+    /// The same; is_fast: ColliderLoad::approach tells how fast it is. A slow one begins contact, and cuts no step.
+    void reflect(std::span<const ContactSurface> surfaces, bool is_fast);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
 

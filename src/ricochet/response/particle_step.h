@@ -35,7 +35,8 @@ public:
           stored_{particle.state.position, particle.stored_time},
           first_segment_(scratch.segments.size()),
           duration_(duration),
-          remaining_(duration) {}
+          remaining_(duration),
+          resting_speed_(rules.settings.resting_speed) {}
     ParticleStep(const ParticleStep&) = delete;
     ParticleStep& operator=(const ParticleStep&) = delete;
 
@@ -99,6 +100,9 @@ public:
     [[nodiscard]] ImpactAnswer& impact() { return impact_; }
     [[nodiscard]] MotionLog& log() { return log_; }
     [[nodiscard]] MoveOutcome& outcome() { return outcome_; }
+    /// m/s, of the slowest rebound that is one: the scene's, or what a body that yields makes of it.
+    [[nodiscard]] double resting_speed() const { return resting_speed_; }
+    void set_resting_speed(double speed) { resting_speed_ = speed; }
     [[nodiscard]] double duration() const { return duration_; }    ///< s, of the whole step
     [[nodiscard]] double remaining() const { return remaining_; }  ///< s, that are left of it
     /// Where the step began: off the surface that the particle was put on, if it was.
@@ -167,6 +171,7 @@ private:
     std::size_t first_segment_;       // of this step among those recorded
     double duration_;
     double remaining_;
+    double resting_speed_;
 };
 
 template <class Shorter>

@@ -42,7 +42,7 @@ struct ColliderLoad {
     Vec3 couple;               ///< N m s, given besides the moment that the impulse has at `place`
     double work = 0.0;         ///< J, given
     double lost_energy = 0.0;  ///< J, kinetic, that the particle has lost by the impact; with the impact's last load
-    double approach = 0.0;     ///< m/s, of the impact
+    double approach = 0.0;     ///< m/s, of the impact; 0 where it is slow, and begins contact
     bool impact = true;        ///< false: of a contact that lasts
 };
 
@@ -105,6 +105,8 @@ struct MovingParticle {
     /// still.
     double stored_time = 0.0;
     double step_end = 0.0;  ///< s, the time that the next move begins at
+    /// Impacts of it in earlier parts of the time step, where bodies that impulses move cut that: one budget for all.
+    std::uint32_t bounces_before = 0;
     /// How it rests on a body, in the body's frame, where it rides on one; with a contact that is kept.
     struct Ridden {
         Vec3 position;  ///< m

@@ -25,8 +25,7 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
         const Material& material = impact.material_of(surface.surface);
         const double approach = impact.advance_of(surface) - dot(arriving.velocity, surface.normal);
         if (!(approach > 0.0)) return true;
-        return !material.is_random() &&
-               material.restitution_at(approach) * approach < step_.rules().settings.resting_speed;
+        return !material.is_random() && material.restitution_at(approach) * approach < step_.resting_speed();
     });
 }
 

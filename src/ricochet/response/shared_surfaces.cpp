@@ -26,7 +26,7 @@ void SharedContact::gather() {
 
 void SharedContact::gather_deforming() {
     const MovingColliders& bodies = *step_.rules().bodies;
-    const double departure = step_.rules().settings.resting_speed;
+    const double departure = step_.resting_speed();
     for (const DeformedContact& contact : touched_surfaces(deforming(), state_, departure)) {
         if (count_ == kMostHolding) return;
         Touched& touched = touched_[count_++];
@@ -51,7 +51,7 @@ void SharedContact::gather_in(BodyId body) {
     ContactManifold manifold(geometry, seen);
     const double offset = std::max(contact_offset(seen.position), contact_offset(state_.position));
     const double reach = kTouchingOffsets * offset;
-    const TouchRule rule{reach, reach, reach, step_.rules().settings.resting_speed};
+    const TouchRule rule{reach, reach, reach, step_.resting_speed()};
     step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
         Touched& touched = touched_[count_++];

@@ -125,6 +125,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
         scratch.records[k].radius = particle.state.whole_radius;
     }
+    if (i < bounces_.size()) bounces_[i] += outcome.bounces;
     take_over(i, particle, outcome, life.end, record);
 }
 
@@ -272,6 +273,7 @@ TimeSpan ActiveMover::life_in(std::size_t i, const TimeSpan& step) const {
 MovingParticle ActiveMover::load(std::size_t i, double start) {
     MovingParticle particle = parts_.store.load(i, start, !parts_.schedule.is_without_contact(i));
     particle.candidates = parts_.schedule.candidates(i);
+    if (i < bounces_.size()) particle.bounces_before = bounces_[i];
     if (parts_.offspring != nullptr) {
         particle.shatter_impulse = parts_.offspring->shatter_impulse(parts_.store.particles(), i);
     }

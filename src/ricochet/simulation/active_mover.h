@@ -92,6 +92,9 @@ class ActiveMover {
 public:
     explicit ActiveMover(const MoverParts& parts) : parts_(parts) {}
 
+    /// To be called at the begin of a step that bodies which impulses move may cut into parts: impacts count in all of
+    /// them together.
+    void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set for itself, by all threads; one record a block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);
     /// Moves the particles of the range as one system that goes back together: see rollback.h.
@@ -146,6 +149,7 @@ private:
 
     MoverParts parts_;
     const SleepingPiles* piles_ = nullptr;
+    std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); of those behind its end nothing
 };
 
 }  // namespace ricochet

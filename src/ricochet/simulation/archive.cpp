@@ -19,7 +19,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f5354000aULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f5354000bULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -231,7 +231,6 @@ void Simulation::restore(const ByteSource& source) {
     for (const double radius : impl().particles().radius) impl().prepare_radius(radius);
     impl().replay_emitters();
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
-    impl().driven.show();
     if (!impl().share.is_alone()) impl().keep_share();
     if (impl().check) impl().check->restart(impl().store, time());
     impl().inside_step = false;

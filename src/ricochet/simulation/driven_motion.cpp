@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -12,6 +13,10 @@
 
 namespace ricochet {
 namespace {
+
+/// Parts of a step after which the next ones last a ten-thousandth of it at least, whatever they take off. Smaller:
+/// bodies among hundreds of particles as heavy as they are followed less well. Larger: such steps take longer.
+constexpr int kManyParts = 1000;
 
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
@@ -30,6 +35,7 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
       colliders_(colliders),
       forces_(forces),
       slow_(settings.resting_speed),
+      time_step_(settings.time_step),
       shortest_part_(kShortestPart * settings.time_step) {
     for (BodyDescription& description : bodies) {
         const auto frame = frames_ == nullptr ? std::nullopt : frames_->find(description.frame);
@@ -43,7 +49,6 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
         collider_of_.push_back(colliders_ != nullptr && id < colliders_->size() ? id : kAtRest);
         if (collider_of_.back() != kAtRest) colliders_->set_mobility(id, bodies_.back().mobility());
     }
-    paths_.resize(bodies_.size());
     loads_.resize(bodies_.size());
     lying_.resize(bodies_.size());
     contacts_.resize(bodies_.size());
@@ -58,20 +63,27 @@ void DrivenMotion::begin_step() {
         lying_[k] = {};
     }
     lying_for_ = 0.0;
+    parts_ = 0;
     for (BodyContacts& contacts : contacts_) contacts.begin_step();
 }
 
 double DrivenMotion::yielded(const ColliderLoad& load) const {
     const auto body = body_of(load);
     if (!body) return 0.0;
-    const AffineMap map = paths_[*body].back().at(load.time).world_from_frame;
+    const AffineMap map = planned(*body).at(load.time).world_from_frame;
     const Mobility mobility = bodies_[*body].mobility().seen_by(map);
     return mobility.energy_by(wrench_of(load, mobility.center));
+}
+
+double DrivenMotion::next_part_end(double begin, double end) const {
+    constexpr double kAboutAll = 1.1;  // no part is left that is much shorter
+    return end - begin > kAboutAll * longest_part_ ? begin + longest_part_ : end;
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
     oldest_ = oldest;
     set_shares({});
+    was_shortened_ = was_cut_ = false;
     plan_paths(begin, end);
 }
 
@@ -102,13 +114,13 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
 
 void DrivenMotion::plan_paths(double begin, double end) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        std::vector<BodyPath>& paths = paths_[k];
-        if (is_planned_) paths.pop_back();
-        const auto first_needed =
-            std::find_if(paths.begin(), paths.end(), [&](const BodyPath& path) { return path.end >= oldest_; });
-        paths.erase(paths.begin(), first_needed);
-        paths.push_back(bodies_[k].plan(forces_, loads_[k], begin, end));
-        const BodyPath& next = paths.back();
+        const BodyPath next = bodies_[k].plan(forces_, loads_[k], begin, end);
+        if (is_planned_) {
+            frames_->replace_last_path(frame_of_[k], next);
+        } else {
+            frames_->append_path(frame_of_[k], next);
+        }
+        frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
         if (!(size <= kLargestCoordinate) || !(next.bounds(begin, end).origin[1] < kMaxSpeed)) {
             throw DivergedError(fmt::format(
@@ -116,28 +128,21 @@ void DrivenMotion::plan_paths(double begin, double end) {
                 "shorter time step or weaker forces",
                 end, bodies_[k].description().frame));
         }
-        tell_of_jump(k, paths.size() - 1);
+        tell_of_jump(k, paths_of(k).size() - 1);
     }
     is_planned_ = true;
-    show();
 }
 
 void DrivenMotion::end_at(double time) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        BodyPath& path = paths_[k].back();
+        BodyPath path = planned(k);
         const bool is_cut = time < path.end;
         path.end = time;
         // What a spring does is known at the ends of a part.
         const JointSettings& joint = bodies_[k].description().settings;
         const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
         if (is_cut && is_sprung) path = bodies_[k].plan(forces_, loads_[k], path.begin, time);
-    }
-    show();
-}
-
-void DrivenMotion::show() {
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (!paths_[k].empty()) frames_->set_paths(frame_of_[k], paths_[k]);
+        frames_->replace_last_path(frame_of_[k], path);
     }
 }
 
@@ -152,7 +157,7 @@ std::optional<std::size_t> DrivenMotion::body_of(const ColliderLoad& load) const
 std::vector<ImpactTally> DrivenMotion::no_impacts() const {
     std::vector<ImpactTally> tallies;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        tallies.emplace_back(bodies_[k], paths_[k].back(), colliders_, collider_of_[k]);
+        tallies.emplace_back(bodies_[k], planned(k), colliders_, collider_of_[k]);
     }
     return tallies;
 }
@@ -164,16 +169,20 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
-    const double end = paths_.front().back().end;
-    const double begin = paths_.front().back().begin;
+    const double end = planned(0).end;
+    const double begin = planned(0).begin;
     const auto end_of = [&](const std::vector<ImpactTally>& taken, double time, double next) {
-        return std::min(end, end_after(taken, time, next, begin, shortest_part_));
+        const double least = parts_ < kManyParts ? begin : begin + shortest_part_;
+        return std::min(end, std::max(least, end_after(taken, time, next, begin, shortest_part_)));
     };
     std::vector<ImpactTally> tallies = no_impacts();
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
         const std::vector<ImpactTally> before = tallies;
+        bool is_heavy = false;
         for (; next < preview.size() && preview[next].time == preview[first].time; ++next) {
-            tallies[*body_of(preview[next])].add(preview[next]);
+            const std::size_t body = *body_of(preview[next]);
+            tallies[body].add(preview[next]);
+            is_heavy = is_heavy || heaviness_on(body, preview[next]) > kHeavyLoad;
         }
         const bool is_too_much =
             first > 0 && std::any_of(preview.begin() + first, preview.begin() + next, [&](const ColliderLoad& load) {
@@ -182,12 +191,19 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
+        // What waits for a body turns it by its own momentum, that its way lacks meanwhile: much, of what is heavy.
+        if (is_heavy && parts_ < kManyParts) {
+            const double until = next < preview.size() ? preview[next].time : end;
+            return std::min(end, soon_after_impact(preview[first].time, until));
+        }
     }
     return preview.empty() ? end : end_of(tallies, preview.back().time, end);
 }
 
 LyingLoad DrivenMotion::lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
     LyingLoad lying;
+    // What is entered at the end of what was planned may be a rounding behind it.
+    if (until >= planned_end()) until = std::numeric_limits<double>::infinity();
     std::optional<std::uint64_t> last;
     for (const ColliderLoad& load : preview) {
         const bool lies = !load.impact || load.approach <= slow_;
@@ -197,9 +213,41 @@ LyingLoad DrivenMotion::lying_on(std::size_t body, std::span<const ColliderLoad>
         const double size = dot(load.impulse, load.impulse);
         if (last == load.particle || !(size > 0.0)) continue;
         last = load.particle;
-        lying.heaviness += load.mass * dot(bodies_[body].velocity_change(wrench, load.place), load.impulse) / size;
+        lying.heaviness += heaviness_on(body, load);
     }
     return lying;
+}
+
+/// s, after which nothing of what lies on a body pushes it any more.
+double DrivenMotion::left_at(std::size_t body, std::span<const ColliderLoad> preview) const {
+    constexpr double kNothing = 1e-3;  // of all of it
+    const auto lies = [&](const ColliderLoad& load) {
+        return (!load.impact || load.approach <= slow_) && body_of(load) == body;
+    };
+    double all = 0.0;
+    for (const ColliderLoad& load : preview) all += lies(load) ? length(load.impulse) : 0.0;
+    double last = all > 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+    for (const ColliderLoad& load : preview) {
+        if (lies(load) && length(load.impulse) > kNothing * all) last = std::max(last, load.time);
+    }
+    return last;
+}
+
+/// The part of a duration after which it ends where what lay on a body has left it: the load is that of the time
+/// before.
+double DrivenMotion::part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
+                                    double duration) const {
+    constexpr double kLeast = 0.1;
+    const double part = (left_at(body, preview) - begin) / duration;
+    return part > kLeast && part < 1.0 - kLeast ? part : 1.0;
+}
+
+/// The mass of a particle over that with which a body yields to its impulse; 0 where there is none.
+double DrivenMotion::heaviness_on(std::size_t body, const ColliderLoad& load) const {
+    const double size = dot(load.impulse, load.impulse);
+    if (!(size > 0.0)) return 0.0;
+    const Wrench wrench = wrench_of(load, bodies_[body].moment_center());
+    return load.mass * dot(bodies_[body].velocity_change(wrench, load.place), load.impulse) / size;
 }
 
 /// m/s, that a wrench (N, N m) changes a body's velocity by in a time, s; of one that turns, at its radius of gyration.
@@ -213,34 +261,63 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const LyingLoad& lying,
     const Wrench back{lying.wrench.impulse / duration, lying.wrench.moment / duration};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
     const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
-    const double most = std::max(slow_, kMostBodyChange * speed);
+    const double at_once = change_by(body, back, shortest_part_) / (1.0 + lying.heaviness);
+    const double most = std::max({slow_, kMostBodyChange * speed, at_once});
     const Wrench varies = relaxations_[body].variation(planned, back, lying.heaviness);
     const double change = change_by(body, varies, duration);
-    return {back, change > 1.1 * most ? most / change : 1.0, change_by(body, lacks, duration) <= kLoadFits * most};
+    const double lacking = change_by(body, lacks, duration);
+    return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadFits * most, lacking <= most};
+}
+
+/// True where much lies on a body, and is entered after a time, s, before which the part has to end: how much of it
+/// comes until then is not known.
+bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const {
+    if (end >= planned_end()) return false;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (!(left_at(k, preview) > end)) continue;
+        const LyingLoad lying = lying_on(k, preview, planned_end());
+        const double duration = planned_end() - planned(k).begin;
+        if (lying.heaviness > 0.0 && (relaxations_[k].concerns(lying) || !fit_of(k, lying, duration).is_near))
+            return true;
+    }
+    return false;
+}
+
+/// Returns false where bodies yield otherwise than in the preview.
+bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
+        if (round == 0) relaxations_[k].begin_part(loads_[k]);
+    }
+    if (round > 0 && !was_cut_) return true;
+    was_cut_ = false;
+    std::vector<double> shares = shares_of(preview, end);
+    const bool are_same = shares == shares_;
+    set_shares(std::move(shares));
+    return are_same;
 }
 
 bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut, int round) {
-    const double begin = paths_.front().back().begin;
+    const double begin = planned(0).begin;
     // A part that has been cut once is not cut again at the same impact.
     double end = round == 0 || cut < begin + 0.5 * (planned_end() - begin) ? cut : planned_end();
+    bool fits = begin_round(preview, end, round);
+    if (is_cut_in_contact(preview, end)) {
+        was_cut_ = true;
+        plan_paths(begin, end);
+        return true;
+    }
     const double duration = end - begin;
     const bool can_shorten = duration > 1.5 * shortest_part_;
     const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
     const bool is_last = round % kMostLoadRounds >= most_rounds - 1;
     double longest = 1.0;  // part of the duration
-    bool fits = true;
-    if (round == 0) {
-        const std::vector<double> shares = shares_of(preview, end);
-        fits = shares == shares_;
-        set_shares(shares);
-    }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
-        if (round == 0) relaxations_[k].begin_part(loads_[k]);
         const LyingLoad lying = lying_on(k, preview, end);
-        if (!relaxations_[k].concerns(lying)) continue;
         const Fit fit = fit_of(k, lying, duration);
+        if (fit.is_near && !relaxations_[k].concerns(lying)) continue;
         if (can_shorten) longest = std::min(longest, fit.longest);
+        if (can_shorten && fit.fits) longest = std::min(longest, part_with_load(k, preview, begin, duration));
         if (!fit.fits || longest < 1.0)
             loads_[k] = relaxations_[k].next(bodies_[k], loads_[k], fit.back, lying.heaviness);
         fits = fits && fit.fits;
@@ -249,9 +326,11 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     if ((fits && longest == 1.0) || (is_last && !can_shorten)) {
         for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
         end_at(end);
+        limit_next_part(duration);
         return false;
     }
     if (longest < 1.0) {
+        was_shortened_ = true;
         end = begin + std::max(shortest_part_, longest * duration);
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             if (relaxations_[k].is_searching()) loads_[k] = relaxations_[k].shortened((end - begin) / duration);
@@ -259,6 +338,18 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     }
     plan_paths(begin, end);
     return true;
+}
+
+/// What lies on a body shows by its mean alone how it changes in a part: that may be little, over a part in which it
+/// comes and goes. So parts grow by and by.
+void DrivenMotion::limit_next_part(double duration) {
+    constexpr double kGrowth = 2.0;
+    if (was_shortened_) {
+        longest_part_ = kGrowth * duration;
+    } else if (duration > longest_part_ / kGrowth) {
+        longest_part_ *= kGrowth;
+    }
+    if (!(longest_part_ < time_step_)) longest_part_ = std::numeric_limits<double>::infinity();
 }
 
 std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> loads) const {
@@ -279,15 +370,16 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         if (!load.impact) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const BodyPath& path = paths_[k].back();
+        const BodyPath& path = planned(k);
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
         contacts_[k].taken += {-lain * loads_[k].impulse, -lain * loads_[k].moment};
         bodies_[k].follow(path, loads_[k], wrenches[k]);
     }
-    if (!bodies_.empty()) lying_for_ += paths_.front().back().end - paths_.front().back().begin;
+    if (!bodies_.empty()) lying_for_ += planned(0).end - planned(0).begin;
     is_planned_ = false;
+    ++parts_;
 }
 
 void DrivenMotion::take(std::span<const ColliderLoad> loads) {
@@ -297,7 +389,7 @@ void DrivenMotion::take(std::span<const ColliderLoad> loads) {
 
 double DrivenMotion::begin_part_again(double time) {
     set_shares({});
-    const std::vector<BodyPath>& paths = paths_.front();
+    const std::vector<BodyPath>& paths = paths_of(0);
     std::size_t path = 0;
     while (path + 1 < paths.size() && paths[path + 1].begin <= time) ++path;
     for (std::size_t k = 0; k < bodies_.size(); ++k) tell_of_jump(k, path);
@@ -307,7 +399,7 @@ double DrivenMotion::begin_part_again(double time) {
 /// Whether a body's velocity jumps where one of its paths begins. All bodies have the same parts.
 void DrivenMotion::tell_of_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kAtRest) return;
-    const std::vector<BodyPath>& paths = paths_[body];
+    const std::vector<BodyPath>& paths = paths_of(body);
     const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
     const bool is_free = bodies_[body].description().joint == JointKind::free;
     colliders_->set_motion(collider_of_[body], has_jumped,

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/moving_colliders.h"
@@ -32,6 +34,8 @@ public:
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
 
+    /// When the part that begins at a time has to end, s, at the latest; not after `end`, s.
+    [[nodiscard]] double next_part_end(double begin, double end) const;
     /// Plans the bodies' paths over [begin, end], s, instead of what was planned last and not followed. Nothing asks
     /// for where they were before `oldest`, s, any more.
     void plan(double begin, double end, double oldest);
@@ -44,7 +48,7 @@ public:
     /// this part has been planned again. False when the plan fits; it ends at the cut then.
     [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
     /// When what is planned ends, s.
-    [[nodiscard]] double planned_end() const { return paths_.front().back().end; }
+    [[nodiscard]] double planned_end() const { return planned(0).end; }
     /// The bodies go along their paths, and take the loads of that time.
     void follow(std::span<const ColliderLoad> loads);
     /// They take loads of an earlier part of the step.
@@ -60,17 +64,17 @@ public:
     template <class Archive>
     void archive(Archive& a) {
         for (DrivenBody& body : bodies_) body.archive(a);
-        for (auto& paths : paths_) {
+        for (const std::size_t frame : frame_of_) {
+            std::vector<BodyPath> paths = frames_->paths(frame);
             archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
+            if (!paths.empty()) frames_->set_paths(frame, std::move(paths));
         }
         for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
         for (BodyContacts& contacts : contacts_) archive_entries(a, contacts.now, [&](std::uint64_t& id) { a(id); });
         a(lying_for_);
         for (LoadRelaxation& relaxation : relaxations_) relaxation.archive(a);
-        a(is_planned_);
+        a(is_planned_), a(longest_part_);
     }
-    /// After it was restored.
-    void show();
 
 private:
     /// How the load of a plan fits to what came back from it.
@@ -78,8 +82,14 @@ private:
         Wrench back;           // N, N m
         double longest = 1.0;  // part of the duration in which the load changes the body's motion by little
         bool fits = true;
+        bool is_near = true;  // so that the body's motion changes by little where it takes what was not planned
     };
 
+    /// Of a body, as far back as may be asked for; the last is planned.
+    [[nodiscard]] const std::vector<BodyPath>& paths_of(std::size_t body) const {
+        return frames_->paths(frame_of_[body]);
+    }
+    [[nodiscard]] const BodyPath& planned(std::size_t body) const { return paths_of(body).back(); }
     [[nodiscard]] std::vector<ImpactTally> no_impacts() const;
     void plan_paths(double begin, double end);
     void set_shares(std::vector<double> shares);
@@ -87,8 +97,15 @@ private:
     void tell_of_jump(std::size_t body, std::size_t path) const;
     [[nodiscard]] std::optional<std::size_t> body_of(const ColliderLoad& load) const;
     [[nodiscard]] std::vector<Wrench> wrenches_of(std::span<const ColliderLoad> loads) const;
+    [[nodiscard]] double heaviness_on(std::size_t body, const ColliderLoad& load) const;
     [[nodiscard]] LyingLoad lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const;
+    [[nodiscard]] bool begin_round(std::span<const ColliderLoad> preview, double end, int round);
+    [[nodiscard]] bool is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const;
+    [[nodiscard]] double left_at(std::size_t body, std::span<const ColliderLoad> preview) const;
+    [[nodiscard]] double part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
+                                        double duration) const;
     [[nodiscard]] double change_by(std::size_t body, const Wrench& load, double duration) const;
+    void limit_next_part(double duration);
     [[nodiscard]] Fit fit_of(std::size_t body, const LyingLoad& lying, double duration) const;
 
     std::vector<DrivenBody> bodies_;
@@ -97,16 +114,20 @@ private:
     FrameTree* frames_;
     MovingColliders* colliders_;
     const ForceField& forces_;
-    double slow_;                               // m/s, of impacts that end bounces
-    double shortest_part_;                      // s
-    std::vector<std::vector<BodyPath>> paths_;  // of each body, as far back as may be asked for; the last is planned
-    std::vector<Wrench> loads_;                 // of each body, N and N m: what lies on it
+    double slow_;                                                    // m/s, of impacts that end bounces
+    double time_step_;                                               // s
+    double shortest_part_;                                           // s
+    double longest_part_ = std::numeric_limits<double>::infinity();  // s, of the next part
+    bool was_shortened_ = false;                                     // this part, by what lies on bodies
+    bool was_cut_ = false;                // the last plan of this part, by an impact on what lies on bodies
+    std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it
     std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
     double lying_for_ = 0.0;              // s, of this step so far
     std::vector<BodyContacts> contacts_;  // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
     std::vector<double> shares_;               // of each body: how many times as much it yields in this part
     double oldest_ = 0.0;                      // s, of plan()
+    int parts_ = 0;                            // of this step so far
     bool is_planned_ = false;                  // the last of them has not been followed
 };
 

@@ -93,6 +93,10 @@ void BodyContacts::begin_step() {
     taken = {};
 }
 
+double soon_after_impact(double time, double next) {
+    return soon_after(time, next, kPartAfterImpact * kPartAfterImpact * kPartAfterImpact);
+}
+
 double end_after(std::span<const ImpactTally> taken, double time, double next, double begin, double shortest) {
     constexpr int kMostPowers = 3;
     constexpr double kShorter = 0.1;

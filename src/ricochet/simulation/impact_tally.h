@@ -76,6 +76,10 @@ struct BodyContacts {
 [[nodiscard]] bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const ImpactTally& tally,
                                     const BodyContacts& contacts);
 
+/// When a part ends, s, whose last impact is that of a particle that is heavy beside what it hits: as soon after it as
+/// can be told, and not after the next one.
+[[nodiscard]] double soon_after_impact(double time, double next);
+
 /// When a part ends, s, in which these impacts have come, the last one at a time, before the next one: soon after it,
 /// by a power of kPartAfterImpact, and the sooner the less they take off. Till then the bodies go on as if nothing had
 /// hit them, and what has pushed one away goes along or waits. begin, shortest: when it begins, and how long it lasts

@@ -101,6 +101,7 @@ TimeSpan Simulation::Impl::begin_step() {
 // stays in the order of time.
 void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& step) {
     recorder.begin_batch();
+    if (driven.is_active() && batch.begin == 0) mover.begin_step();
     if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});
@@ -126,6 +127,7 @@ TimeSpan Simulation::Impl::plan_part(const ParticleRange& batch, const TimeSpan&
 TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest) {
     TimeSpan part = rest;
     if (batch.begin == 0) {
+        part.end = driven.next_part_end(part.begin, part.end);
         driven.plan(part.begin, part.end, oldest_position());
         if (bodies) part.end = settle_driven_motion(batch, part);
     } else {
@@ -169,6 +171,7 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
     recorder.add_loads(with_yielding, *colliders);
     if (batch.begin == 0) {
         driven.follow(loads);
+        ++recorder.statistics().body_parts;
     } else {
         driven.take(loads);
     }

@@ -46,9 +46,9 @@ constexpr std::array kCounted = {
     &SimulationStatistics::unsolved_steps,
     &SimulationStatistics::frozen,
 };
-/// Besides them there are: the steps, the most bounces with a gap, four numbers of what ranks refuse (of spheres that
-/// meet, and of penetrations), and the time that is added up by its own order.
-static_assert(sizeof(SimulationStatistics) == (kCounted.size() + 7) * sizeof(std::uint64_t),
+/// Besides them there are: the steps, their parts, the most bounces with a gap, four numbers of what ranks refuse (of
+/// spheres that meet, and of penetrations), and the time that is added up by its own order.
+static_assert(sizeof(SimulationStatistics) == (kCounted.size() + 8) * sizeof(std::uint64_t),
               "a counter is missing in kCounted");
 
 SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks, double unsimulated_time) {

@@ -1,0 +1,20 @@
+/// \file
+/// Private to the exact response: a particle in contact with a body that impulses move, which goes on with another
+/// velocity after each part of a step.
+#pragma once
+
+#include "ricochet/collision/contact_query.h"
+#include "ricochet/response/riding.h"
+
+namespace ricochet {
+
+/// True where a body that holds a particle at rest jumps too fast, m/s, for that to go along: with the resting speed,
+/// or by so much less as the particle is heavier than the body, which it pays for.
+[[nodiscard]] bool lets_go(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body);
+
+/// The slowest rebound of a particle, given in the world, that is one, m/s: that of the scene. A rebound from a body
+/// that yields, that is over before a part of a step can end, cannot be told from contact.
+[[nodiscard]] double slowest_rebound(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle,
+                                     const Contact& contact);
+
+}  // namespace ricochet

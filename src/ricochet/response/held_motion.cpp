@@ -45,6 +45,13 @@ Vec3 turned_with(const Vec3& v, const Vec3& from, const Vec3& to) {
     return v - (dot(sum, v) / (1.0 + dot(from, to))) * sum + (2.0 * dot(from, v)) * to;
 }
 
+/// What moving surfaces draw in has no slip to stop: they go on.
+bool are_at_rest(std::span<const HoldingSurface> surfaces) {
+    return std::all_of(surfaces.begin(), surfaces.end(), [](const HoldingSurface& surface) {
+        return surface.velocity == Vec3{} && surface.angular_velocity == Vec3{} && surface.motion == nullptr;
+    });
+}
+
 /// One plan: the forces on a motion, and how long they stay. seen: the surfaces that the motion is along; those that
 /// hold it may have turned since.
 class Plan {
@@ -134,7 +141,8 @@ private:
             std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
         const double part = problem.solve_with_most(effort, grip_.pressure);
-        if (slides && part < kJammingFriction) (weight_ == 0.0 ? jams_ : jams_in_middle_) = true;
+        const bool jams = slides && part < kJammingFriction && are_at_rest(surfaces_);
+        if (jams) (weight_ == 0.0 ? jams_ : jams_in_middle_) = true;
         for (std::size_t k = 0; k < surfaces_.size(); ++k) push_[k] = problem.push(k) * surfaces_[k].normal;
         for (std::size_t r = 0; r < count_; ++r) {
             const std::size_t k = resistances_[r].surface;

@@ -42,9 +42,9 @@ inline constexpr double kShortestIntervals = 32.0;
 /// Plans the contact of a particle under acceleration a with surfaces that hold it (at most kMostHolding count), as if
 /// their normals stayed, for at most `duration` seconds. It ends where slip, rolling or spinning comes to a stop at one
 /// of them, and before friction has turned by kMaxHeadingTurn (kMostHeadingTurn where that is soon); friction has the
-/// direction of the middle of the interval. What slips where friction leaves no answer jams: its slip stops at once.
-/// For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of the motion that is
-/// given, and count as none.
+/// direction of the middle of the interval. What slips on surfaces at rest whose friction leaves no answer jams: its
+/// slip stops at once. For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of
+/// the motion that is given, and count as none.
 [[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
                                             std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
                                             const StuckSurfaces& stuck = {});

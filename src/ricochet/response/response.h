@@ -105,7 +105,7 @@ struct MovingParticle {
     /// still.
     double stored_time = 0.0;
     double step_end = 0.0;  ///< s, the time that the next move begins at
-    /// Impacts of it in earlier parts of the time step, where bodies that impulses move cut that: one budget for all.
+    /// Impacts of it in earlier parts of the time step, where something cuts that into parts: one budget for all.
     std::uint32_t bounces_before = 0;
     /// How it rests on a body, in the body's frame, where it rides on one; with a contact that is kept.
     struct Ridden {

@@ -92,8 +92,8 @@ class ActiveMover {
 public:
     explicit ActiveMover(const MoverParts& parts) : parts_(parts) {}
 
-    /// To be called at the begin of a step that bodies which impulses move may cut into parts: impacts count in all of
-    /// them together.
+    /// To be called at the begin of a step that bodies which impulses move, or coupled motion, may cut into parts:
+    /// impacts count in all of them together.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set for itself, by all threads; one record a block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);

@@ -101,7 +101,7 @@ TimeSpan Simulation::Impl::begin_step() {
 // stays in the order of time.
 void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& step) {
     recorder.begin_batch();
-    if (driven.is_active() && batch.begin == 0) mover.begin_step();
+    if ((driven.is_active() || coupled.is_active()) && batch.begin == 0) mover.begin_step();
     if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});

@@ -206,6 +206,7 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& can
 
 std::optional<SurfacePoint> SignedDistance::closest(std::uint32_t collider, const Vec3& p, double within) const {
     const Part& part = parts_[collider];
+    if (part.kind == Kind::elsewhere) return std::nullopt;
     if (part.kind == Kind::plane) return nearest_of_plane(part.index, p, within);
     if (part.kind == Kind::shape) return nearest_of_shape(part.index, p, within);
     const std::optional<Candidate> candidate = nearest_triangle(part.index, p, within);

@@ -39,6 +39,11 @@ TEST(MeshSweep, PointsAreStoppedByWhatTheirSegmentMeets) {
     }
 }
 
+Points shifted(Points points, const Vec3& by) {
+    for (Vec3& p : points) p += by;
+    return points;
+}
+
 TEST(MeshSweep, ASphereIsStoppedARadiusBeforeAWall) {
     const MeshQueries box(testing::box_mesh({0, -4, -4}, {1, 4, 4}));
     const Points from(3, Vec3{-4, 0, 0});
@@ -53,13 +58,11 @@ TEST(MeshSweep, AMeshThatMovesIsMetWhereASphereThatMovesTheOtherWayMeetsIt) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     const MeshQueries queries(mesh);
     const Vec3 shift{0.75, -0.5, 0.25};
-    Points after = mesh.vertices;
-    for (Vec3& v : after) v += shift;
+    const Points after = shifted(mesh.vertices, shift);
     const int count = test::scaled(300);
     const Points from = random_points(3, count);
     const Points to = random_points(4, count);
-    Points back = to;
-    for (Vec3& p : back) p += -shift;
+    const Points back = shifted(to, -shift);
     for (const double radius : {0.0, 0.125}) {
         const std::vector<double> radii{radius};
         const MeshHits moving = queries.sweep_moving(from, to, radii, after);
@@ -84,16 +87,14 @@ TEST(MeshSweep, SpheresInOverlapAreStoppedBesideAMovedMeshWhereTheyAreBesideOneA
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     const MeshQueries queries(mesh);
     const Vec3 shift{0.75, -0.5, 0.25};
-    Points after = mesh.vertices;
-    for (Vec3& v : after) v += shift;
+    const Points after = shifted(mesh.vertices, shift);
     const std::vector<double> radii{0.25};
     const int count = test::scaled(1000);
     Points from = random_points(5, count);
     for (std::size_t i = 0; i < from.size(); ++i)
         from[i] = from[i] * ((0.8 + 0.4 * static_cast<double>(i) / count) / length(from[i]));
     Points to = random_points(6, count);
-    Points back = to;
-    for (Vec3& p : back) p += -shift;
+    const Points back = shifted(to, -shift);
     const MeshHits moving = queries.sweep_moving(from, to, radii, after);
     const MeshHits resting = queries.sweep(from, back, radii);
     int stopped = 0;

@@ -10,7 +10,8 @@
 
 namespace ricochet::fuzz {
 
-/// Takes the bytes one after the other; behind their end every byte is 0.
+/// Takes the bytes one after the other; behind their end every byte is 0. Two choices within one expression have no
+/// order in C++: each is a statement of its own, or the scene would depend on the compiler.
 class ByteChoices {
 public:
     explicit ByteChoices(std::string_view bytes) : rest_(bytes) {}
@@ -35,6 +36,12 @@ public:
     }
     /// In [0, 1], in steps of 2^-16.
     double part() { return static_cast<double>(two_bytes()) / 65535.0; }
+    /// A part of one of them.
+    template <std::size_t n>
+    double part_of(const double (&values)[n]) {
+        const double value = one_of(values);
+        return value * part();
+    }
     double between(double low, double high) { return low + (high - low) * part(); }
 
     /// In [-2, 2]: on a coarse grid, where things meet in edges and corners and lie in planes; near to the grid; or

@@ -15,8 +15,12 @@ namespace ricochet::fuzz {
 namespace {
 
 /// Within a step of a sixtieth: from standing still to half a turn, from a creep to across the scene.
-double turn_rate(ByteChoices& choices) { return choices.one_of<double>({0.0, 10.0, 360.0, 10800.0}) * choices.part(); }
-double speed(ByteChoices& choices) { return choices.one_of<double>({0.0, 0.1, 2.0, 60.0}) * choices.part(); }
+double turn_rate(ByteChoices& choices) { return choices.part_of({0.0, 10.0, 360.0, 10800.0}); }
+double speed(ByteChoices& choices) { return choices.part_of({0.0, 0.1, 2.0, 60.0}); }
+Vec3 velocity(ByteChoices& choices) {
+    const double most = speed(choices);
+    return most * choices.direction();
+}
 
 FrameMotion motion(ByteChoices& choices, double duration) {
     const Vec3 axis = choices.direction();
@@ -68,7 +72,7 @@ void add_frames(ByteChoices& choices, SimulationSetup& setup) {
         body.joint = choices.one_of<JointKind>({JointKind::free, JointKind::hinge, JointKind::slider});
         body.axis = choices.direction();
         if (body.joint == JointKind::free) {
-            body.velocity = speed(choices) * choices.direction();
+            body.velocity = velocity(choices);
             body.angular_velocity = choices.point();
         } else {
             body.rate = 5.0 * choices.part();
@@ -96,7 +100,7 @@ void add_movers(ByteChoices& choices, SimulationSetup& setup) {
     if (is_exact && choices.index(3) == 1) add_frames(choices, setup);
     if (choices.index(4) == 1) {
         Material& belt = setup.materials[choices.index(setup.materials.size())];
-        belt.motion.velocity = speed(choices) * choices.direction();
+        belt.motion.velocity = velocity(choices);
         belt.motion.angular_velocity = choices.point();
     }
     if (is_exact && choices.index(4) == 1) {

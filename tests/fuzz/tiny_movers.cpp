@@ -116,6 +116,7 @@ void add_movers(ByteChoices& choices, SimulationSetup& setup) {
         pairs.friction = choices.one_of<double>({0.0, 0.5});
         pairs.rolling_friction = choices.one_of<double>({0.0, 0.1});
         pairs.method = choices.one_of<PairMethod>({PairMethod::automatic, PairMethod::events, PairMethod::contacts});
+        pairs.impact_budget = setup.options.bounce_budget;
         setup.options.particle_contacts = pairs;
     }
 }

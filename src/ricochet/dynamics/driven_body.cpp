@@ -301,7 +301,9 @@ Mobility DrivenBody::mobility() const {
     return {diagonal_matrix(1.0 / description_.mass), inverse_inertia_, description_.center};
 }
 
-double DrivenBody::quadratic_energy(const Wrench& wrench) const { return mobility().seen_by(map_).energy_by(wrench); }
+double DrivenBody::quadratic_energy(const Wrench& wrench) const {
+    return std::max(0.0, mobility().seen_by(map_).energy_by(wrench));  // rounding may leave it below
+}
 
 Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {
     return mobility().seen_by(map_).change_at(where, wrench);

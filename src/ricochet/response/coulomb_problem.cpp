@@ -221,10 +221,11 @@ bool CoulombProblem::relax(const Compliance& compliance, int sweeps) {
         force_[i] = value;
     };
     int look = kFirstLook;
+    Unknowns before;
     double change_at_look = 0.0;
     bool runs_away = false;
     for (int sweep = 1; sweep <= sweeps; ++sweep) {
-        const Unknowns before = sweep == look ? force_ : Unknowns{};
+        if (sweep == look) before = force_;
         for (std::size_t k = 0; k < contact_count_; ++k) {
             find_rate(k);
             set(k, std::max(0.0, force_[k] - gain_of(k, compliance) * rate_[k]));

@@ -18,6 +18,11 @@ namespace {
 /// bodies among hundreds of particles as heavy as they are followed less well. Larger: such steps take longer.
 constexpr int kManyParts = 1000;
 
+/// Of the shortest part: a time in which an impulse is no load that will last. Smaller: what a body takes in a part
+/// that impacts have cut short becomes a load beyond all that there is. Larger: loads that last are planned too small
+/// there.
+constexpr double kShortestLoad = 0.01;
+
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
 /// True where the way goes on with another velocity than that with which it came.
@@ -25,6 +30,12 @@ bool jumps(const BodyPath& before, const BodyPath& after) {
     const MovingPose came = before.at(before.end);
     const MovingPose goes = after.at(after.begin);
     return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
+}
+
+/// W, that a wrench (N, N m) about its moment_center() gives a body.
+double power_of(const DrivenBody& body, const Wrench& load) {
+    const double turning = dot(load.moment, body.angular_velocity());
+    return body.description().joint == JointKind::hinge ? turning : turning + dot(load.impulse, body.velocity());
 }
 
 }  // namespace
@@ -68,7 +79,7 @@ void DrivenMotion::begin_step() {
 }
 
 double DrivenMotion::yielded(const ColliderLoad& load) const {
-    const auto body = body_of(load);
+    const auto body = loads_on_bodies().body_of(load);
     if (!body) return 0.0;
     const AffineMap map = planned(*body).at(load.time).world_from_frame;
     const Mobility mobility = bodies_[*body].mobility().seen_by(map);
@@ -83,7 +94,7 @@ double DrivenMotion::next_part_end(double begin, double end) const {
 void DrivenMotion::plan(double begin, double end, double oldest) {
     oldest_ = oldest;
     set_shares({});
-    was_shortened_ = was_cut_ = false;
+    was_shortened_ = was_cut_ = has_given_up_ = false;
     plan_paths(begin, end);
 }
 
@@ -104,7 +115,7 @@ void DrivenMotion::set_shares(std::vector<double> shares) {
 std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> preview, double end) const {
     std::vector<ImpactTally> tallies = no_impacts();
     for (const ColliderLoad& load : preview) {
-        const auto body = load.impact && load.time <= end ? body_of(load) : std::nullopt;
+        const auto body = load.impact && load.time <= end ? loads_on_bodies().body_of(load) : std::nullopt;
         if (body) tallies[*body].add(load);
     }
     std::vector<double> shares;
@@ -146,14 +157,6 @@ void DrivenMotion::end_at(double time) {
     }
 }
 
-std::optional<std::size_t> DrivenMotion::body_of(const ColliderLoad& load) const {
-    if (colliders_ == nullptr) return std::nullopt;
-    const BodyId id = colliders_->body_of(load.surface);
-    const auto found = std::find(collider_of_.begin(), collider_of_.end(), id);
-    if (id == kAtRest || found == collider_of_.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - collider_of_.begin());
-}
-
 std::vector<ImpactTally> DrivenMotion::no_impacts() const {
     std::vector<ImpactTally> tallies;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -164,8 +167,9 @@ std::vector<ImpactTally> DrivenMotion::no_impacts() const {
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     // What lies on a body lands on it anew, slowly, at every change of its velocity.
-    std::erase_if(preview,
-                  [&](const ColliderLoad& load) { return !load.impact || load.approach <= slow_ || !body_of(load); });
+    std::erase_if(preview, [&](const ColliderLoad& load) {
+        return !load.impact || load.approach <= slow_ || !loads_on_bodies().body_of(load);
+    });
     std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
@@ -180,13 +184,13 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
         const std::vector<ImpactTally> before = tallies;
         bool is_heavy = false;
         for (; next < preview.size() && preview[next].time == preview[first].time; ++next) {
-            const std::size_t body = *body_of(preview[next]);
+            const std::size_t body = *loads_on_bodies().body_of(preview[next]);
             tallies[body].add(preview[next]);
-            is_heavy = is_heavy || heaviness_on(body, preview[next]) > kHeavyLoad;
+            is_heavy = is_heavy || loads_on_bodies().heaviness_on(body, preview[next]) > kHeavyLoad;
         }
         const bool is_too_much =
             first > 0 && std::any_of(preview.begin() + first, preview.begin() + next, [&](const ColliderLoad& load) {
-                const std::size_t body = *body_of(load);
+                const std::size_t body = *loads_on_bodies().body_of(load);
                 return tallies[body].changes_energy(load.time) ||
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
@@ -201,36 +205,9 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 LyingLoad DrivenMotion::lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    LyingLoad lying;
     // What is entered at the end of what was planned may be a rounding behind it.
-    if (until >= planned_end()) until = std::numeric_limits<double>::infinity();
-    std::optional<std::uint64_t> last;
-    for (const ColliderLoad& load : preview) {
-        const bool lies = !load.impact || load.approach <= slow_;
-        if (!lies || load.time > until || body_of(load) != body) continue;
-        const Wrench wrench = wrench_of(load, bodies_[body].moment_center());
-        lying.wrench += wrench;
-        const double size = dot(load.impulse, load.impulse);
-        if (last == load.particle || !(size > 0.0)) continue;
-        last = load.particle;
-        lying.heaviness += heaviness_on(body, load);
-    }
-    return lying;
-}
-
-/// s, after which nothing of what lies on a body pushes it any more.
-double DrivenMotion::left_at(std::size_t body, std::span<const ColliderLoad> preview) const {
-    constexpr double kNothing = 1e-3;  // of all of it
-    const auto lies = [&](const ColliderLoad& load) {
-        return (!load.impact || load.approach <= slow_) && body_of(load) == body;
-    };
-    double all = 0.0;
-    for (const ColliderLoad& load : preview) all += lies(load) ? length(load.impulse) : 0.0;
-    double last = all > 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
-    for (const ColliderLoad& load : preview) {
-        if (lies(load) && length(load.impulse) > kNothing * all) last = std::max(last, load.time);
-    }
-    return last;
+    const bool is_whole = until >= planned_end();
+    return loads_on_bodies().lying_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
 
 /// The part of a duration after which it ends where what lay on a body has left it: the load is that of the time
@@ -238,16 +215,8 @@ double DrivenMotion::left_at(std::size_t body, std::span<const ColliderLoad> pre
 double DrivenMotion::part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
                                     double duration) const {
     constexpr double kLeast = 0.1;
-    const double part = (left_at(body, preview) - begin) / duration;
+    const double part = (loads_on_bodies().left_at(body, preview) - begin) / duration;
     return part > kLeast && part < 1.0 - kLeast ? part : 1.0;
-}
-
-/// The mass of a particle over that with which a body yields to its impulse; 0 where there is none.
-double DrivenMotion::heaviness_on(std::size_t body, const ColliderLoad& load) const {
-    const double size = dot(load.impulse, load.impulse);
-    if (!(size > 0.0)) return 0.0;
-    const Wrench wrench = wrench_of(load, bodies_[body].moment_center());
-    return load.mass * dot(bodies_[body].velocity_change(wrench, load.place), load.impulse) / size;
 }
 
 /// m/s, that a wrench (N, N m) changes a body's velocity by in a time, s; of one that turns, at its radius of gyration.
@@ -256,13 +225,39 @@ double DrivenMotion::change_by(std::size_t body, const Wrench& load, double dura
     return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
 }
 
+/// Not after `end`, s. What waits for a body that it has hit turns it by its own momentum, that its way lacks
+/// meanwhile: in proportion to the time.
+double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double end) const {
+    const double begin = planned(0).begin;
+    for (std::size_t i = 0; i < preview.size(); ++i) {
+        const ColliderLoad& load = preview[i];
+        const bool waits = !load.impact && load.impulse == Vec3{} && load.couple != Vec3{};
+        const auto body = waits ? loads_on_bodies().body_of(load) : std::nullopt;
+        if (!body) continue;
+        const bool is_known = i > 0 && preview[i - 1].particle == load.particle;
+        const double since = is_known ? std::max(begin, preview[i - 1].time) : begin;
+        const double change = change_by(*body, wrench_of(load, bodies_[*body].moment_center()), 1.0);
+        const double part = most_change(*body) / change;
+        const double least = parts_ < kManyParts ? 0.0 : shortest_part_;
+        if (since < end && part < 1.0) end = std::min(end, since + std::max(least, part * (load.time - since)));
+    }
+    return end;
+}
+
+/// m/s, of its velocity, that need not be planned.
+double DrivenMotion::most_change(std::size_t body) const {
+    const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
+    return std::max(slow_, kMostBodyChange * speed);
+}
+
 DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const LyingLoad& lying, double duration) const {
     const Wrench& planned = loads_[body];
-    const Wrench back{lying.wrench.impulse / duration, lying.wrench.moment / duration};
+    // Where impacts have cut a part short, a slow impact is no force that lasts.
+    const double lasts = std::max(duration, kShortestLoad * shortest_part_);
+    const Wrench back{lying.wrench.impulse / lasts, lying.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
-    const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
     const double at_once = change_by(body, back, shortest_part_) / (1.0 + lying.heaviness);
-    const double most = std::max({slow_, kMostBodyChange * speed, at_once});
+    const double most = std::max(most_change(body), at_once);
     const Wrench varies = relaxations_[body].variation(planned, back, lying.heaviness);
     const double change = change_by(body, varies, duration);
     const double lacking = change_by(body, lacks, duration);
@@ -274,7 +269,7 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const LyingLoad& lying,
 bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const {
     if (end >= planned_end()) return false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (!(left_at(k, preview) > end)) continue;
+        if (!(loads_on_bodies().left_at(k, preview) > end)) continue;
         const LyingLoad lying = lying_on(k, preview, planned_end());
         const double duration = planned_end() - planned(k).begin;
         if (lying.heaviness > 0.0 && (relaxations_[k].concerns(lying) || !fit_of(k, lying, duration).is_near))
@@ -301,12 +296,14 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     const double begin = planned(0).begin;
     // A part that has been cut once is not cut again at the same impact.
     double end = round == 0 || cut < begin + 0.5 * (planned_end() - begin) ? cut : planned_end();
+    end = end_of_waits(preview, end);
     bool fits = begin_round(preview, end, round);
     if (is_cut_in_contact(preview, end)) {
         was_cut_ = true;
         plan_paths(begin, end);
         return true;
     }
+    if (has_given_up_) return accept(preview, end);
     const double duration = end - begin;
     const bool can_shorten = duration > 1.5 * shortest_part_;
     const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
@@ -323,11 +320,9 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
         fits = fits && fit.fits;
     }
     if (!fits && is_last && can_shorten) longest = std::min(longest, 0.25);
-    if ((fits && longest == 1.0) || (is_last && !can_shorten)) {
-        for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
-        end_at(end);
-        limit_next_part(duration);
-        return false;
+    const bool gives_up = is_last && !can_shorten;
+    if ((fits && longest == 1.0) || gives_up) {
+        return (!can_shorten && plan_without_loads(preview, begin, end)) || accept(preview, end);
     }
     if (longest < 1.0) {
         was_shortened_ = true;
@@ -338,6 +333,52 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     }
     plan_paths(begin, end);
     return true;
+}
+
+/// True where a planned load, with what came back from it, would give a body more than particles lose to it.
+bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
+    constexpr double kMuch = 0.1;
+    if (loads_[body].impulse == Vec3{} && loads_[body].moment == Vec3{}) return false;
+    BodyPath path = planned(body);
+    const bool is_whole = end >= path.end;
+    path.end = end;
+    const double duration = end - path.begin;
+    const Wrench load{duration * loads_[body].impulse, duration * loads_[body].moment};
+    Wrench taken;
+    double given = 0.0;
+    for (const ColliderLoad& part : preview) {
+        if (loads_on_bodies().body_of(part) != body || (part.time > end && !is_whole)) continue;
+        taken += wrench_of(part, bodies_[body].moment_center());
+        given += part.work + (part.impact ? yielded(part) : 0.0);
+    }
+    DrivenBody as_planned = bodies_[body];
+    as_planned.follow(path, loads_[body], load);
+    const double by_load = 0.5 * (power_of(bodies_[body], load) + power_of(as_planned, load));
+    DrivenBody comes = bodies_[body];
+    comes.follow(path, loads_[body], taken);
+    const double gained = comes.kinetic_energy() - as_planned.kinetic_energy() + by_load - given;
+    return gained > kMuch * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
+}
+
+/// The plan stands, up to a time, s. Returns false.
+bool DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
+    const double duration = end - planned(0).begin;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
+    end_at(end);
+    limit_next_part(duration);
+    return false;
+}
+
+/// Bodies that no load fits, however short the part, as where something much heavier jams them, go on as if nothing lay
+/// on them: each touch is answered with what they yield. False where there are none.
+bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (!gains_energy(k, preview, end)) continue;
+        loads_[k] = {};
+        has_given_up_ = true;
+    }
+    if (has_given_up_) plan_paths(begin, end);
+    return has_given_up_;
 }
 
 /// What lies on a body shows by its mean alone how it changes in a part: that may be little, over a part in which it
@@ -352,19 +393,11 @@ void DrivenMotion::limit_next_part(double duration) {
     if (!(longest_part_ < time_step_)) longest_part_ = std::numeric_limits<double>::infinity();
 }
 
-std::vector<Wrench> DrivenMotion::wrenches_of(std::span<const ColliderLoad> loads) const {
-    std::vector<Wrench> wrenches(bodies_.size());
-    for (const ColliderLoad& load : loads) {
-        if (const auto body = body_of(load)) wrenches[*body] += wrench_of(load, bodies_[*body].moment_center());
-    }
-    return wrenches;
-}
-
 void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
-    const std::vector<Wrench> wrenches = wrenches_of(loads);
+    const std::vector<Wrench> wrenches = loads_on_bodies().sums(loads);
     std::vector<std::vector<std::uint64_t>> touching(bodies_.size());
     for (const ColliderLoad& load : loads) {
-        const auto body = body_of(load);
+        const auto body = loads_on_bodies().body_of(load);
         if (!body) continue;
         touching[*body].push_back(load.particle);
         if (!load.impact) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
@@ -383,7 +416,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
 }
 
 void DrivenMotion::take(std::span<const ColliderLoad> loads) {
-    const std::vector<Wrench> wrenches = wrenches_of(loads);
+    const std::vector<Wrench> wrenches = loads_on_bodies().sums(loads);
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].take(wrenches[k]);
 }
 

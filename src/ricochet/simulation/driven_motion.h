@@ -21,6 +21,7 @@
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/impact_tally.h"
 #include "ricochet/simulation/load_relaxation.h"
+#include "ricochet/simulation/loads_on_bodies.h"
 
 namespace ricochet {
 
@@ -95,16 +96,18 @@ private:
     void set_shares(std::vector<double> shares);
     [[nodiscard]] std::vector<double> shares_of(std::span<const ColliderLoad> preview, double end) const;
     void tell_of_jump(std::size_t body, std::size_t path) const;
-    [[nodiscard]] std::optional<std::size_t> body_of(const ColliderLoad& load) const;
-    [[nodiscard]] std::vector<Wrench> wrenches_of(std::span<const ColliderLoad> loads) const;
-    [[nodiscard]] double heaviness_on(std::size_t body, const ColliderLoad& load) const;
+    [[nodiscard]] LoadsOnBodies loads_on_bodies() const { return {bodies_, collider_of_, colliders_, slow_}; }
     [[nodiscard]] LyingLoad lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const;
     [[nodiscard]] bool begin_round(std::span<const ColliderLoad> preview, double end, int round);
     [[nodiscard]] bool is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const;
-    [[nodiscard]] double left_at(std::size_t body, std::span<const ColliderLoad> preview) const;
     [[nodiscard]] double part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
                                         double duration) const;
+    [[nodiscard]] double end_of_waits(std::span<const ColliderLoad> preview, double end) const;
+    [[nodiscard]] double most_change(std::size_t body) const;
     [[nodiscard]] double change_by(std::size_t body, const Wrench& load, double duration) const;
+    [[nodiscard]] bool gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const;
+    bool accept(std::span<const ColliderLoad> preview, double end);
+    [[nodiscard]] bool plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end);
     void limit_next_part(double duration);
     [[nodiscard]] Fit fit_of(std::size_t body, const LyingLoad& lying, double duration) const;
 
@@ -120,6 +123,7 @@ private:
     double longest_part_ = std::numeric_limits<double>::infinity();  // s, of the next part
     bool was_shortened_ = false;                                     // this part, by what lies on bodies
     bool was_cut_ = false;                // the last plan of this part, by an impact on what lies on bodies
+    bool has_given_up_ = false;           // this part: no load fits
     std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it
     std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
     double lying_for_ = 0.0;              // s, of this step so far

@@ -35,7 +35,8 @@ Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const
     fitting_ = sum(planned, 1.0 / (1.0 + heaviness_), lacks);
     keep(body, planned, lacks);
     if (low_ && high_) {
-        const double part = low_->size / (low_->size + high_->size);
+        const double both = low_->size + high_->size;
+        const double part = both > 0.0 ? low_->size / both : 0.5;
         return sum(low_->load, part, sum(high_->load, -1.0, low_->load));
     }
     if (!(heaviness > 0.0)) return {};  // the body runs away from it

@@ -34,6 +34,7 @@ class Scene(Thing):
     particles: Particles that are there from the start, one by one or from a table.
     springs: Springs between particles; ropes, chains and cloth with particles of their own.
     particle_contacts: Spheres meet each other.
+    heat: What changes the temperature of particles.
     attributes: Values of your own that particles carry, by name.
     reference_camera: For emitters' rates per screen area.
     bounds: Where particles are retired.
@@ -230,6 +231,18 @@ class ColliderLooks(Thing):
     roughness: From 0, which mirrors what is around, to 1, which is matt. Default: 1.
     glass: It is seen through. Default: false.
     hidden: It is not shown. Default: false.
+    """
+
+
+class Convection(Thing):
+    """Heat that the medium takes from spheres: by a coefficient, or by the correlation of Ranz and Marshall, Nu = 2 + 0.6 Re^(1/2) Pr^(1/3), at the speed relative to the flow. The defaults are those of air at 20 degrees C.
+
+    coefficient: The h of dT/dt = -h A (T - Ta) / (m c). It stands alone. Unit: W/(m^2 K).
+    conductivity: Thermal conductivity of the medium. Unit: W/(m K). Default: 0.0257.
+    fluid_density: Density of the medium. Unit: kg/m^3. Default: 1.204.
+    viscosity: Dynamic viscosity of the medium. Unit: Pa s. Default: 1.82e-05.
+    prandtl: Prandtl number of the medium. Default: 0.713.
+    flow: How the medium moves: a flow, or the name of one in `flows`.
     """
 
 
@@ -955,6 +968,20 @@ class Gust(Thing):
     amplitude: Part of the wind's speed; above 1 the wind turns round at times. Required.
     frequency: How often it rises and falls. Unit: Hz. Required.
     phase: Where in its cycle it starts. Unit: turns. Default: 0.
+    """
+
+
+class Heat(Thing):
+    """What changes the attribute `temperature` (K) of all particles, which must be declared. A particle has one temperature throughout.
+
+    specific_heat: Of the particles. Unit: J/(kg K). Required.
+    ambient_temperature: Of the medium, and of what the particles shine at. Unit: K. Default: 293.15.
+    convection: Heat that the medium takes.
+    emissivity: Heat that spheres radiate, and take in, over that of black bodies. Default: 0.
+    impact_fraction: Part of the energy that impacts lose along the normal, by restitution, that heats the particle.
+        Default: 0.
+    friction_fraction: Part of the energy that friction takes, in impacts and in contact, that heats the particle.
+        Default: 0.
     """
 
 

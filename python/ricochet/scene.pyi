@@ -27,6 +27,7 @@ class Scene(Thing):
         particles: Any = ...,
         springs: Optional[Sequence[Any]] = ...,
         particle_contacts: Any = ...,
+        heat: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         reference_camera: Any = ...,
         bounds: Any = ...,
@@ -184,6 +185,18 @@ class ColliderLooks(Thing):
         roughness: Optional[float] = ...,
         glass: Optional[bool] = ...,
         hidden: Optional[bool] = ...,
+    ) -> None: ...
+
+class Convection(Thing):
+    def __init__(
+        self,
+        *,
+        coefficient: Optional[float] = ...,
+        conductivity: Optional[float] = ...,
+        fluid_density: Optional[float] = ...,
+        viscosity: Optional[float] = ...,
+        prandtl: Optional[float] = ...,
+        flow: Any = ...,
     ) -> None: ...
 
 class Curve(Thing):
@@ -794,6 +807,18 @@ class Gust(Thing):
         amplitude: float,
         frequency: float,
         phase: Optional[float] = ...,
+    ) -> None: ...
+
+class Heat(Thing):
+    def __init__(
+        self,
+        *,
+        specific_heat: float,
+        ambient_temperature: Optional[float] = ...,
+        convection: Any = ...,
+        emissivity: Optional[float] = ...,
+        impact_fraction: Optional[float] = ...,
+        friction_fraction: Optional[float] = ...,
     ) -> None: ...
 
 class KeyPose(Thing):

@@ -26,6 +26,7 @@
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/heat.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/pair_forces.h"
 #include "ricochet/dynamics/particle_system.h"

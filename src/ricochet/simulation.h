@@ -22,6 +22,7 @@
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/heat.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/particles.h"
@@ -59,6 +60,7 @@ struct SimulationSetup {
     std::optional<Box3> bounds;                       ///< particles outside are retired
     std::vector<AttributeDescription> attributes;     ///< what particles carry of the user's own, and for looks
     std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
+    std::optional<HeatSettings> heat = std::nullopt;  ///< what changes the attribute `temperature`; nothing: nothing
     /// The processes that share the particles, each with the same setup; null: this one has all. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
 };

@@ -9,6 +9,7 @@
 #include "io/emitter_scene.h"
 #include "io/force_scene.h"
 #include "io/frame_scene.h"
+#include "io/heat_scene.h"
 #include "io/json_schema.h"
 #include "io/particle_forces_scene.h"
 #include "io/sample_scene.h"
@@ -90,6 +91,7 @@ std::vector<Json> samples() {
     const Json mutual = Json::parse(test::kParticleForcesScene);
     for (const Json& force : mutual["particle_forces"])
         scenes.push_back({{"ricochet", 1}, {"particle_forces", {force}}});
+    scenes.push_back(Json::parse(test::kHeatScene));
     Json births = Json::parse(test::kEmitterScene);
     for (const Json& emitter : births["emitters"]) scenes.push_back({{"ricochet", 1}, {"emitters", {emitter}}});
     births.erase("emitters");
@@ -105,6 +107,7 @@ TEST(SceneSchema, TheSamplesConform) {
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kEmitterScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kParticleForcesScene)), Lines{});
+    EXPECT_EQ(schema_errors(schema(), Json::parse(test::kHeatScene)), Lines{});
     for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
 }
 

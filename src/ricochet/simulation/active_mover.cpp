@@ -10,6 +10,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
+#include "ricochet/simulation/heat_stage.h"
 #include "ricochet/simulation/sleeping_piles.h"
 
 namespace ricochet {
@@ -107,6 +108,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.segments.clear();
     const std::size_t first_record = scratch.records.size();
     const std::size_t first_hit = scratch.hits.size();
+    const std::size_t first_load = scratch.loads.size();
     const Flight* const plan = parts_.coupled.flight_of(i);
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
     const bool as_planned = plan != nullptr && life.begin == step.begin && life.end == step.end;
@@ -117,6 +119,9 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
     if (scratch.record_flown) note_departure(i, particle, outcome, scratch.flown, pushed_since(first_hit, scratch));
+    if (parts_.meter != nullptr) {
+        parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
+    }
     if (parts_.check != nullptr) {
         const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
         parts_.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
@@ -353,7 +358,8 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.loads.clear();
     scratch.record_loads = parts_.recorder.collects_loads();
     scratch.record_contacts = parts_.recorder.collects_contacts();
-    scratch.record_segments = scratch.record_motions = parts_.check != nullptr;
+    scratch.record_segments = parts_.check != nullptr;
+    scratch.record_motions = parts_.check != nullptr || parts_.meter != nullptr;
 }
 
 void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) {

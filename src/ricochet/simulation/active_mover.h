@@ -20,6 +20,7 @@
 
 namespace ricochet {
 
+class FrictionMeter;
 class SleepingPiles;
 
 // The particles that need a query in a step, and the blocks in which threads move them.
@@ -82,8 +83,9 @@ struct MoverParts {
     RunRecorder& recorder;
     const Response& response;
     CoupledMotion& coupled;
-    const Offspring* offspring;  ///< null where no particles spawn others
-    RunCheck* check;             ///< null without options.verify
+    const Offspring* offspring;            ///< null where no particles spawn others
+    RunCheck* check;                       ///< null without options.verify
+    const FrictionMeter* meter = nullptr;  ///< null where surfaces do not heat
 };
 
 /// Hands particles to the response and takes over what comes out: their state, what is known of their next query, and

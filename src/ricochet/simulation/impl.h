@@ -18,6 +18,7 @@
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
+#include "ricochet/simulation/heat_stage.h"
 #include "ricochet/simulation/offspring.h"
 #include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/particle_store.h"
@@ -142,6 +143,7 @@ struct Simulation::Impl {
     std::vector<SpringFace> spring_faces;
     QuerySchedule schedule;
     std::unique_ptr<RunCheck> check;  ///< with options.verify
+    std::unique_ptr<HeatStage> heat;  ///< null where nothing changes temperatures
     RunRecorder recorder;
     std::vector<BirthRecord> birth_records;  ///< of the step, where there is offspring
     FreeFlights free_flights;

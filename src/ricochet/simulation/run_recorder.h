@@ -80,6 +80,13 @@ struct CutOff {
     double time = 0.0;  ///< s
 };
 
+/// What surfaces have heated a particle by.
+struct HeatGain {
+    std::size_t particle = 0;
+    double time = 0.0;    ///< s
+    double energy = 0.0;  ///< J
+};
+
 /// What one block of particles has done: written by the thread that moves the block.
 struct BlockRecord {
     std::uint64_t contacts = 0;
@@ -95,6 +102,7 @@ struct BlockRecord {
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> contact_records;
     std::vector<ColliderLoad> loads;
+    std::vector<HeatGain> heat;
     std::vector<Violation> violations;
     std::optional<std::size_t> runaway;  ///< the first particle that has come beyond kMaxSpeed
     bool runaway_is_thrown = false;      ///< by surfaces, not by forces

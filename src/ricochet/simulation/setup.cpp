@@ -137,6 +137,14 @@ std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, 
     return offspring;
 }
 
+/// Null where nothing changes temperatures.
+std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const ParticleStore& store,
+                                     const ForceField& forces, const MovingColliders* bodies) {
+    if (!heat) return nullptr;
+    const auto column = store.particles().attributes.find(kTemperatureAttribute);
+    return std::make_unique<HeatStage>(std::move(*heat), column.value(), forces, bodies);
+}
+
 bool keeps_origin(const std::vector<Emitter>& emitters, const std::vector<ParticlesForceEntry>& mutual) {
     const bool asks_for_emitters = std::any_of(
         mutual.begin(), mutual.end(), [](const ParticlesForceEntry& entry) { return !entry.emitters.empty(); });
@@ -248,10 +256,13 @@ Simulation::Impl::Impl(SimulationSetup setup)
       spring_faces(std::move(setup.spring_faces)),
       schedule(clock),
       check(options.verify ? std::make_unique<RunCheck>(world, bodies.get()) : nullptr),
+      heat(make_heat(setup.heat, store, forces, bodies.get())),
       recorder(options.triangle_totals ? world.surface_count() : 0,
-               count_with_loads(bodies.get(), materials, *colliders), options.record_contacts, offspring != nullptr),
+               count_with_loads(bodies.get(), materials, *colliders), options.record_contacts,
+               offspring != nullptr || (heat && heat->meter() != nullptr)),
       free_flights(store, schedule, forces, options.integrator, check.get()),
-      mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get()}),
+      mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
+             heat ? heat->meter() : nullptr}),
       pairs(options.particle_contacts
                 ? std::make_unique<PairMotion>(PairParts{store, schedule, mover, *response, *options.particle_contacts})
                 : nullptr),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
@@ -58,7 +59,7 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
 
 bool Simulation::Impl::may_defer() const {
     return acceleration.look_ahead && acceleration.deferred_steps && !check && !offspring && !bounds &&
-           !coupled.is_active() && !pairs;
+           !coupled.is_active() && !pairs && !heat;
 }
 
 // Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
@@ -103,6 +104,8 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
     recorder.begin_batch();
     if ((driven.is_active() || coupled.is_active()) && batch.begin == 0) mover.begin_step();
     if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
+    if (heat) heat->before_move(particles(), batch, step);
+    std::vector<HeatGain> gains;
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});
         std::vector<BlockRecord> blocks;
@@ -113,9 +116,11 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
             mover.take_up(coupled.correct_velocities(store.particles()), part, blocks);
         }
         record_part(batch, blocks);
+        for (const BlockRecord& block : blocks) gains.insert(gains.end(), block.heat.begin(), block.heat.end());
         now = part.end;
     }
     if (coupled.is_active() && batch.begin == 0) coupled.settle(particles());
+    if (heat) heat->after_move(store.particles(), batch, step, std::move(gains));
     recorder.end_batch(batch.size());
 }
 

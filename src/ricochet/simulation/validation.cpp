@@ -251,6 +251,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_names(setup.emitters, "emitter");
     validate_emitters(setup);
     validate_springs(setup);
+    validate_heat(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
     require_memory(setup);

@@ -17,6 +17,9 @@ const SimulationSetup& validated(const SimulationSetup& setup);
 /// What its parts cannot do together: colliders that move, bodies, spheres that meet, flows, forces between particles.
 void validate_together(const SimulationSetup& setup);
 
+/// What changes temperatures: its values, and what it needs of particles and of what moves them.
+void validate_heat(const SimulationSetup& setup);
+
 /// A particle, by its number among those that are given; columns: how many attributes particles have.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);
 /// materials: how many there are.

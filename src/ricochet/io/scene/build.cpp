@@ -252,6 +252,8 @@ Fields<Unbound> scene_fields() {
          &springs_spec()},
         {"particle_contacts", ValueType::object, "Spheres meet each other.", &particle_contacts_spec(),
          Without{"they pass through each other"}},
+        {"heat", ValueType::object, "What changes the temperature of particles.", &heat_spec(),
+         Without{"nothing but curves over life"}},
         {"attributes", ValueType::table, "Values of your own that particles carry, by name.", &attribute_spec()},
         {"reference_camera", ValueType::object, "For emitters' rates per screen area.", &reference_camera_spec(),
          Without{"no such rates"}},
@@ -373,6 +375,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_springs(context, scene.setup);
     build_particle_contacts(context, scene.setup);
     build_particle_forces(context, scene.setup);
+    build_heat(context, forces, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();
     scene.output = output;

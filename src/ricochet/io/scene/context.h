@@ -92,6 +92,7 @@ private:
 [[nodiscard]] const ObjectSpec& flow_spec();
 [[nodiscard]] const ObjectSpec& force_spec();
 [[nodiscard]] const ObjectSpec& particle_force_spec();
+[[nodiscard]] const ObjectSpec& heat_spec();
 [[nodiscard]] const ObjectSpec& material_spec();
 [[nodiscard]] const ObjectSpec& collider_spec();
 [[nodiscard]] const ObjectSpec& frame_spec();
@@ -209,6 +210,8 @@ void read_looks(const SceneContext& context, const SimulationSetup& setup, const
 void build_particles(SceneContext& context, SimulationSetup& setup);
 /// After the attributes, bodies and emitters.
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
+/// After all else of the setup.
+void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup);
 /// The values of an explicit particle, one a column; empty when the scene has no columns.
 [[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
                                                           const ObjectView& view);

@@ -1,0 +1,112 @@
+#include "ricochet/dynamics/heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ricochet/core/portable_math.h"
+
+namespace ricochet {
+namespace {
+
+/// Stefan and Boltzmann's constant, W/(m^2 K^4) (exact by the SI of 2019).
+constexpr double kStefanBoltzmann = 5.670374419e-8;
+
+/// The hottest body is below (3 b t)^(-1/3) above the ambient temperature after a time t: what is so many times as hot
+/// forgets how hot it was, to the last digit.
+constexpr double kForgotten = 1e6;
+
+/// Largest error of a step of the logarithm of T - Ta. More would be seen where steps of a run are added up; less comes
+/// near to rounding, which halving does not make smaller.
+constexpr double kCoolingError = 1e-11;
+
+/// e^-x is 0 beyond.
+constexpr double kGone = 750.0;
+
+/// How fast d = T - Ta dies away: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The logarithm w = log(d(0) / d) grows
+/// by g, which is smooth and never negative: no step is too long for it, only inexact.
+class Decay {
+public:
+    Decay(double difference, double ambient, const CoolingRates& rates)
+        : difference_(difference), ambient_(ambient), rates_(rates) {}
+
+    /// w at a time.
+    [[nodiscard]] double after(double duration) const {
+        double w = 0.0;
+        double done = 0.0;
+        double h = duration;
+        while (done < duration && w < kGone) {
+            h = std::min(h, duration - done);
+            const double once = step(w, h);
+            const double twice = step(step(w, 0.5 * h), 0.5 * h);
+            const double error = std::fabs(twice - once) / 15.0;  // of a method of order four
+            const double most = kCoolingError * (1.0 + twice);
+            if (error <= most) {
+                w = twice + (twice - once) / 15.0;
+                done += h;
+                if (error < most / 64.0) h *= 2.0;
+            } else {
+                h *= 0.5;
+            }
+        }
+        return w;
+    }
+    [[nodiscard]] double rate(double w) const {
+        const double t = ambient_ + difference_ * portable_exp(-w);
+        return rates_.convection + rates_.radiation * ((t * t + ambient_ * ambient_) * (t + ambient_));
+    }
+
+private:
+    /// The classical Runge-Kutta method.
+    [[nodiscard]] double step(double w, double h) const {
+        const double k1 = rate(w);
+        const double k2 = rate(w + 0.5 * h * k1);
+        const double k3 = rate(w + 0.5 * h * k2);
+        const double k4 = rate(w + h * k3);
+        return w + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+
+    double difference_;  // K, at the start
+    double ambient_;     // K
+    CoolingRates rates_;
+};
+
+/// The ambient temperature and what is left of the difference; rounding leads out of neither.
+double between(double start, double ambient, double left) {
+    return std::clamp(ambient + left, std::min(start, ambient), std::max(start, ambient));
+}
+
+}  // namespace
+
+double heat_transfer_coefficient(const Convection& convection, double radius, double speed) {
+    if (convection.coefficient) return *convection.coefficient;
+    const double diameter = 2.0 * radius;
+    const double reynolds = convection.density * speed * diameter / convection.viscosity;
+    const double nusselt = 2.0 + 0.6 * std::sqrt(reynolds) * portable_pow(convection.prandtl, 1.0 / 3.0);
+    return nusselt * convection.conductivity / diameter;
+}
+
+CoolingRates cooling_rates(const HeatSettings& heat, double mass, double radius, double coefficient) {
+    const double area = 4.0 * std::numbers::pi * radius * radius;
+    const double per_watt = area / (mass * heat.specific_heat);
+    return {coefficient * per_watt, heat.emissivity * kStefanBoltzmann * per_watt};
+}
+
+double cooled(double temperature, double ambient, const CoolingRates& rates, double duration) {
+    double difference = temperature - ambient;
+    if (!std::isfinite(temperature) || difference == 0.0 || !(duration > 0.0)) return temperature;
+    if (rates.radiation == 0.0) {
+        return between(temperature, ambient, difference * portable_exp(-rates.convection * duration));
+    }
+    const double lasting = portable_pow(3.0 * rates.radiation * duration, -1.0 / 3.0);  // K
+    difference = std::min(difference, kForgotten * lasting);
+    if (ambient == 0.0 && rates.convection == 0.0) {
+        const double ratio = difference / lasting;
+        return difference * portable_pow(1.0 + ratio * ratio * ratio, -1.0 / 3.0);
+    }
+    const Decay decay(difference, ambient, rates);
+    if (!std::isfinite(decay.rate(0.0))) return ambient;
+    return between(temperature, ambient, difference * portable_exp(-decay.after(duration)));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,83 @@
+// The heat of a scene: what changes the temperatures of its particles.
+
+#include "ricochet/dynamics/heat.h"
+
+#include <string>
+#include <string_view>
+
+#include "ricochet/io/scene/context.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet::detail {
+namespace {
+
+const ObjectSpec& convection_spec() {
+    using C = Convection;
+    static const ObjectSpec spec = object<C>(
+        "convection",
+        "Heat that the medium takes from spheres: by a coefficient, or by the correlation of Ranz and Marshall, Nu = 2 "
+        "+ 0.6 Re^(1/2) Pr^(1/3), at the speed relative to the flow. The defaults are those of air at 20 degrees C.",
+        {{"coefficient", &C::coefficient, kNotNegative, "W/(m^2 K)",
+          "The h of dT/dt = -h A (T - Ta) / (m c). It stands alone.", Without{"by the correlation"}},
+         {"conductivity", &C::conductivity, kPositive, "W/(m K)", "Thermal conductivity of the medium."},
+         {"fluid_density", &C::density, kNotNegative, "kg/m^3", "Density of the medium."},
+         {"viscosity", &C::viscosity, kPositive, "Pa s", "Dynamic viscosity of the medium."},
+         {"prandtl", &C::prandtl, kPositive, "", "Prandtl number of the medium."},
+         {"flow", ValueType::named_object, "How the medium moves: a flow, or the name of one in `flows`.", &flow_spec(),
+          NamedIn{"flows"}, Without{"at rest"}}});
+    return spec;
+}
+
+}  // namespace
+
+const ObjectSpec& heat_spec() {
+    using H = HeatSettings;
+    static const ObjectSpec spec = object<H>(
+        "heat",
+        "What changes the attribute `temperature` (K) of all particles, which must be declared. A particle has one "
+        "temperature throughout.",
+        {{"specific_heat", &H::specific_heat, kPositive, "J/(kg K)", "Of the particles.", kRequired},
+         {"ambient_temperature", &H::ambient_temperature, kNotNegative, "K",
+          "Of the medium, and of what the particles shine at."},
+         {"convection", &H::convection, "Heat that the medium takes.", &convection_spec(), Without{"none"}},
+         {"emissivity", &H::emissivity, kFraction, "",
+          "Heat that spheres radiate, and take in, over that of black bodies."},
+         {"impact_fraction", &H::impact_fraction, kFraction, "",
+          "Part of the energy that impacts lose along the normal, by restitution, that heats the particle."},
+         {"friction_fraction", &H::friction_fraction, kFraction, "",
+          "Part of the energy that friction takes, in impacts and in contact, that heats the particle."}});
+    return spec;
+}
+
+namespace {
+
+/// "heat: " where the message begins with what it is reported for.
+std::string without_own_name(std::string message) {
+    constexpr std::string_view kName = "heat: ";
+    return message.starts_with(kName) ? message.substr(kName.size()) : message;
+}
+
+FlowPointer flow_of(const SceneContext& context, const ForceBuilder& forces, const ObjectView& convection) {
+    for (const char* key : {"conductivity", "fluid_density", "viscosity", "prandtl", "flow"}) {
+        if (!convection.has("coefficient") || !convection.has(key)) continue;
+        context.error(convection, key, "has no part beside a `coefficient`, expected one of the two");
+    }
+    return forces.flow_at(convection);
+}
+
+}  // namespace
+
+void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup) {
+    if (!context.root().has("heat")) return;
+    const ObjectView view = context.root().object("heat");
+    setup.heat = view.read<HeatSettings>();
+    if (setup.heat->convection) setup.heat->convection->flow = flow_of(context, forces, view.object("convection"));
+    if (context.failed()) return;
+    try {
+        validate_heat(setup);
+    } catch (const InputError& problem) {
+        context.error(context.root(), "heat", without_own_name(problem.what()));
+    }
+}
+
+}  // namespace ricochet::detail

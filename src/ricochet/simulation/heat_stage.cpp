@@ -1,0 +1,141 @@
+#include "ricochet/simulation/heat_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+/// J, of a solid sphere.
+double kinetic(const RecordedMotion& motion, double radius, double mass) {
+    return 0.5 * mass * (dot(motion.velocity, motion.velocity) + 0.4 * radius * radius * dot(motion.spin, motion.spin));
+}
+
+/// J, that an impact takes along the normal.
+double lost_along_normal(const ContactRecord& record) {
+    const double before = dot(record.velocity_before - record.surface_velocity, record.normal);
+    const double after = dot(record.velocity_after - record.surface_velocity, record.normal);
+    return 0.5 * record.mass * (before * before - after * after);
+}
+
+TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpan& step) {
+    return {std::max(step.begin, particles.birth_time[i]),
+            std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
+}
+
+}  // namespace
+
+void FrictionMeter::note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
+                         std::size_t first_load, std::vector<HeatGain>& gains) const {
+    std::size_t record = first_record;
+    std::size_t load = first_load;
+    for (const MotionPart& part : scratch.motions) {
+        if (part.kind == MotionPart::Kind::flight) continue;
+        const double end = part.time + part.duration;
+        const bool is_impact = part.duration == 0.0;
+        double lost = kinetic(part.begin, part.radius, moved.mass) - kinetic(part.end, part.radius, moved.mass);
+        if (!is_impact) lost += work_of_forces(part, moved);
+        for (; load < scratch.loads.size() && scratch.loads[load].time <= end; ++load) {
+            if (is_impact || !scratch.loads[load].impact)
+                lost -= scratch.loads[load].work;
+            else
+                break;  // that of the impact at the end of this contact
+        }
+        double along_normal = 0.0;
+        for (; is_impact && record < scratch.records.size() && scratch.records[record].time <= end; ++record) {
+            along_normal += lost_along_normal(scratch.records[record]);
+        }
+        lost = std::max(lost, 0.0);  // rounding
+        along_normal = std::clamp(along_normal, 0.0, lost);
+        const double heat = heat_.impact_fraction * along_normal + heat_.friction_fraction * (lost - along_normal);
+        if (heat > 0.0) gains.push_back({i, part.time + 0.5 * part.duration, heat});
+    }
+}
+
+/// J, in contact that lasts: Simpson's rule for force times velocity, that in the middle as a cubic through both ends
+/// has it; exact for steady forces. Seen from a frame that moves, the part's forces are not those of the world.
+double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& moved) const {
+    const Vec3 way = part.end.position - part.begin.position;
+    const Vec3 middle_velocity = (1.5 / part.duration) * way - 0.25 * (part.begin.velocity + part.end.velocity);
+    std::array<Vec3, 3> forces = part.forces;
+    if (bodies_ != nullptr && part.kind == MotionPart::Kind::driven) {
+        ForceInput input = moved;
+        const auto at = [&](double time, const Vec3& position, const Vec3& velocity) {
+            input.time = time, input.position = position, input.velocity = velocity;
+            return forces_.acceleration(input);
+        };
+        const double half = 0.5 * part.duration;
+        const Vec3 middle =
+            0.5 * (part.begin.position + part.end.position) + 0.25 * half * (part.begin.velocity - part.end.velocity);
+        forces = {at(part.time, part.begin.position, part.begin.velocity),
+                  at(part.time + half, middle, middle_velocity),
+                  at(part.time + part.duration, part.end.position, part.end.velocity)};
+    }
+    if (part.forces_are_steady && part.kind != MotionPart::Kind::driven) return moved.mass * dot(forces[0], way);
+    return moved.mass * (part.duration / 6.0) *
+           (dot(forces[0], part.begin.velocity) + 4.0 * dot(forces[1], middle_velocity) +
+            dot(forces[2], part.end.velocity));
+}
+
+HeatStage::HeatStage(HeatSettings heat, std::size_t column, const ForceField& forces, const MovingColliders* bodies)
+    : heat_(std::move(heat)), column_(column), meter_(heat_, forces, bodies) {}
+
+void HeatStage::before_move(const Particles& particles, const ParticleRange& range, const TimeSpan& step) {
+    if (!heat_.convection || heat_.convection->coefficient) return;
+    coefficients_.resize(range.size());
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = range.begin + k;
+            coefficients_[k] = coefficient(particles, i, life_in(particles, i, step).begin);
+        }
+    });
+}
+
+/// W/(m^2 K), where a particle is at a time, s.
+double HeatStage::coefficient(const Particles& particles, std::size_t i, double time) const {
+    const double radius = particles.radius[i];
+    if (!heat_.convection || !(radius > 0.0)) return 0.0;
+    const Convection& convection = *heat_.convection;
+    Vec3 relative = particles.velocity[i];
+    if (convection.flow) relative -= convection.flow->velocity(particles.position[i], time);
+    return heat_transfer_coefficient(convection, radius, length(relative));
+}
+
+void HeatStage::after_move(Particles& particles, const ParticleRange& range, const TimeSpan& step,
+                           std::vector<HeatGain> gains) const {
+    const auto is_before = [](const HeatGain& a, const HeatGain& b) { return a.particle < b.particle; };
+    std::stable_sort(gains.begin(), gains.end(), is_before);
+    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = range.begin + k;
+            const TimeSpan life = life_in(particles, i, step);
+            if (particles.frozen[i] != 0 || particles.absorbed[i] == 1 || life.end <= life.begin) continue;
+            const auto [first, last] = std::equal_range(gains.begin(), gains.end(), HeatGain{i, 0.0, 0.0}, is_before);
+            const double before = coefficients_.empty() ? 0.0 : coefficients_[k];
+            const double value = changed(particles, i, life, before, {first, last});
+            particles.attributes.set(column_, i, {value, 0.0, 0.0});
+        }
+    });
+}
+
+/// K. Convection by the mean of both ends of the step. before: the coefficient at its begin, where that is not given.
+double HeatStage::changed(const Particles& particles, std::size_t i, const TimeSpan& life, double before,
+                          std::span<const HeatGain> gains) const {
+    const double mass = particles.mass[i];
+    double h = coefficient(particles, i, life.end);
+    if (!coefficients_.empty()) h = 0.5 * (before + h);
+    const CoolingRates rates = cooling_rates(heat_, mass, particles.radius[i], h);
+    double temperature = std::max(0.0, particles.attributes.value(column_, i).x);
+    double now = life.begin;
+    for (const HeatGain& gain : gains) {
+        temperature = cooled(temperature, heat_.ambient_temperature, rates, gain.time - now);
+        temperature += gain.energy / (mass * heat_.specific_heat);
+        now = std::max(now, gain.time);
+    }
+    return cooled(temperature, heat_.ambient_temperature, rates, life.end - now);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,120 @@
+// What changes temperatures, and what it needs of the rest of a setup.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "ricochet/simulation/subject.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::string_view kFraction = "a number from 0 to 1";
+
+/// Hotter than the inside of any star; fourth powers of it are far from the end of the arithmetic.
+constexpr double kHottest = 1e12;  // K
+
+void require_temperature(const Subject& subject, double value, std::string_view what) {
+    subject.require_in(value, 0.0, kHottest, what, fmt::format("0 to {:g} (K)", kHottest));
+}
+
+void validate_numbers(const HeatSettings& heat, const Subject& subject) {
+    subject.require_positive(heat.specific_heat, "specific_heat", "J/(kg K)");
+    require_temperature(subject, heat.ambient_temperature, "ambient_temperature");
+    subject.require_in(heat.emissivity, 0.0, 1.0, "emissivity", kFraction);
+    subject.require_in(heat.impact_fraction, 0.0, 1.0, "impact_fraction", kFraction);
+    subject.require_in(heat.friction_fraction, 0.0, 1.0, "friction_fraction", kFraction);
+    if (heat.convection) {
+        const Convection& convection = *heat.convection;
+        const Subject medium("heat.convection");
+        if (convection.coefficient) medium.require_not_negative(*convection.coefficient, "coefficient", "W/(m^2 K)");
+        medium.require_positive(convection.conductivity, "conductivity", "W/(m K)");
+        medium.require_not_negative(convection.density, "fluid_density", "kg/m^3");
+        medium.require_positive(convection.viscosity, "viscosity", "Pa s");
+        medium.require_positive(convection.prandtl, "prandtl", "");
+    }
+    if (heat.exchanges() || heat.is_heated_by_surfaces()) return;
+    subject.refuse("convection, emissivity, impact_fraction and friction_fraction", "none",
+                   "at least one of them: nothing would change a temperature");
+}
+
+/// Returns its column.
+std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject) {
+    const auto& all = setup.attributes;
+    const auto found = std::find_if(all.begin(), all.end(), [](const AttributeDescription& column) {
+        return column.name == kTemperatureAttribute;
+    });
+    if (found == all.end()) {
+        subject.refuse("attributes", "none that is named \"temperature\"",
+                       "it to be declared: it is what heat changes, in K");
+    }
+    if (found->components != 1) subject.refuse("attribute \"temperature\"", "a vector", "one component (K)");
+    require_temperature(subject, found->fallback.x, "default of the attribute \"temperature\"");
+    return static_cast<std::size_t>(found - all.begin());
+}
+
+/// What has no surface exchanges no heat.
+void validate_radius(const Subject& subject, const HeatSettings& heat, double least) {
+    if (!heat.exchanges() || least > 0.0) return;
+    subject.refuse("radius", least,
+                   "more than 0 (m): convection and radiation, which `heat` has, go by a particle's surface");
+}
+
+void validate_particles(const SimulationSetup& setup, std::size_t column) {
+    for (std::size_t k = 0; k < setup.particles.size(); ++k) {
+        const Particle& particle = setup.particles[k];
+        const Subject subject("particle", k);
+        validate_radius(subject, *setup.heat, particle.radius);
+        if (particle.attributes.size() <= column || is_missing(particle.attributes[column])) continue;
+        require_temperature(subject, particle.attributes[column].x, kTemperatureAttribute);
+    }
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        const Subject subject("emitter", k, emitter.name);
+        const bool is_shared = emitter.parent && emitter.parent->share;  // radii follow from the parent's
+        if (!is_shared) validate_radius(subject, *setup.heat, emitter.radius.mean - emitter.radius.spread);
+        for (const AttributeSpread& spread : emitter.attributes) {
+            if (spread.name != kTemperatureAttribute) continue;
+            require_temperature(subject, spread.mean.x - spread.spread.x, "least temperature");
+            require_temperature(subject, spread.mean.x + spread.spread.x, "largest temperature");
+        }
+    }
+}
+
+/// Who knows what surfaces take of a particle's motion.
+void validate_friction(const SimulationSetup& setup, const Subject& heat) {
+    const auto refuse = [&](bool refused, std::string_view found, std::string_view expected) {
+        if (refused) heat.refuse("impact_fraction and friction_fraction", found, expected);
+    };
+    refuse(setup.options.response != ResponseKind::exact, name_of(setup.options.response),
+           "the response exact, which alone records what surfaces take, or both 0");
+    refuse(setup.options.flow != nullptr, "a flow that carries the particles",
+           "motion by forces, or both 0: what a flow carries has no energy to lose");
+    refuse(setup.options.particle_contacts.has_value(), "particle_contacts",
+           "none, or both 0: what spheres take of each other is not told apart");
+    const bool act_on_each_other = !setup.springs.empty() || !setup.particles_forces.empty() || setup.solver;
+    refuse(act_on_each_other, "particles that act on each other",
+           "none, or both 0: what surfaces take of them is not told apart from what they give each other");
+    refuse(!setup.bodies.empty(), "bodies that impulses move", "frames that are given, or both 0");
+    for (std::size_t k = 0; k < setup.materials.size(); ++k) {
+        const Material& material = setup.materials[k];
+        if (!material.wall_temperature) continue;
+        Subject("material", k, material.name)
+            .refuse("wall_temperature", *material.wall_temperature,
+                    "none beside impact_fraction and friction_fraction: speeds after its impacts are the wall's");
+    }
+}
+
+}  // namespace
+
+void validate_heat(const SimulationSetup& setup) {
+    if (!setup.heat) return;
+    const Subject subject("heat");
+    validate_numbers(*setup.heat, subject);
+    const std::size_t column = validate_attribute(setup, subject);
+    validate_particles(setup, column);
+    if (setup.heat->is_heated_by_surfaces()) validate_friction(setup, subject);
+}
+
+}  // namespace ricochet

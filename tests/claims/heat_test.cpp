@@ -1,0 +1,259 @@
+// What surfaces take of a particle's motion heats it, to the last joule: impacts one by one, friction in contact, belts
+// and walls that move; and what cools meanwhile.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::plane_collider;
+using testing::setup_of;
+
+constexpr double kG = 9.81;
+constexpr double kHeatCapacity = 450.0;  // J/(kg K)
+constexpr double kStart = 300.0;         // K
+
+HeatSettings all_of_it() {
+    HeatSettings heat;
+    heat.specific_heat = kHeatCapacity;
+    heat.impact_fraction = 1.0;
+    heat.friction_fraction = 1.0;
+    return heat;
+}
+
+/// On a floor, with heat from surfaces alone.
+SimulationSetup on_a_floor(double time_step, double duration, const Material& material) {
+    SimulationSetup setup = setup_of(time_step, duration, material, {0, 0, -kG});
+    setup.colliders.push_back(plane_collider({0, 0, 0}, {0, 0, 1}));
+    setup.attributes.push_back({"temperature", 1, {kStart, 0, 0}});
+    setup.heat = all_of_it();
+    return setup;
+}
+
+double temperature(const Simulation& simulation, std::size_t i = 0) {
+    return simulation.particles().attributes.value(0, i).x;
+}
+
+/// J, gained by particle i since the start.
+double heat_of(const Simulation& simulation, std::size_t i = 0) {
+    return simulation.particles().mass[i] * kHeatCapacity * (temperature(simulation, i) - kStart);
+}
+
+double mechanical(const Simulation& simulation) {
+    return simulation.kinetic_energy() + simulation.potential_energy().value();
+}
+
+// After bounce n the ball has lost m g h (1 - e^(2 n)).
+TEST(HeatOfImpacts, IsWhatRestitutionLosesBounceByBounceAtAnyTimeStep) {
+    const double e = 0.8;
+    for (const double time_step : {1e-3, 1.0 / 60.0, 0.25}) {
+        SCOPED_TRACE(time_step);
+        SimulationSetup setup = on_a_floor(time_step, 2.5, {"floor", e, 0.0});
+        setup.options.record_contacts = true;
+        Particle ball = particle_of({0.3, -0.2, 1.0});
+        ball.mass = 0.2;
+        setup.particles.push_back(ball);
+        Simulation simulation(std::move(setup));
+        int bounces = 0;
+        while (!simulation.finished()) {
+            simulation.step();
+            bounces += static_cast<int>(simulation.contact_records().size());
+            EXPECT_NEAR(heat_of(simulation), 0.2 * kG * (1.0 - std::pow(e, 2.0 * bounces)), 1e-9);
+        }
+        EXPECT_GE(bounces, 4);
+    }
+}
+
+TEST(HeatOfImpacts, IsSharedBetweenRestitutionAndFrictionByTheirFractions) {
+    // A point at (2, 0, -3) m/s: the normal part loses 9 (1 - e^2) / 2, friction all of the sliding or mu (1 + e) 3.
+    const double e = 0.5;
+    const double mu = 0.2;
+    const double slip = 2.0 - mu * (1.0 + e) * 3.0;
+    const double by_restitution = 4.5 * (1.0 - e * e);
+    const double by_friction = 0.5 * (4.0 - slip * slip);
+    for (const auto& [impact, friction] : {std::pair(1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.25, 0.5)}) {
+        SimulationSetup setup = on_a_floor(0.01, 0.02, {"floor", e, mu});
+        setup.forces.clear();
+        setup.heat->impact_fraction = impact;
+        setup.heat->friction_fraction = friction;
+        setup.particles.push_back(particle_of({0, 0, 0.015}, {2, 0, -3}));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_NEAR(heat_of(simulation), impact * by_restitution + friction * by_friction, 1e-9);
+    }
+}
+
+// mu m g s with s = v^2 / (2 mu g): all of the kinetic energy, however long the steps; half of it half way.
+TEST(HeatOfFriction, IsTheWorkOfAParticleThatSlidesToRest) {
+    const double mu = 0.3;
+    const double v = 2.0;
+    const double stop = v / (mu * kG);
+    for (const double time_step : {1e-3, 0.05, 1.0}) {
+        SCOPED_TRACE(time_step);
+        SimulationSetup setup = on_a_floor(time_step, 1.0, {"floor", 0.5, mu});
+        setup.particles.push_back(particle_of({0, 0, 0}, {v, 0, 0}));
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) {
+            simulation.step();
+            const double now = std::max(0.0, v - mu * kG * std::min(simulation.time(), stop));
+            EXPECT_NEAR(heat_of(simulation), 0.5 * (v * v - now * now), 1e-6);
+        }
+        EXPECT_NEAR(heat_of(simulation), 2.0, 1e-6);
+    }
+}
+
+TEST(HeatOfFriction, OfASlidingBallIsWhatItLosesUntilItRolls) {
+    // It rolls at 5/7 v, with 5/7 of the energy.
+    SimulationSetup setup = on_a_floor(0.01, 1.5, {"floor", 0.5, 0.2});
+    setup.particles.push_back(particle_of({0, 0, 0.1}, {2, 0, 0}, 0.1));
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    EXPECT_NEAR(simulation.particles().velocity[0].x, 2.0 * 5.0 / 7.0, 1e-6);
+    EXPECT_NEAR(heat_of(simulation), 2.0 * 2.0 / 7.0, 1e-6);
+}
+
+// The belt does m u^2 of work, half of which is the particle's motion then.
+TEST(HeatOfFriction, OnABeltIsHalfOfItsWork) {
+    Material belt{"belt", 0.5, 0.4};
+    belt.motion.velocity = {1.5, 0, 0};
+    SimulationSetup setup = on_a_floor(0.01, 1.0, belt);
+    setup.particles.push_back(particle_of({0, 0, 0}));
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    EXPECT_NEAR(simulation.particles().velocity[0].x, 1.5, 1e-9);
+    EXPECT_NEAR(heat_of(simulation), 0.5 * 1.5 * 1.5, 1e-6);
+    EXPECT_NEAR(simulation.collider_totals()[0].work, -1.5 * 1.5, 1e-6);
+}
+
+/// Balls of several radii and spins that are thrown into a box whose walls lose energy.
+SimulationSetup thrown_balls(double duration) {
+    SimulationSetup setup = on_a_floor(0.005, duration, {"wall", 0.6, 0.25});
+    setup.colliders.push_back(plane_collider({-1, 0, 0}, {1, 0, 0}));
+    setup.colliders.push_back(plane_collider({1, 0, 0}, {-1, 0, 0.2}));
+    setup.colliders.push_back(plane_collider({0, -1, 0}, {0, 1, 0}));
+    setup.colliders.push_back(plane_collider({0, 1, 0}, {0, -1, 0}));
+    for (int k = 0; k < 40; ++k) {
+        const double a = 0.7 * k;
+        Particle ball = particle_of({0.5 * std::cos(a), 0.5 * std::sin(a), 0.3 + 0.02 * k},
+                                    {3.0 * std::sin(2.0 * a), 2.0 * std::cos(3.0 * a), 1.0}, 0.002 * (k % 20),
+                                    {20.0 * std::cos(a), 30.0 * std::sin(a), 5.0});
+        if (ball.radius == 0.0) ball.spin = {};
+        ball.mass = 0.1 + 0.01 * k;
+        setup.particles.push_back(ball);
+    }
+    return setup;
+}
+
+TEST(Heat, AndMechanicalEnergyTogetherStayWhatTheyAre) {
+    Simulation simulation(thrown_balls(3.0));
+    const double start = mechanical(simulation);
+    double last = start;
+    while (!simulation.finished()) {
+        simulation.step();
+        double heat = 0.0;
+        for (std::size_t i = 0; i < simulation.particles().size(); ++i) heat += heat_of(simulation, i);
+        ASSERT_NEAR(mechanical(simulation) + heat, start, 1e-6 * start) << simulation.time();
+        last = mechanical(simulation);
+    }
+    EXPECT_LT(last, 0.5 * start);
+    EXPECT_GT(simulation.statistics().resting, 0U);
+}
+
+std::uint64_t bits_of(const Simulation& simulation) {
+    std::uint64_t hash = simulation.state_hash();
+    for (std::size_t i = 0; i < simulation.particles().size(); ++i) {
+        hash = hash * 1099511628211ULL ^ std::bit_cast<std::uint64_t>(temperature(simulation, i));
+    }
+    return hash;
+}
+
+SimulationSetup cooling_balls() {
+    SimulationSetup setup = thrown_balls(0.8);
+    for (Particle& ball : setup.particles) ball.radius = std::max(ball.radius, 0.002);
+    setup.heat->emissivity = 0.7;
+    setup.heat->convection = Convection{};
+    setup.heat->convection->flow = make_rotation({}, {0, 0, 3});
+    return setup;
+}
+
+TEST(Heat, HasTheSameBitsForAnyNumberOfThreadsWhateverIsSwitchedOffAndWhoWatches) {
+    const auto run = [](int threads, const AccelerationSwitches& switches, bool verify) {
+        const ThreadLimit limit(threads);
+        SimulationSetup setup = cooling_balls();
+        setup.acceleration = switches;
+        setup.options.verify = verify;
+        Simulation simulation(std::move(setup));
+        simulation.advance(1000);
+        EXPECT_EQ(simulation.statistics().violations + simulation.statistics().energy_violations, 0U);
+        return bits_of(simulation);
+    };
+    const std::uint64_t expected = run(1, {}, false);
+    for (const int threads : {2, 7}) EXPECT_EQ(run(threads, {}, false), expected);
+    EXPECT_EQ(run(1, {}, true), expected);
+    AccelerationSwitches none;
+    none.look_ahead = none.deferred_steps = none.sleeping = none.spatial_order = none.culling = false;
+    EXPECT_EQ(run(1, none, false), expected);
+}
+
+TEST(Heat, ChangesNoPathWhereNoForceLooksAtIt) {
+    SimulationSetup without = cooling_balls();
+    without.heat.reset();
+    Simulation plain(std::move(without));
+    Simulation heated(cooling_balls());
+    plain.advance(1000);
+    heated.advance(1000);
+    EXPECT_EQ(plain.state_hash(), heated.state_hash());
+    EXPECT_EQ(temperature(plain), kStart);
+    EXPECT_NE(temperature(heated), kStart);
+}
+
+// A spark falls freely, and cools by both as the closed form at one speed and the integral say.
+TEST(Heat, OfABallAtRestInAWindFollowsNewtonsLaw) {
+    SimulationSetup setup = setup_of(0.1, 2.0);
+    setup.attributes.push_back({"temperature", 1, {900.0, 0, 0}});
+    HeatSettings heat;
+    heat.specific_heat = kHeatCapacity;
+    heat.ambient_temperature = 280.0;
+    heat.convection = Convection{};
+    heat.convection->flow = make_wind({4, 0, 0});
+    setup.heat = heat;
+    Particle ball = particle_of({}, {}, 1e-3);
+    ball.mass = 3e-5;
+    setup.particles.push_back(ball);
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    const double h = heat_transfer_coefficient(*heat.convection, 1e-3, 4.0);
+    const double rate = cooling_rates(heat, 3e-5, 1e-3, h).convection;
+    EXPECT_NEAR(temperature(simulation), 280.0 + 620.0 * std::exp(-2.0 * rate), 1e-9);
+}
+
+TEST(Heat, OfABallOnATurntableIsWhatTheTableDoesLessItsMotion) {
+    FrameDescription table;
+    table.name = "table";
+    table.motions.push_back(Spin{{0, 0, 1}, 120.0});
+    SimulationSetup setup = on_a_floor(0.01, 1.0, {"top", 0.3, 0.5});
+    setup.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{table});
+    setup.colliders[0].frame = "table";
+    setup.particles.push_back(particle_of({0.3, 0, 0.02}, {}, 0.02));
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    const double work = -simulation.collider_totals()[0].work;
+    EXPECT_GT(work, 1e-3);
+    EXPECT_NEAR(heat_of(simulation) + simulation.kinetic_energy(), work, 1e-4 * work);
+}
+
+}  // namespace
+}  // namespace ricochet

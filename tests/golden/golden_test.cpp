@@ -74,6 +74,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"tumbling_rocks", "1.1"},
     {"billiard_break", "1"},
     {"granular_gas", "0.3"},
+    {"grinder", "0.8"},
 };
 
 /// FNV-1a over the bits of numbers.

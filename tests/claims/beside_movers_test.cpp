@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -41,6 +43,12 @@ SimulationSetup swept_floor(bool sleeping, std::uint64_t seed) {
     return setup;
 }
 
+Vec3 given_to_floor(const Simulation& simulation) {
+    Vec3 sum;
+    for (const Vec3& impulse : simulation.triangle_totals(0).impulse) sum += impulse;
+    return sum;
+}
+
 TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
     for (const std::uint64_t seed : {1U, 2U}) {
         SCOPED_TRACE(seed);
@@ -62,13 +70,31 @@ TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
         EXPECT_EQ(asleep.statistics().contacts, awake.statistics().contacts);
         EXPECT_EQ(asleep.statistics().squeezed, 0U);
         // Their weight is in the totals all the same.
-        const auto given = [](const Simulation& simulation) {
-            Vec3 sum;
-            for (const Vec3& impulse : simulation.triangle_totals(0).impulse) sum += impulse;
-            return sum;
-        };
-        EXPECT_LT(length(given(asleep) - given(awake)), 1e-11 * length(given(awake)));
+        EXPECT_LT(length(given_to_floor(asleep) - given_to_floor(awake)), 1e-11 * length(given_to_floor(awake)));
     }
+}
+
+// With a verifier nothing sleeps beside what moves: what slept in the saved state has pressed until then.
+TEST(WhatRests, PressesOnTheFloorWhereItsSleepIsResumedUnderVerification) {
+    SimulationSetup verified = swept_floor(true, 1);
+    verified.options.verify = true;
+    Simulation whole(swept_floor(true, 1));
+    Simulation first(swept_floor(true, 1));
+    Simulation second(std::move(verified));
+    first.advance(160);
+    ASSERT_GT(first.statistics().asleep, first.particles().size() / 2);
+    std::vector<std::byte> bytes;
+    first.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    std::size_t at = 0;
+    second.restore([&](std::span<std::byte> part) {
+        std::memcpy(part.data(), bytes.data() + at, part.size());
+        at += part.size();
+    });
+    while (!second.finished()) second.step();
+    while (!whole.finished()) whole.step();
+    EXPECT_EQ(second.state_hash(), whole.state_hash());
+    EXPECT_EQ(second.statistics().violations, 0U);
+    EXPECT_LT(length(given_to_floor(second) - given_to_floor(whole)), 1e-11 * length(given_to_floor(whole)));
 }
 
 // A slanted face at 1 m/s that meets the upper half of a sphere on a floor: both answer at once, u . n = -e u_before .

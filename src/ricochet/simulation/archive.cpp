@@ -216,6 +216,14 @@ void Simulation::Impl::read_state(const ByteSource& source) {
     require_sound_state();
 }
 
+// What slept where the state was saved may not sleep here: until now it has pressed on what holds it.
+void Simulation::Impl::wake_all_sleepers() {
+    store.set_may_sleep(true);
+    add_weights_of_sleepers(1.0);
+    store.set_may_sleep(false);
+    for (std::size_t i = 0; i < store.size(); ++i) store.wake(i);
+}
+
 void Simulation::restore(const ByteSource& source) {
     if (!source) throw InputError("restore: found an empty function, expected one that gives the bytes");
     if (!impl().emitters.empty() && step_index() > 0) {
@@ -232,6 +240,7 @@ void Simulation::restore(const ByteSource& source) {
     impl().replay_emitters();
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
     if (!impl().share.is_alone()) impl().keep_share();
+    if (!impl().store.may_sleep()) impl().wake_all_sleepers();
     if (impl().check) impl().check->restart(impl().store, time());
     impl().inside_step = false;
 }

@@ -104,6 +104,7 @@ struct Simulation::Impl {
 
     /// Lends the weight of sleeping particles to the totals of surfaces (sign 1), or takes it back (-1).
     void add_weights_of_sleepers(double sign);
+    void wake_all_sleepers();
     [[nodiscard]] bool has_energy(std::size_t i) const;
     /// Takes part in energies and hashes.
     [[nodiscard]] const Particles& particles() const { return store.particles(); }

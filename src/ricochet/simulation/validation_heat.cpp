@@ -96,7 +96,7 @@ void validate_friction(const SimulationSetup& setup, const Subject& heat) {
     const bool act_on_each_other = !setup.springs.empty() || !setup.particles_forces.empty() || setup.solver;
     refuse(act_on_each_other, "particles that act on each other",
            "none, or both 0: what surfaces take of them is not told apart from what they give each other");
-    refuse(!setup.bodies.empty(), "bodies that impulses move", "frames that are given, or both 0");
+    refuse(!setup.bodies.empty(), "bodies that impulses move", "frames that move by their motions alone, or both 0");
     for (std::size_t k = 0; k < setup.materials.size(); ++k) {
         const Material& material = setup.materials[k];
         if (!material.wall_temperature) continue;

@@ -26,7 +26,10 @@ std::vector<const KeyedCurve<Vec3>*> factors_of(const FrameTree& frames, std::si
     std::vector<const KeyedCurve<Vec3>*> all;
     for (std::optional<std::size_t> k = frame; k; k = frames.find(frames.description(*k).parent)) {
         const FrameDescription& link = frames.description(*k);
-        if (link.is_driven) refuse("the frame '" + link.name + "' is driven, expected one whose motion is given");
+        if (link.is_driven) {
+            refuse("the frame '" + link.name +
+                   "' is a body, which impulses move, expected a frame with motions of its own");
+        }
         for (const FrameMotion& motion : link.motions) {
             if (const auto* scale = std::get_if<KeyedScale>(&motion)) all.push_back(&scale->factors);
         }

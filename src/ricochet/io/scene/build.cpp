@@ -193,7 +193,8 @@ void build_particle_contacts(const SceneContext& context, SimulationSetup& setup
            fmt::format("the response \"{}\", expected \"exact\"", name_of(setup.options.response)));
     refuse(setup.options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
     refuse(!setup.springs.empty(), "springs, expected none");
-    refuse(!setup.bodies.empty(), "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out particle_contacts");
+    refuse(!setup.bodies.empty(),
+           "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out particle_contacts");
     const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
     const auto emits_points = [](const EmitterDescription& emitter) {
         return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;

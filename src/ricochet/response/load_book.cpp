@@ -17,6 +17,7 @@ void LoadBook::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change
     const Vec3 spin = spin_change ? spin_ + *spin_change : motion_in_world().spin;
     const Vec3 couple = couple_of(spin - spin_);
     spin_ = spin;
+    if (particle_.state.time > until_.time) since_ = std::exchange(until_, moment_of_time());
     if (is_entered(hit.surface)) enter(hit, couple);
 }
 
@@ -77,16 +78,16 @@ Vec3 LoadBook::couple_of(const Vec3& spin_change) const {
 }
 
 /// m/s, in the world, of what is no motion of the body: a belt's.
-Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Vec3& center) const {
+Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Moment& at) const {
     const Material& material = rules_.materials[rules_.world.material_of(surface)];
     if (!material.drives()) return {};
     if (rules_.bodies == nullptr) {
-        const Vec3 normal = rules_.world.nearest(surface, center).normal;
-        return material.motion.at(center - particle_.state.radius * normal, normal);
+        const Vec3 normal = rules_.world.nearest(surface, at.place).normal;
+        return material.motion.at(at.place - particle_.state.radius * normal, normal);
     }
-    const double time = particle_.state.time;
+    const double time = at.time;
     const MovingPose pose = rules_.bodies->pose(body, time);
-    const Vec3 seen = body == kAtRest ? center : pose.image(center);
+    const Vec3 seen = body == kAtRest ? at.place : pose.image(at.place);
     const Vec3 normal = rules_.bodies->is_deforming(body)
                             ? rules_.bodies->deforming().nearest(surface, seen, time).normal
                             : rules_.bodies->world(body).nearest(surface, seen).normal;
@@ -117,8 +118,9 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.place = motion_in_world().position;
     load.couple = couple;
     load.moment = cross(load.place - pose.world_from_frame.translation, hit.impulse) + couple;
-    load.work = dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, load.place)) +
-                dot(load.moment, pose.angular_velocity);
+    load.work =
+        dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, {particle_.state.time, load.place})) +
+        dot(load.moment, pose.angular_velocity);
     load.approach = approach_;
     if (rules_.bodies != nullptr && rules_.bodies->yields(body)) {
         const Vec3 arm = load.place - rules_.bodies->mobility(body, time).center;
@@ -129,7 +131,30 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
         load.work += dot(hit.impulse, motion.velocity) + dot(couple, motion.turning);
     }
     load.impact = hit.impact;
+    if (!hit.impact) enter_lasting(load, body);
     scratch_.loads.push_back(load);
+}
+
+/// What lasts has pushed all the time, while both moved on: by the means of both ends of its interval, to second order.
+void LoadBook::enter_lasting(ColliderLoad& load, BodyId body) const {
+    if (body == kAtRest) {
+        load.moment = cross(0.5 * (since_.place + load.place), load.impulse) + load.couple;
+    } else if (rules_.bodies->yields(body) || rules_.bodies->is_deforming(body)) {
+        return;  // whose path is planned otherwise, and whose place on the surface is not known
+    }
+    load.work = 0.5 * (load.work + work_at(load, body, since_));
+    if (body == kAtRest) return;
+    const auto origin = [&](double time) { return rules_.bodies->pose(body, time).world_from_frame.translation; };
+    load.moment += cross(0.5 * (origin(until_.time) - origin(since_.time)), load.impulse);
+}
+
+/// J, by a load when it was begun. The moment stays that of its end: on what moves a couple is entered for what it
+/// lacks of the angular momentum that the particle has lost.
+double LoadBook::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
+    const MovingPose pose = body == kAtRest ? MovingPose{} : rules_.bodies->pose(body, at.time);
+    const Vec3 moment = cross(load.place - pose.world_from_frame.translation, load.impulse) + load.couple;
+    return dot(load.impulse, pose.velocity + material_velocity(load.surface, body, at)) +
+           dot(moment, pose.angular_velocity);
 }
 
 }  // namespace ricochet

@@ -21,7 +21,9 @@ public:
           scratch_(scratch),
           home_(home),
           spin_(particle.spin),
-          first_(scratch.loads.size()) {}
+          first_(scratch.loads.size()) {
+        if (scratch.record_loads) since_ = until_ = moment_of_time();
+    }
 
     /// Enters an impulse on a surface, and the change of the spin that is made with it, rad/s; without it all that has
     /// changed since the last entry.
@@ -35,18 +37,28 @@ public:
     void close();
 
 private:
+    struct Moment {
+        double time = 0.0;  // s
+        Vec3 place;         // m, in the world, of the particle's centre
+    };
+
     [[nodiscard]] bool is_entered(SurfaceId surface) const;
+    [[nodiscard]] Moment moment_of_time() const { return {particle_.state.time, motion_in_world().position}; }
+    [[nodiscard]] double work_at(const ColliderLoad& load, BodyId body, const Moment& at) const;
+    void enter_lasting(ColliderLoad& load, BodyId body) const;
     [[nodiscard]] RecordedMotion motion_in_world() const;
     [[nodiscard]] double kinetic_energy() const;
     [[nodiscard]] Vec3 couple_of(const Vec3& spin_change) const;
     [[nodiscard]] double time_of_push(BodyId body, double time, bool impact) const;
-    [[nodiscard]] Vec3 material_velocity(SurfaceId surface, BodyId body, const Vec3& center) const;
+    [[nodiscard]] Vec3 material_velocity(SurfaceId surface, BodyId body, const Moment& at) const;
     void enter(const SurfaceHit& hit, const Vec3& couple);
 
     const ResponseRules& rules_;
     const MovingParticle& particle_;
     MoveScratch& scratch_;
     const HomeFrame& home_;
+    Moment since_;       // the interval of contact in which entries are made: its begin
+    Moment until_;       // and its end
     Vec3 spin_;          // rad/s, in the world, as the entries leave it
     std::size_t first_;  // entry of this move
     std::size_t first_of_impact_ = 0;

@@ -30,12 +30,14 @@ struct Candidate {
     bool is_left = false;
 };
 
-/// m, as far as the foot of a position lies beside a triangle.
+/// m, as far as the foot of a position lies beside a triangle: along its plane, since the difference of the distances
+/// to the rim and to the plane would be rounding of a few offsets.
 double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const Vec3& p, double time) {
-    const CollisionWorld::Nearest nearest = deforming.nearest(surface, p, time);
-    if (!nearest.rim) return 0.0;
-    const double height = deforming.signed_distance_from(surface, p, time);
-    return std::sqrt(std::max(0.0, (nearest.distance - height) * (nearest.distance + height)));
+    if (!deforming.nearest(surface, p, time).rim) return 0.0;
+    const auto [a, b, c] = deforming.corners_at(surface, time);
+    const Vec3 offset = closest_point_on_triangle(p, a, b, c).offset;
+    const Vec3 normal = deforming.unit_normal_of(surface, time);
+    return length(offset - dot(offset, normal) * normal);
 }
 
 /// True where a point has the triangle below it, or stands on its rim and does not go beyond.
@@ -87,7 +89,13 @@ bool is_behind(const DeformingColliders& deforming, const ForceInput& particle, 
     });
 }
 
-/// What a point is not over counts where it is in front of all that it is over: as the other side of a blunt valley.
+/// One plane, whose inner edge is not felt.
+bool are_coplanar(const Candidate& one, const Candidate& other) {
+    return 1.0 - dot(one.contact.surface.normal, other.contact.surface.normal) <= kSameNormal;
+}
+
+/// What a point is not over counts where it is in front of all that it is over, as the other side of a blunt valley, or
+/// in one plane with it: rounding says on which side of their edge it is.
 void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
                               std::vector<Candidate>& found) {
     std::stable_partition(found.begin(), found.end(), [&](const Candidate& one) {
@@ -98,9 +106,11 @@ void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceIn
     for (Candidate& one : found) {
         const SurfaceId surface = one.contact.surface.surface;
         const bool is_inside = beyond_rim(deforming, surface, particle.position, particle.time) == 0.0;
-        const bool is_seen = is_inside || std::none_of(kept.begin(), kept.end(), [&](const Candidate& over) {
-                                 return over.is_over && is_behind(deforming, particle, surface, over.contact.surface);
-                             });
+        const auto hides = [&](const Candidate& over) {
+            return over.is_over && !are_coplanar(over, one) &&
+                   is_behind(deforming, particle, surface, over.contact.surface);
+        };
+        const bool is_seen = is_inside || std::none_of(kept.begin(), kept.end(), hides);
         if (is_inside || (is_seen && (one.is_over || !kept.empty()))) kept.push_back(std::move(one));
     }
     found = std::move(kept);
@@ -190,8 +200,9 @@ SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedCo
 double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path, double begin) {
     const auto is_over = [&](double at) {
         const Vec3 p = at < path.duration ? path.position(at) : path.end;
-        return std::any_of(contact.all.begin(), contact.all.end(),
-                           [&](SurfaceId surface) { return deforming.nearest(surface, p, begin + at).flat; });
+        return std::any_of(contact.all.begin(), contact.all.end(), [&](SurfaceId surface) {
+            return beyond_rim(deforming, surface, p, begin + at) <= kOverRim * deforming.offset_of(surface);
+        });
     };
     if (is_over(path.duration)) return path.duration;
     double on = 0.0;
@@ -200,7 +211,8 @@ double time_over(const DeformingColliders& deforming, const DeformedContact& con
         const double middle = 0.5 * (on + off);
         (is_over(middle) ? on : off) = middle;
     }
-    return std::min(off + kPastRim * path.duration, path.duration);
+    // What is shorter than the clock can tell does not lead off it.
+    return std::min(off + std::max(kPastRim * path.duration, kSimultaneousUlps * ulp(begin)), path.duration);
 }
 
 }  // namespace ricochet

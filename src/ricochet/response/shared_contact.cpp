@@ -227,7 +227,8 @@ std::optional<Contact> SharedContact::follow() {
         }
         std::optional<Contact> contact = step_.follow(path, held());
         const double elapsed = before - step_.remaining();
-        if (!contact) state_.velocity = velocity + elapsed * interval_.acceleration;
+        // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
+        if (!contact || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;
         for (std::size_t k = 0; k < count_; ++k) {
             const Vec3 push = push_of(k, elapsed, !contact);
             if (!contact) state_.velocity += push - elapsed * interval_.push[k];

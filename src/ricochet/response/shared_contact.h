@@ -47,6 +47,7 @@ private:
     [[nodiscard]] bool deforms(const Touched& touched) const {
         return step_.rules().bodies->is_deforming(touched.body);
     }
+    [[nodiscard]] bool is_on_deforming() const;
     [[nodiscard]] bool land();
     [[nodiscard]] Hold settle(double duration);
     [[nodiscard]] double departure_from(const Touched& touched) const;

@@ -64,6 +64,10 @@ void SharedContact::gather_in(BodyId body) {
     }
 }
 
+bool SharedContact::is_on_deforming() const {
+    return std::any_of(touched().begin(), touched().end(), [&](const Touched& one) { return deforms(one); });
+}
+
 double SharedContact::departure_from(const Touched& touched) const {
     return dot(state_.velocity - touched.velocity, touched.surface.normal);
 }

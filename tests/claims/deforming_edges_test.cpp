@@ -1,0 +1,133 @@
+// What lies or slides on the edge between two faces of a mesh that deforms does there what it does beside it.
+//
+// A long run: more planes that turn.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "claims/deforming_scene.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+
+namespace ricochet::testing {
+namespace {
+
+constexpr double kG = 9.81;
+
+SimulationSetup setup_on(const TriangleMesh& mesh, const Deform& deform, std::vector<double> times,
+                         const Material& material) {
+    SimulationSetup setup;
+    setup.options.time_step = 0.02;
+    setup.options.duration = 1.0;
+    setup.options.verify = true;
+    setup.materials = {material};
+    setup.forces.push_back(make_gravity({0, 0, -kG}));
+    setup.colliders = {{"sheet", deforming(mesh, deform, std::move(times)), 0}};
+    return setup;
+}
+
+Particle particle_at(const Vec3& position, double radius) {
+    Particle particle;
+    particle.position = position;
+    particle.radius = radius;
+    return particle;
+}
+
+void expect_sound(const Simulation& simulation) {
+    const SimulationStatistics& statistics = simulation.statistics();
+    EXPECT_EQ(statistics.violations, 0U);
+    EXPECT_EQ(statistics.energy_violations, 0U);
+    EXPECT_EQ(statistics.frozen, 0U);
+    EXPECT_EQ(statistics.unsimulated_time, 0.0);
+    EXPECT_EQ(statistics.budget_exhausted, 0U);
+}
+
+double number(std::uint64_t seed, std::uint32_t index, double low, double high) {
+    return low + (high - low) * RandomSequence(seed, 0, index).uniform();
+}
+
+// Frictionless, from rest, down z = 0.3 x: after 1 s the speed is g sin(a), along a grid line as beside it.
+TEST(AStillSlopeWithKeys, LetsSlideAlongGridLinesAsBesideThem) {
+    const double slope = 0.3;
+    const double along = std::sqrt(1.0 + slope * slope);
+    const double speed = kG * slope / along;
+    TriangleMesh incline = sheet(4.0, 4);
+    for (Vec3& v : incline.vertices) v.z = slope * v.x;
+    const auto still = [](const Vec3& v, double /*time*/) { return v; };
+    for (const double radius : {0.0, 0.05}) {
+        for (const double y : {-2.0, 0.0, 2.0}) {
+            SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(y));
+            SimulationSetup setup = setup_on(incline, still, {0.0, 5.0}, {"", 0.0, 0.0});
+            for (std::uint32_t k = 0; k < 20; ++k) {
+                const double x = number(17, k, -1.0, 3.0);
+                setup.particles.push_back(particle_at({x, y, slope * x + radius * along + 1e-12}, radius));
+            }
+            Simulation simulation(std::move(setup));
+            while (!simulation.finished()) simulation.step();
+            for (const Vec3& v : simulation.particles().velocity) {
+                EXPECT_NEAR(length(v), speed, 1e-5);
+                EXPECT_NEAR(v.y, 0.0, 1e-9);
+            }
+            EXPECT_LT(simulation.statistics().contacts, 200U);
+            expect_sound(simulation);
+        }
+    }
+}
+
+// Its two faces stay one plane, which turns about the y axis by 1/10 rad/s and is steeper than friction in the end
+// only.
+TEST(ATiltingQuad, HoldsAPointThatRestsOnItsDiagonal) {
+    const auto tilting = [](const Vec3& v, double time) { return Vec3{v.x, v.y, 0.1 * time * v.x}; };
+    for (const double time_step : {0.005, 0.02}) {
+        SCOPED_TRACE(time_step);
+        SimulationSetup setup = setup_on(sheet(3.0, 1), tilting, {0.0, 10.0}, {"", 0.0, 0.9});
+        setup.options.time_step = time_step;
+        setup.options.duration = 2.0;
+        setup.particles = {particle_at({0, 0, 1e-10}, 0.0), particle_at({0.7, 0.7, 1e-10}, 0.0)};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        for (const double x : {0.0, 0.7}) {
+            const std::size_t k = x == 0.0 ? 0 : 1;
+            EXPECT_LT(length(simulation.particles().position[k] - Vec3{x, x, 0.2 * x}), 1e-5);
+            EXPECT_LT(length(simulation.particles().velocity[k] - Vec3{0, 0, 0.1 * x}), 1e-5);
+        }
+        EXPECT_LT(simulation.statistics().contacts, 20U);
+        expect_sound(simulation);
+    }
+}
+
+// Points on grid lines of a grid whose plane turns and rises at random: no faster than gravity and the plane make them.
+TEST(APlaneThatTurns, ThrowsNothingFromItsGridLines) {
+    for (std::uint64_t seed = 1; seed <= (test::is_long_run() ? 40U : 2U); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Vec3 from{number(seed, 0, -0.3, 0.3), number(seed, 1, -0.3, 0.3), 0.0};
+        const Vec3 rate{number(seed, 2, -0.2, 0.2), number(seed, 3, -0.2, 0.2), number(seed, 4, 0.0, 0.3)};
+        const auto turning = [&](const Vec3& v, double time) {
+            return Vec3{v.x, v.y, (from.x + rate.x * time) * v.x + (from.y + rate.y * time) * v.y + rate.z * time};
+        };
+        SimulationSetup setup =
+            setup_on(sheet(8.0, 8), turning, {0.0, 2.0}, {"", 0.0, 0.2 * static_cast<double>(seed % 3)});
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const double x = number(seed, 10 + k, -2.0, 2.0);
+            const double y = k % 2 == 0 ? x : std::round(x);
+            setup.particles.push_back(particle_at({x, y, from.x * x + from.y * y + 1e-10}, 0.0));
+        }
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        // It falls no steeper than this, and is pushed no faster than the plane rises within reach.
+        const double most = kG * 0.6 + 4.0 * (std::fabs(rate.x) + std::fabs(rate.y)) + rate.z;
+        for (const Vec3& v : simulation.particles().velocity) EXPECT_LT(length(v), most);
+        expect_sound(simulation);
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

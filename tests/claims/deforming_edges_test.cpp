@@ -66,6 +66,7 @@ TEST(AStillSlopeWithKeys, LetsSlideAlongGridLinesAsBesideThem) {
         for (const double y : {-2.0, 0.0, 2.0}) {
             SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(y));
             SimulationSetup setup = setup_on(incline, still, {0.0, 5.0}, {"", 0.0, 0.0});
+            setup.options.time_step = 0.05;
             for (std::uint32_t k = 0; k < 20; ++k) {
                 const double x = number(17, k, -1.0, 3.0);
                 setup.particles.push_back(particle_at({x, y, slope * x + radius * along + 1e-12}, radius));
@@ -104,7 +105,31 @@ TEST(ATiltingQuad, HoldsAPointThatRestsOnItsDiagonal) {
     }
 }
 
-// Points on grid lines of a grid whose plane turns and rises at random: no faster than gravity and the plane make them.
+// Two faces of one plane whose slope changes from key to key, as it rises: the ball lies on their diagonal.
+TEST(ARisingSheet, CarriesABallOnItsDiagonal) {
+    const auto rising = [](const Vec3& v, double time) {
+        return Vec3{v.x, v.y, 0.23 * time + 0.04 * std::sin(6.0 * time) * v.x};
+    };
+    for (const double x : {-0.9, 0.0, 0.5}) {
+        SCOPED_TRACE(x);
+        SimulationSetup setup = setup_on(sheet(2.0, 1), rising, evenly(0.0, 2.0, 6), {"", 0.0, 1.5});
+        setup.options.duration = 1.2;
+        setup.particles = {particle_at({x, x, 0.4}, 0.05)};
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) {
+            simulation.step();
+            EXPECT_LT(length(simulation.particles().velocity[0]), 3.0);
+        }
+        const Vec3 p = simulation.particles().position[0];
+        EXPECT_NEAR(p.y, x, 1e-9);
+        EXPECT_GT(p.z, height_of(*simulation.collider_mesh(0), p.x, p.y) + 0.05 - 1e-9);
+        EXPECT_LT(simulation.statistics().contacts, 20U);
+        expect_sound(simulation);
+    }
+}
+
+// Points and spheres on grid lines of a grid whose plane turns and rises at random: no faster than gravity and the
+// plane make them.
 TEST(APlaneThatTurns, ThrowsNothingFromItsGridLines) {
     for (std::uint64_t seed = 1; seed <= (test::is_long_run() ? 40U : 2U); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -118,7 +143,9 @@ TEST(APlaneThatTurns, ThrowsNothingFromItsGridLines) {
         for (std::uint32_t k = 0; k < 4; ++k) {
             const double x = number(seed, 10 + k, -2.0, 2.0);
             const double y = k % 2 == 0 ? x : std::round(x);
-            setup.particles.push_back(particle_at({x, y, from.x * x + from.y * y + 1e-10}, 0.0));
+            const double radius = k < 2 ? 0.0 : 0.05;
+            const double up = radius * std::sqrt(1.0 + from.x * from.x + from.y * from.y) + 1e-10;
+            setup.particles.push_back(particle_at({x, y, from.x * x + from.y * y + up}, radius));
         }
         Simulation simulation(std::move(setup));
         while (!simulation.finished()) simulation.step();

@@ -122,6 +122,40 @@ double seam_turn(const DeformingColliders& deforming, const ForceInput& particle
     return kSeamTurn + 2.0 * kTouchingOffsets * deforming.offset_of(surface) / particle.radius;
 }
 
+/// m/s, by which the normal of a triangle changes, at the radius.
+Vec3 turning_of_normal(const DeformingColliders::Motion& motion, const Vec3& normal, double radius) {
+    return radius * cross(motion.turning, normal);
+}
+
+/// True where a triangle beside a sphere is in one plane with a face that holds it, and stays there until the next key.
+bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
+                          const ContactSurface& face) {
+    const Vec3& p = particle.position;
+    const Vec3 own = deforming.unit_normal_of(surface, particle.time);
+    const Vec3 normal = dot(own, face.normal) < 0.0 ? -own : own;
+    if (1.0 - dot(normal, face.normal) > kSameNormal) return false;
+    const double height = std::fabs(deforming.signed_distance_from(surface, p, particle.time));
+    if (std::fabs(height - particle.radius) > kTouchingOffsets * deforming.offset_of(surface)) return false;
+    const DeformingColliders::Motion here = deforming.motion_at(face.surface, p, particle.time);
+    const DeformingColliders::Motion there = deforming.motion_at(surface, p, particle.time);
+    const Vec3 turn_here = turning_of_normal(here, normal, particle.radius);
+    const Vec3 turn_there = turning_of_normal(there, normal, particle.radius);
+    const double scale = length(turn_here) + length(turn_there) + length(here.velocity) + length(there.velocity);
+    return length(turn_there - turn_here) <= kSameVelocity * scale;
+}
+
+/// A sphere that rolls over the edge of a face comes to what lies in one plane with it: neither is an obstacle there.
+void add_rest_of_planes(const DeformingColliders& deforming, const ForceInput& particle,
+                        const std::vector<SurfaceId>& near, std::vector<DeformedContact>& all) {
+    for (DeformedContact& contact : all) {
+        if (!contact.surface.flat) continue;
+        for (const SurfaceId surface : near) {
+            if (std::find(contact.all.begin(), contact.all.end(), surface) != contact.all.end()) continue;
+            if (goes_on_as_one_plane(deforming, particle, surface, contact.surface)) contact.all.push_back(surface);
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming, const ForceInput& particle,
@@ -155,6 +189,7 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
             known->all.push_back(one.surface);
         }
     }
+    if (particle.radius > 0.0) add_rest_of_planes(deforming, particle, near, all);
     return all;
 }
 

@@ -91,5 +91,23 @@ TEST(WorkOfContactThatLasts, IsThatOfTheMomentInADrum) {
     }
 }
 
+// A resistance is a moment, which works on how a belt turns: nothing slides under a sphere that spins on the axis of a
+// table. It drives the sphere with mu m g for all the time but the microsecond of its fall, and the table's 5 rad/s
+// with that.
+TEST(WorkOfContactThatLasts, IsThatOfResistancesToSpinningAndRollingToo) {
+    for (const bool by_belt : {true, false}) {
+        SCOPED_TRACE(by_belt ? "belt" : "frame");
+        SimulationSetup setup = setup_of({frame_of("table", {Spin{{0, 0, 1}, 5.0 * 180.0 / std::numbers::pi}})},
+                                         {{"table", PlaneShape{{}, {0, 0, 1}}, 0, by_belt ? "" : "table"}}, 0.01, 0.4);
+        setup.materials = {{"felt", 0.0, 0.3}};
+        setup.materials[0].spinning_friction = 0.001;
+        if (by_belt) setup.materials[0].motion.angular_velocity = {0, 0, 5.0};
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        setup.particles = {particle_of({0, 0, 0.1 + 1e-12}, {}, 0.1)};
+        setup.particles[0].spin = {0, 0, -20.0};
+        EXPECT_NEAR(end_of(std::move(setup)).totals.work, -0.001 * kG * 0.4 * 5.0, 1e-7);
+    }
+}
+
 }  // namespace
 }  // namespace ricochet::testing

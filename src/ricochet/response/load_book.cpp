@@ -47,7 +47,12 @@ void LoadBook::close() {
     last.couple += couple;
     last.moment += couple;
     const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(last.surface);
-    if (body == kAtRest) return;
+    const Vec3& turning = rules_.materials[rules_.world.material_of(last.surface)].motion.angular_velocity;
+    if (body == kAtRest) {
+        last.work += dot(couple, turning);
+        return;
+    }
+    last.work += dot(couple, rules_.bodies->pose(body, last.time).world_from_frame.direction(turning));
     const bool deforms = rules_.bodies->is_deforming(body);
     const double time = time_of_push(body, last.time, last.impact);
     last.work += dot(couple, deforms ? rules_.bodies->deforming().motion_at(last.surface, last.place, time).turning
@@ -77,22 +82,26 @@ Vec3 LoadBook::couple_of(const Vec3& spin_change) const {
     return (-0.4 * particle_.state.mass * radius * radius) * spin_change;
 }
 
-/// m/s, in the world, of what is no motion of the body: a belt's.
-Vec3 LoadBook::material_velocity(SurfaceId surface, BodyId body, const Moment& at) const {
-    const Material& material = rules_.materials[rules_.world.material_of(surface)];
-    if (!material.drives()) return {};
-    if (rules_.bodies == nullptr) {
-        const Vec3 normal = rules_.world.nearest(surface, at.place).normal;
-        return material.motion.at(at.place - particle_.state.radius * normal, normal);
-    }
-    const double time = at.time;
-    const MovingPose pose = rules_.bodies->pose(body, time);
+/// J, of a load by what is no motion of the body, as it is at a moment: a belt's. An impulse works on where it acts;
+/// what is left of the couple without the impulse's lever, a resistance to rolling or spinning, on how the belt turns.
+double LoadBook::work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const {
+    const Material& material = rules_.materials[rules_.world.material_of(load.surface)];
+    if (!material.drives()) return 0.0;
+    const MovingPose pose = rules_.bodies == nullptr ? MovingPose{} : rules_.bodies->pose(body, at.time);
     const Vec3 seen = body == kAtRest ? at.place : pose.image(at.place);
-    const Vec3 normal = rules_.bodies->is_deforming(body)
-                            ? rules_.bodies->deforming().nearest(surface, seen, time).normal
-                            : rules_.bodies->world(body).nearest(surface, seen).normal;
-    const Vec3 along = material.motion.at(seen - particle_.state.radius * normal, normal);
-    return pose.world_from_frame.direction(along);
+    const Vec3 normal = normal_at(load.surface, body, seen, at.time);
+    const double radius = particle_.state.radius;
+    const Vec3 along = material.motion.at(seen - radius * normal, normal);
+    const auto in_world = [&](const Vec3& v) { return pose.world_from_frame.direction(v); };
+    const Vec3 resistance = load.couple + cross(radius * in_world(normal), load.impulse);
+    return dot(load.impulse, in_world(along)) + dot(resistance, in_world(material.motion.angular_velocity));
+}
+
+/// In the body's frame, where a place is seen.
+Vec3 LoadBook::normal_at(SurfaceId surface, BodyId body, const Vec3& seen, double time) const {
+    if (rules_.bodies == nullptr) return rules_.world.nearest(surface, seen).normal;
+    return rules_.bodies->is_deforming(body) ? rules_.bodies->deforming().nearest(surface, seen, time).normal
+                                             : rules_.bodies->world(body).nearest(surface, seen).normal;
 }
 
 /// s, at which a body moves as while it has pushed: contact that lasts is entered at the end of its interval, which may
@@ -118,9 +127,8 @@ void LoadBook::enter(const SurfaceHit& hit, const Vec3& couple) {
     load.place = motion_in_world().position;
     load.couple = couple;
     load.moment = cross(load.place - pose.world_from_frame.translation, hit.impulse) + couple;
-    load.work =
-        dot(hit.impulse, pose.velocity + material_velocity(hit.surface, body, {particle_.state.time, load.place})) +
-        dot(load.moment, pose.angular_velocity);
+    load.work = dot(hit.impulse, pose.velocity) + dot(load.moment, pose.angular_velocity) +
+                work_on_material(load, body, {particle_.state.time, load.place});
     load.approach = approach_;
     if (rules_.bodies != nullptr && rules_.bodies->yields(body)) {
         const Vec3 arm = load.place - rules_.bodies->mobility(body, time).center;
@@ -153,8 +161,7 @@ void LoadBook::enter_lasting(ColliderLoad& load, BodyId body) const {
 double LoadBook::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const MovingPose pose = body == kAtRest ? MovingPose{} : rules_.bodies->pose(body, at.time);
     const Vec3 moment = cross(load.place - pose.world_from_frame.translation, load.impulse) + load.couple;
-    return dot(load.impulse, pose.velocity + material_velocity(load.surface, body, at)) +
-           dot(moment, pose.angular_velocity);
+    return dot(load.impulse, pose.velocity) + dot(moment, pose.angular_velocity) + work_on_material(load, body, at);
 }
 
 }  // namespace ricochet

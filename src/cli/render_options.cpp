@@ -151,7 +151,7 @@ void check_numbers(const RenderArguments& arguments) {
     in_range("--fps", arguments.frames_per_second, 1, 240);
     in_range("--exposure", arguments.exposure, 0.01, 100);
     in_range("--speed", arguments.speed, 1e-6, 1e6);
-    if (arguments.shutter != -1.0) in_range("--shutter", arguments.shutter, 0, 1e6);
+    if (arguments.shutter != RenderArguments{}.shutter) in_range("--shutter", arguments.shutter, 0, 1e6);
     if (arguments.black_body != 0.0) in_range("--black-body", arguments.black_body, 500, 20000);
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
 }

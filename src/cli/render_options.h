@@ -1,6 +1,7 @@
 // The options of `ricochet render`: as they stand on the command line, and what they mean.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct RenderArguments {
     int frames_per_second = 30;
     double exposure = 1.0;
     double speed = 1.0;
-    double shutter = -1.0;  // below 0: the scene's
+    double shutter = std::numeric_limits<double>::lowest();  // that: the scene's
     std::string light;
     bool night = false;
     std::string background;

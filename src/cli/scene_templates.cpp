@@ -230,8 +230,9 @@ std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& p
         mesh.y_up ? ",\n     // The file's y axis points up; z does here.\n     \"rotation\": {\"axis\": [1, 0, 0], "
                     "\"degrees\": 90}"
                   : "";
-    std::string text = fmt::format(R"(    {{"name": "mesh", "type": "mesh", "file": {}, "material": "surface"{}}})",
-                                   nlohmann::json(mesh.file).dump(), turned);
+    std::string text =
+        fmt::format(R"(    {{"name": "mesh", "type": "mesh", "file": {}, "material": "surface"{}{}}})",
+                    nlohmann::json(mesh.file).dump(), turned, part.has_gravity || part.has_box ? "" : kGlass);
     if (part.has_gravity) {
         text += fmt::format(
             ",\n    {{\"name\": \"ground\", \"type\": \"plane\", \"point\": {}, \"normal\": [0, 0, 1], \"material\": "
@@ -289,7 +290,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
 // Metres, seconds and kilograms; z points up. docs/scene-format.md tells every key.
 {{
   "ricochet": 1,
-  // 300 steps, of which every second one is a frame: 5 s of film at 30 pictures a second.
+  // 300 steps, of which every second one is a frame. A film lasts as long as the run, or by render's --speed.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
   "forces": [{}],
   "materials": {{

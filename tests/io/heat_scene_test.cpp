@@ -61,7 +61,7 @@ TEST(HeatScene, RunsAndTakesAFlowByItsName) {
 TEST(HeatScene, IsRefusedInOneLineWhereItCannotWork) {
     const std::string radiates = R"("specific_heat": 460, "emissivity": 1)";
     EXPECT_EQ(errors_of(scene_with(R"("emissivity": 1)")),
-              (Lines{"heat.specific_heat: missing, expected a number > 0 (J/(kg K))"}));
+              (Lines{"heat.specific_heat: missing, expected a number >= 0.001 and <= 1000000000000 (J/(kg K))"}));
     EXPECT_EQ(errors_of(scene_with(radiates, "", R"("heat": {})")),
               (Lines{"heat: attributes: found none that is named \"temperature\", expected it to be declared: it is "
                      "what heat changes, in K"}));

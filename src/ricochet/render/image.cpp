@@ -67,7 +67,7 @@ Image read_png(const std::filesystem::path& path) {
     Image image;
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {
-        refuse("is not a PNG file, expected one");
+        refuse(fmt::format("is not a PNG file that can be read ({}), expected one", stbi_failure_reason()));
     }
     const double pixels = static_cast<double>(image.width) * static_cast<double>(image.height);
     if (pixels > kMostPixelsRead) {

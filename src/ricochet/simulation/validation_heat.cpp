@@ -20,7 +20,8 @@ void require_temperature(const Subject& subject, double value, std::string_view 
 }
 
 void validate_numbers(const HeatSettings& heat, const Subject& subject) {
-    subject.require_positive(heat.specific_heat, "specific_heat", "J/(kg K)");
+    // With less, what is fast would be hotter after an impact than numbers go.
+    subject.require_in(heat.specific_heat, 1e-3, 1e12, "specific_heat", "0.001 to 1e12 (J/(kg K))");
     require_temperature(subject, heat.ambient_temperature, "ambient_temperature");
     subject.require_in(heat.emissivity, 0.0, 1.0, "emissivity", kFraction);
     subject.require_in(heat.impact_fraction, 0.0, 1.0, "impact_fraction", kFraction);

@@ -36,7 +36,7 @@ const ObjectSpec& heat_spec() {
         "heat",
         "What changes the attribute `temperature` (K) of all particles, which must be declared. A particle has one "
         "temperature throughout.",
-        {{"specific_heat", &H::specific_heat, kPositive, "J/(kg K)", "Of the particles.", kRequired},
+        {{"specific_heat", &H::specific_heat, between(1e-3, 1e12), "J/(kg K)", "Of the particles.", kRequired},
          {"ambient_temperature", &H::ambient_temperature, kNotNegative, "K",
           "Of the medium, and of what the particles shine at."},
          {"convection", &H::convection, "Heat that the medium takes.", &convection_spec(), Without{"none"}},

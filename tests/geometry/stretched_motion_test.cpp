@@ -107,7 +107,8 @@ TEST(StretchedMotion, RefusesWhatItCannotDo) {
     body.name = "body";
     body.is_driven = true;
     EXPECT_EQ(refusal(FrameTree({body}), 0.0, 1.0),
-              "scale that changes in time: the frame 'body' is a body, which impulses move, expected a frame with motions of its own");
+              "scale that changes in time: the frame 'body' is a body, which impulses move, expected a frame with "
+              "motions of its own");
     const std::string memory = refusal(tree_of({Spin{{0, 0, 1}, 1e20}}), 0.0, 1.0);
     EXPECT_EQ(memory.substr(0, 36), "scale that changes in time: asks for") << memory;
 }

@@ -56,6 +56,12 @@ TEST(RobustRange, LeavesStraysOut) {
     EXPECT_NEAR(range.high, 0.99, 0.002);
 }
 
+TEST(RobustRange, LeavesNoneOfAFewOut) {
+    const ValueRange range = robust_range({300, 100, 900, 200, 800, 400, 700, 500, 600});
+    EXPECT_EQ(range.low, 100.0);
+    EXPECT_EQ(range.high, 900.0);
+}
+
 TEST(RobustRange, IsNeverEmpty) {
     EXPECT_LT(robust_range({}).low, robust_range({}).high);
     EXPECT_LT(robust_range({5.0, 5.0}).low, robust_range({5.0, 5.0}).high);

@@ -54,13 +54,15 @@ double srgb_from_linear(double value) {
 ValueRange robust_range(std::vector<double> values) {
     std::erase_if(values, [](double value) { return !std::isfinite(value); });
     if (values.empty()) return {};
-    const auto quantile = [&](std::size_t hundredths) {
-        const auto percentile = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * hundredths / 100);
-        std::nth_element(values.begin(), percentile, values.end());
-        return *percentile;
+    const auto value_at = [&](std::size_t rank) {
+        const auto value = values.begin() + static_cast<std::ptrdiff_t>(rank);
+        std::nth_element(values.begin(), value, values.end());
+        return *value;
     };
-    const double low = quantile(1);
-    const double high = quantile(99);
+    // As many at both ends: none of less than a hundred.
+    const std::size_t strays = (values.size() - 1) / 100;
+    const double low = value_at(strays);
+    const double high = value_at(values.size() - 1 - strays);
     if (low < high) return {low, high};
     const double widening = std::max(std::fabs(low) * 1e-3, 1e-12);
     return {low - widening, low + widening};

@@ -24,6 +24,7 @@
 #include "support/counts.h"
 #include "support/parity.h"
 #include "support/simple_meshes.h"
+#include "support/simulations.h"
 
 namespace ricochet::testing {
 namespace {
@@ -39,21 +40,6 @@ SimulationSetup setup_of(double time_step, double duration, const Material& mate
     setup.options.record_contacts = true;
     setup.materials = {material};
     return setup;
-}
-
-Particle particle_at(const Vec3& position, const Vec3& velocity, double radius = 0.0) {
-    Particle particle;
-    particle.position = position;
-    particle.velocity = velocity;
-    particle.radius = radius;
-    return particle;
-}
-
-void expect_sound(const Simulation& simulation) {
-    const SimulationStatistics& statistics = simulation.statistics();
-    EXPECT_EQ(statistics.violations, 0U);
-    EXPECT_EQ(statistics.energy_violations, 0U);
-    EXPECT_EQ(statistics.frozen, 0U);
 }
 
 int count_outside(const Simulation& simulation) {
@@ -168,7 +154,7 @@ TEST(APlateWhoseVerticesTranslate, IsThatPlateInAMovingFrame) {
                 setup.colliders = {
                     {"plate", MeshShape{std::make_shared<const TriangleMesh>(plate), {}, "", {}}, 0, "lift"}};
             }
-            setup.particles = {particle_at({0.4, 0.3, 1.5}, {1.0, 0.5, 0.2}, radius)};
+            setup.particles = {particle_of({0.4, 0.3, 1.5}, {1.0, 0.5, 0.2}, radius)};
             Simulation simulation(std::move(setup));
             std::vector<ContactRecord>& all = contacts.emplace_back();
             while (!simulation.finished()) {
@@ -197,7 +183,7 @@ TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
     for (const auto& [start, expected] : {std::pair{0.5, 1.0}, std::pair{1.5, 2.0}}) {
         SimulationSetup setup = setup_of(0.03, 3.0, {"", 1.0, 0.0});
         setup.colliders = {{"wall", deforming(sheet(1.0, 3), press, {0.0, 1.0, 3.0}), 0}};
-        setup.particles = {particle_at({0.1, 0.2, start}, {0, 0, -1.0})};
+        setup.particles = {particle_of({0.1, 0.2, start}, {0, 0, -1.0})};
         Simulation simulation(std::move(setup));
         while (!simulation.finished()) simulation.step();
         EXPECT_NEAR(simulation.particles().velocity[0].z, expected, 1e-14);
@@ -212,7 +198,7 @@ TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
         SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.0, 0.5});
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         setup.colliders = {{"plate", deforming(sheet(2.0, 3), lift, {0.0, 2.0}), 0}};
-        setup.particles = {particle_at({0.1, 0.2, radius + 0.01}, {}, radius)};
+        setup.particles = {particle_of({0.1, 0.2, radius + 0.01}, {}, radius)};
         Simulation simulation(std::move(setup));
         while (!simulation.finished()) simulation.step();
         const Vec3 p = simulation.particles().position[0];
@@ -240,8 +226,8 @@ TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingWhereItRestsOnIt) {
         setup.materials[0].rolling_friction = sample.friction;
         setup.forces.push_back(make_gravity({0, 0, -kG}));
         setup.colliders = {{"plate", deforming(sheet(2.0, 3), lift, {0.0, 2.0}), 0}};
-        setup.particles = {particle_at({0.1, 0.2, 0.01}, {sample.speed, 0, 0}),
-                           particle_at({0.1, 0.4, 0.06}, {sample.speed, 0, 0}, 0.05)};
+        setup.particles = {particle_of({0.1, 0.2, 0.01}, {sample.speed, 0, 0}),
+                           particle_of({0.1, 0.4, 0.06}, {sample.speed, 0, 0}, 0.05)};
         Simulation simulation(std::move(setup));
         simulation.step();
         EXPECT_EQ(simulation.statistics().resting, 0U);
@@ -280,7 +266,7 @@ TEST(AMeshWithEqualKeys, LetsGoAtAConvexEdge) {
     for (const double radius : {0.0, 0.04}) {
         for (const Vec3& velocity : {Vec3{0.1, 0, 0}, Vec3{0.1, 0.07, 0}, Vec3{1.0, 0, 0}}) {
             SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(velocity.x) + " " + std::to_string(velocity.y));
-            expect_as_at_rest(box, particle_at({0.49, 0.13, 0.0501 + radius}, velocity, radius), 0.05, 0.5);
+            expect_as_at_rest(box, particle_of({0.49, 0.13, 0.0501 + radius}, velocity, radius), 0.05, 0.5);
         }
     }
 }
@@ -292,7 +278,7 @@ TEST(AMeshWithEqualKeys, HasRidgesThatAreNoWalls) {
         for (const double radius : {0.0, 0.04}) {
             SCOPED_TRACE(std::to_string(height) + " " + std::to_string(radius));
             const double up = radius * std::sqrt(1.0 + height * height) + 1e-3;
-            expect_as_at_rest(roof, particle_at({-0.1, 0.03, 0.9 * height + up}, {1.5, 0.05, 0}, radius), 0.02, 0.6);
+            expect_as_at_rest(roof, particle_of({-0.1, 0.03, 0.9 * height + up}, {1.5, 0.05, 0}, radius), 0.02, 0.6);
         }
     }
 }
@@ -304,7 +290,7 @@ TEST(AMeshWithEqualKeys, HasInnerEdgesThatAreNotFelt) {
         for (const double radius : {0.0, 0.05}) {
             SCOPED_TRACE(std::to_string(slope) + " " + std::to_string(radius));
             const double up = (radius + 0.01) * std::sqrt(1.0 + slope * slope);
-            expect_as_at_rest(incline, particle_at({-1.2, 0.1, 1.2 * slope + up}, {1.0, 0.3, 0}, radius), 0.05, 1.0);
+            expect_as_at_rest(incline, particle_of({-1.2, 0.1, 1.2 * slope + up}, {1.0, 0.3, 0}, radius), 0.05, 1.0);
         }
     }
 }
@@ -313,7 +299,7 @@ TEST(AMeshWithEqualKeys, HasADomeThatIsSlidDown) {
     const TriangleMesh dome = sphere_mesh({}, 1.0, 2);
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);
-        expect_as_at_rest(dome, particle_at({0.11, 0.07, 1.0 + radius}, {0.1, 0.05, 0}, radius), 0.005, 1.0);
+        expect_as_at_rest(dome, particle_of({0.11, 0.07, 1.0 + radius}, {0.1, 0.05, 0}, radius), 0.005, 1.0);
     }
 }
 
@@ -342,7 +328,7 @@ TEST(WorkOnAPlate, CountsItsVelocityBeforeAKeyUntilThere) {
                 setup.colliders = {
                     {"plate", MeshShape{std::make_shared<const TriangleMesh>(plate), {}, "", {}}, 0, "shaker"}};
             }
-            setup.particles = {particle_at({0.1, 0.2, 0.3}, {})};
+            setup.particles = {particle_of({0.1, 0.2, 0.3}, {})};
             Simulation simulation(std::move(setup));
             while (!simulation.finished()) simulation.step();
             EXPECT_NEAR(simulation.collider_totals()[0].work, -0.4 * 0.4 - 0.37 * 0.3, 1e-3)

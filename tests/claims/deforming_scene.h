@@ -2,6 +2,8 @@
 /// Meshes that deform as functions say: what their tests share.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -87,6 +89,14 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
         if (s >= -1e-12 && r >= -1e-12 && s + r <= 1.0 + 1e-12) return a.z + s * u.z + r * v.z;
     }
     return std::nan("");
+}
+
+/// The verifier has found nothing, and no particle has been given up.
+inline void expect_sound(const Simulation& simulation) {
+    const SimulationStatistics& statistics = simulation.statistics();
+    EXPECT_EQ(statistics.violations, 0U);
+    EXPECT_EQ(statistics.energy_violations, 0U);
+    EXPECT_EQ(statistics.frozen, 0U);
 }
 
 }  // namespace ricochet::testing

@@ -303,7 +303,10 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
         plan_paths(begin, end);
         return true;
     }
-    if (has_given_up_) return accept(preview, end);
+    if (has_given_up_) {
+        accept(preview, end);
+        return false;
+    }
     const double duration = end - begin;
     const bool can_shorten = duration > 1.5 * shortest_part_;
     const int most_rounds = can_shorten ? kMostLoadRounds : kFewLoadRounds;
@@ -322,7 +325,9 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     if (!fits && is_last && can_shorten) longest = std::min(longest, 0.25);
     const bool gives_up = is_last && !can_shorten;
     if ((fits && longest == 1.0) || gives_up) {
-        return (!can_shorten && plan_without_loads(preview, begin, end)) || accept(preview, end);
+        if (!can_shorten && plan_without_loads(preview, begin, end)) return true;
+        accept(preview, end);
+        return false;
     }
     if (longest < 1.0) {
         was_shortened_ = true;
@@ -360,13 +365,12 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     return gained > kMuch * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
 }
 
-/// The plan stands, up to a time, s. Returns false.
-bool DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
+/// The plan stands, up to a time, s.
+void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     const double duration = end - planned(0).begin;
     for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
     end_at(end);
     limit_next_part(duration);
-    return false;
 }
 
 /// Bodies that no load fits, however short the part, as where something much heavier jams them, go on as if nothing lay

@@ -106,7 +106,7 @@ private:
     [[nodiscard]] double most_change(std::size_t body) const;
     [[nodiscard]] double change_by(std::size_t body, const Wrench& load, double duration) const;
     [[nodiscard]] bool gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const;
-    bool accept(std::span<const ColliderLoad> preview, double end);
+    void accept(std::span<const ColliderLoad> preview, double end);
     [[nodiscard]] bool plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end);
     void limit_next_part(double duration);
     [[nodiscard]] Fit fit_of(std::size_t body, const LyingLoad& lying, double duration) const;

@@ -28,7 +28,7 @@ struct Convection {
 
 /// What changes the attribute `temperature` of all particles. A particle has one temperature throughout.
 struct HeatSettings {
-    double specific_heat = 0.0;                           ///< J/(kg K), > 0, of the particles
+    double specific_heat = 0.0;                           ///< J/(kg K), 1e-3..1e12, of the particles
     double ambient_temperature = 293.15;                  ///< K, >= 0, of the medium and of what they shine at
     std::optional<Convection> convection = std::nullopt;  ///< nothing: the medium takes no heat
     double emissivity = 0.0;  ///< 0..1, over that of a black body; also the part of radiation that is taken in

@@ -337,6 +337,7 @@ class PointEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -372,6 +373,7 @@ class DiskEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -409,6 +411,7 @@ class BoxEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -445,6 +448,7 @@ class SphereEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -482,6 +486,7 @@ class MeshEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     file: The mesh: OBJ, PLY, STL or OFF.
@@ -522,6 +527,7 @@ class ConeEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     apex: Its tip. Unit: m. Default: [0, 0, 0].
@@ -560,6 +566,7 @@ class ChildEmitter(Thing):
     opacity: How much it covers what is behind, 0 to 1; what spreads beyond is clamped.
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
+    material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     parent: Name of the emitter whose particles are the parents. Required.
@@ -1031,6 +1038,18 @@ class Output(Thing):
     """
 
 
+class PairOfMaterials(Thing):
+    """What spheres of two materials do to each other.
+
+    first: One of the materials. Required.
+    second: Another one, or the same. Required.
+    restitution: Speed of parting over speed of approach along the normal.
+    friction: Coulomb coefficient between spheres.
+    rolling_friction: Moment that resists turning relative to each other, over the reduced radius times the normal
+        impulse.
+    """
+
+
 class Particle(Thing):
     """Particles that are there from the start.
 
@@ -1045,6 +1064,7 @@ class Particle(Thing):
     opacity: How much it covers what is behind.
     size: Radius that is drawn. Unit: m.
     attributes: Values of the scene's `attributes`, by name; no spread.
+    material: Of which of `particle_contacts.materials` it is.
     """
 
 
@@ -1058,6 +1078,9 @@ class ParticleContacts(Thing):
     method: How spheres that meet are moved. Default: "auto".
     impact_budget: Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for
         the rest of the step, and the time left out is counted. Default: 1000.
+    materials: Materials of spheres by name, and what spheres of one do to each other. Emitters and particles say of
+        which they are by `material`; the particles' column `material` is its number, in this order.
+    pairs: What spheres of two materials do to each other.
     """
 
 
@@ -1186,6 +1209,16 @@ class SimulationOptions(Thing):
     rollback: Of the rollback response.
     project: Of the project response.
     penalty: Of the penalty response.
+    """
+
+
+class SphereMaterial(Thing):
+    """What spheres of this material do to each other.
+
+    restitution: Speed of parting over speed of approach along the normal.
+    friction: Coulomb coefficient between spheres.
+    rolling_friction: Moment that resists turning relative to each other, over the reduced radius times the normal
+        impulse.
     """
 
 

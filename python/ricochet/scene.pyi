@@ -280,6 +280,7 @@ class PointEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -310,6 +311,7 @@ class DiskEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -342,6 +344,7 @@ class BoxEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -373,6 +376,7 @@ class SphereEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -405,6 +409,7 @@ class MeshEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         file: Any = ...,
@@ -440,6 +445,7 @@ class ConeEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         apex: Optional[Vector] = ...,
@@ -473,6 +479,7 @@ class ChildEmitter(Thing):
         opacity: Any = ...,
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         parent: str,
@@ -864,6 +871,17 @@ class Output(Thing):
         contacts: Optional[bool] = ...,
     ) -> None: ...
 
+class PairOfMaterials(Thing):
+    def __init__(
+        self,
+        *,
+        first: str,
+        second: str,
+        restitution: Optional[float] = ...,
+        friction: Optional[float] = ...,
+        rolling_friction: Optional[float] = ...,
+    ) -> None: ...
+
 class Particle(Thing):
     def __init__(
         self,
@@ -879,6 +897,7 @@ class Particle(Thing):
         opacity: Optional[float] = ...,
         size: Optional[float] = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
+        material: Optional[str] = ...,
     ) -> None: ...
 
 class ParticleContacts(Thing):
@@ -890,6 +909,8 @@ class ParticleContacts(Thing):
         rolling_friction: Optional[float] = ...,
         method: Optional[str] = ...,
         impact_budget: Optional[int] = ...,
+        materials: Optional[Mapping[str, Any]] = ...,
+        pairs: Optional[Sequence[Any]] = ...,
     ) -> None: ...
 
 class ParticleTable(Thing):
@@ -1006,6 +1027,15 @@ class SimulationOptions(Thing):
         rollback: Any = ...,
         project: Any = ...,
         penalty: Any = ...,
+    ) -> None: ...
+
+class SphereMaterial(Thing):
+    def __init__(
+        self,
+        *,
+        restitution: Optional[float] = ...,
+        friction: Optional[float] = ...,
+        rolling_friction: Optional[float] = ...,
     ) -> None: ...
 
 class Spring(Thing):

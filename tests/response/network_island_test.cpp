@@ -23,7 +23,7 @@ using testing::plane_collider;
 constexpr double kRadius = 0.005;
 constexpr double kStep = 1e-3;
 const Material kRough{"", 0.5, 0.5};
-const PairLaw kLaw{0.5, 0.5, 0.0};
+const PairMaterial kLaw{0.5, 0.5, 0.0};
 
 double largest_way(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     double most = 0.0;

@@ -17,8 +17,10 @@ class Pile {
 public:
     static constexpr double kGravity = 9.81;
 
-    Pile(std::vector<ColliderDescription> colliders, const Material& material, const PairLaw& law)
-        : course_(std::move(colliders), material, {0, 0, -kGravity}), island_(course_.response->rules(), law) {}
+    Pile(std::vector<ColliderDescription> colliders, const Material& material, const PairMaterial& law)
+        : course_(std::move(colliders), material, {0, 0, -kGravity}),
+          materials_(PairContactSettings{law.restitution, law.friction, law.rolling_friction}),
+          island_(course_.response->rules(), materials_) {}
 
     /// Of density 2500 kg/m^3.
     void add(const Vec3& center, double radius, const Vec3& velocity = {}) {
@@ -115,6 +117,7 @@ private:
     }
 
     Course course_;
+    PairMaterials materials_;
     NetworkIsland island_;
     NetworkMemory memory_;
     std::vector<MovingParticle> particles_;

@@ -60,6 +60,17 @@ SimulationSetup pouring(std::uint64_t seed) {
     return setup;
 }
 
+/// The same of two materials.
+SimulationSetup pouring_of_two_materials(std::uint64_t seed) {
+    SimulationSetup setup = pouring(seed);
+    PairContactSettings& contacts = *setup.options.particle_contacts;
+    contacts.materials = {"rough", "smooth"};
+    contacts.pairs = {{"smooth", "smooth", {0.3, 0.0, 0.0}}, {"smooth", "rough", {0.7, 0.1, 0.0}}};
+    setup.attributes = {{std::string(kMaterialAttribute), 1, {}}};
+    for (std::size_t k = 0; k < setup.particles.size(); k += 2) setup.particles[k].attributes = {{1.0, 0.0, 0.0}};
+    return setup;
+}
+
 /// A pile that falls asleep, single spheres on the floor that sleep beside it, and one that hits it.
 SimulationSetup sleeping_pile(std::uint64_t seed) {
     SimulationSetup setup = empty_scene(seed, 0.2);
@@ -113,8 +124,11 @@ struct Named {
 };
 
 const std::vector<Named>& scenes() {
-    static const std::vector<Named> all = {
-        {"pouring", pouring}, {"sleeping pile", sleeping_pile}, {"drum", drum}, {"moving wall", moving_wall}};
+    static const std::vector<Named> all = {{"pouring", pouring},
+                                           {"pouring of two materials", pouring_of_two_materials},
+                                           {"sleeping pile", sleeping_pile},
+                                           {"drum", drum},
+                                           {"moving wall", moving_wall}};
     return all;
 }
 

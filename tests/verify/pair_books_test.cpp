@@ -67,6 +67,21 @@ TEST(PairBooks, EnergyThatIsLostIsSeenWhereNothingTakesAny) {
     EXPECT_FALSE(is_wrong(meeting_of(0.9, 0.0), {.restitution = 0.9}));
 }
 
+TEST(PairBooks, EachPairOfMaterialsIsHeldAgainstItsOwn) {
+    PairBooks books{.restitution = 1.0};
+    books.materials = 2;
+    books.by_materials = {{1.0, 0.0, 0.0}, {0.5, 0.3, 0.0}, {0.5, 0.3, 0.0}, {0.25, 0.0, 0.0}};
+    PairMeeting meeting = meeting_of(0.5, kSticks);
+    EXPECT_TRUE(is_wrong(meeting, books));
+    meeting.spheres[1].material = 1;
+    EXPECT_FALSE(is_wrong(meeting, books));
+    meeting.spheres[0].material = 1;
+    EXPECT_TRUE(is_wrong(meeting, books));
+    meeting = meeting_of(0.25, 0.0);
+    meeting.spheres[0].material = meeting.spheres[1].material = 1;
+    EXPECT_FALSE(is_wrong(meeting, books));
+}
+
 TEST(PairBooks, OnPathsThatAreNotExactSpheresMayBeApart) {
     PairMeeting meeting = meeting_of(1.0, 0.0);
     meeting.spheres[1].before.position.x += 1e-6;

@@ -19,6 +19,7 @@ struct MetSphere {
     bool is_fixed = false;       ///< nothing moves it
     RecordedMotion before;
     RecordedMotion after;
+    std::uint32_t material = 0;  ///< its number
 };
 
 /// Two of the spheres touch.

@@ -349,18 +349,24 @@ std::vector<std::string> pair_method_warnings(const Simulation& simulation, cons
     const std::optional<PairContactSettings>& pairs = simulation.options().particle_contacts;
     std::vector<std::string> lines;
     if (!pairs) return lines;
-    if (pairs->method == PairMethod::events && fall != Vec3{} && pairs->restitution < 1.0) {
+    double least = pairs->restitution;
+    double most = pairs->restitution < 1.0 ? pairs->restitution : 0.0;  // of those that lose energy
+    for (const MaterialPair& pair : pairs->pairs) {
+        const double restitution = pair.material.restitution;
+        least = std::min(least, restitution);
+        if (restitution < 1.0) most = std::max(most, restitution);
+    }
+    if (pairs->method == PairMethod::events && fall != Vec3{} && least < 1.0) {
         lines.emplace_back(
             "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
             "their impacts of each step and stand still in the air; use auto");
     }
-    const bool is_nearly_elastic = pairs->restitution >= kNearlyElastic && pairs->restitution < 1.0;
-    if (pairs->method == PairMethod::contacts && is_nearly_elastic) {
+    if (pairs->method == PairMethod::contacts && most >= kNearlyElastic) {
         lines.push_back(
             fmt::format("particle_contacts.method: contacts: impacts that follow each other in a step are one, which "
                         "loses energy in a gas and shares out that of a cradle, whatever the restitution of {:g}; use "
                         "auto or events",
-                        pairs->restitution));
+                        most));
     }
     return lines;
 }

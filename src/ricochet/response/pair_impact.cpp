@@ -27,13 +27,13 @@ Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal)
 }
 
 /// The rebound, m/s, that a contact of this approach has at least.
-double rebound_of(const PairContactSettings& law, double resting_speed, double approach) {
+double rebound_of(const PairMaterial& law, double resting_speed, double approach) {
     const double rebound = law.restitution * approach;
     return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
 }
 
 /// Stops turning relative to each other, as far as the moment reaches.
-void resist_rolling(const PairContactSettings& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
+void resist_rolling(const PairMaterial& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
     if (law.rolling_friction == 0.0) return;
     const Vec3 relative = b.spin - a.spin;
     const Vec3 along = relative - dot(relative, normal) * normal;
@@ -48,8 +48,8 @@ void resist_rolling(const PairContactSettings& law, PairBody& a, PairBody& b, co
 }
 
 /// N s on the second, along the surface.
-Vec3 friction_of(const PairContactSettings& law, const PairBody& a, const PairBody& b, const Vec3& normal,
-                 double impulse, double share) {
+Vec3 friction_of(const PairMaterial& law, const PairBody& a, const PairBody& b, const Vec3& normal, double impulse,
+                 double share) {
     if (law.friction == 0.0) return {};
     const Vec3 relative = relative_velocity(a, b, normal);
     const Vec3 slip = relative - dot(relative, normal) * normal;
@@ -62,14 +62,15 @@ Vec3 friction_of(const PairContactSettings& law, const PairBody& a, const PairBo
 
 class ImpactProblem {
 public:
-    ImpactProblem(const PairContactSettings& law, double resting_speed, std::vector<PairBody>& bodies,
+    ImpactProblem(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
                   std::span<PairContact> contacts)
-        : law_(law), bodies_(bodies), contacts_(contacts), impulses_(contacts.size()), targets_(contacts.size()) {
+        : laws_(laws), bodies_(bodies), contacts_(contacts), impulses_(contacts.size()), targets_(contacts.size()) {
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
             contact.normal = normalized(second(contact).position - first(contact).position);
             contact.approach = -dot(second(contact).velocity - first(contact).velocity, contact.normal);
-            targets_[k] = contact.approach > 0.0 ? rebound_of(law, resting_speed, contact.approach) : contact.approach;
+            targets_[k] = contact.approach > 0.0 ? rebound_of(law_of(contact), resting_speed, contact.approach)
+                                                 : contact.approach;
         }
     }
 
@@ -89,20 +90,24 @@ public:
             const PairBody& a = before[contact.first];
             const PairBody& b = before[contact.second];
             contact.impulse =
-                impulses_[k] * contact.normal + friction_of(law_, a, b, contact.normal, impulses_[k], share);
+                impulses_[k] * contact.normal + friction_of(law_of(contact), a, b, contact.normal, impulses_[k], share);
         }
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
             push(first(contact), second(contact), contact.normal, contact.impulse);
         }
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
-            resist_rolling(law_, first(contacts_[k]), second(contacts_[k]), contacts_[k].normal, impulses_[k]);
+            PairContact& contact = contacts_[k];
+            resist_rolling(law_of(contact), first(contact), second(contact), contact.normal, impulses_[k]);
         }
     }
 
 private:
     [[nodiscard]] PairBody& first(const PairContact& contact) { return bodies_[contact.first]; }
     [[nodiscard]] PairBody& second(const PairContact& contact) { return bodies_[contact.second]; }
+    [[nodiscard]] const PairMaterial& law_of(const PairContact& contact) {
+        return laws_.of(first(contact).material, second(contact).material);
+    }
 
     [[nodiscard]] std::vector<std::size_t> contacts_of_bodies() const {
         std::vector<std::size_t> counts(bodies_.size(), 0);
@@ -135,7 +140,7 @@ private:
         }
     }
 
-    const PairContactSettings& law_;
+    const PairMaterials& laws_;
     std::vector<PairBody>& bodies_;
     std::span<PairContact> contacts_;
     std::vector<double> impulses_;  // N s, along the normals
@@ -146,7 +151,7 @@ private:
 
 PairBody pair_body(const Vec3& position, const Vec3& velocity, const Vec3& spin, double mass, double radius,
                    bool is_fixed) {
-    PairBody body{position, velocity, spin, 0.0, radius, 0.0};
+    PairBody body{position, velocity, spin, 0.0, radius, 0.0, 0};
     if (is_fixed) return body;
     body.inverse_mass = 1.0 / mass;
     body.inverse_inertia = 2.5 / (mass * radius * radius);
@@ -158,9 +163,9 @@ double approach_of(const PairBody& a, const PairBody& b) {
     return -dot(b.velocity - a.velocity, along) / length(along);
 }
 
-void answer_pair_impacts(const PairContactSettings& law, double resting_speed, std::vector<PairBody>& bodies,
+void answer_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
                          std::span<PairContact> contacts) {
-    ImpactProblem(law, resting_speed, bodies, contacts).solve();
+    ImpactProblem(laws, resting_speed, bodies, contacts).solve();
 }
 
 }  // namespace ricochet

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
-#include "ricochet/response/settings.h"
+#include "ricochet/response/pair_materials.h"
 
 namespace ricochet {
 
@@ -19,6 +20,7 @@ struct PairBody {
     double inverse_mass = 0.0;     ///< 1/kg; 0: nothing moves it
     double radius = 0.0;           ///< m, > 0
     double inverse_inertia = 0.0;  ///< 1/(kg m^2)
+    std::uint32_t material = 0;    ///< its number
 };
 
 [[nodiscard]] PairBody pair_body(const Vec3& position, const Vec3& velocity, const Vec3& spin, double mass,
@@ -46,7 +48,7 @@ struct PairContact {
 /// where restitution is 1 and friction 0.
 /// Sources: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988; O. R. Walton, R. L.
 /// Braun, Acta Mechanica 63, 1986 (friction of spheres); R. Tonge et al., ACM TOG 31, 2012 (mass splitting).
-void answer_pair_impacts(const PairContactSettings& law, double resting_speed, std::vector<PairBody>& bodies,
+void answer_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
                          std::span<PairContact> contacts);
 
 }  // namespace ricochet

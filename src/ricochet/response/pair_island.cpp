@@ -312,7 +312,7 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
     std::erase_if(contacts,
                   [&](const PairContact& c) { return before[c.first].position == before[c.second].position; });
     if (!contacts.empty()) {
-        answer_pair_impacts(settings_, response_.rules().settings.resting_speed, bodies, contacts);
+        answer_pair_impacts(materials_, response_.rules().settings.resting_speed, bodies, contacts);
         for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
         if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
     }
@@ -327,8 +327,10 @@ PairBody PairIsland::body_of(const IslandMember& member) {
     const double radius = member.radius();
     const bool is_fixed = member.is_fixed || member.is_cut_off;
     // A core turns faster, so that its surface moves as fast.
-    return pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
-                     (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
+    PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
+                              (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
+    body.material = member.material;
+    return body;
 }
 
 /// A member goes on from an impact: what touched it is met anew.
@@ -353,7 +355,7 @@ void PairIsland::take_over(std::size_t m, const PairBody& body) {
         member.lists.motions.push_back(part);
     }
     resume(m);
-    if (member.impacts < settings_.impact_budget) return;
+    if (member.impacts < impact_budget_) return;
     member.is_cut_off = true;
     member.outcome.unsimulated_time += member.end - moving.state.time;
     moving.step_end = member.end;
@@ -394,7 +396,8 @@ void PairIsland::record_meeting(std::span<const PairContact> contacts, const std
                                    body.radius,
                                    body.inverse_mass == 0.0,
                                    {body.position, body.velocity, body.spin},
-                                   {after[k].position, after[k].velocity, after[k].spin}});
+                                   {after[k].position, after[k].velocity, after[k].spin},
+                                   body.material});
     }
     for (const PairContact& contact : contacts) {
         meeting.contacts.push_back({contact.first, contact.second, contact.impulse});

@@ -28,11 +28,12 @@ namespace ricochet {
 
 /// A member of an island: in, what it is at the step's begin; out, at its end.
 struct IslandMember {
-    std::size_t particle = 0;  ///< its number in the particles' arrays
-    MovingParticle moving;     ///< at the time moving.state.time
-    double end = 0.0;          ///< s, of its part of the step
-    bool is_fixed = false;     ///< nothing moves it
-    bool is_free = false;      ///< as long as it meets none of the others it certainly touches no wall
+    std::size_t particle = 0;    ///< its number in the particles' arrays
+    MovingParticle moving;       ///< at the time moving.state.time
+    double end = 0.0;            ///< s, of its part of the step
+    bool is_fixed = false;       ///< nothing moves it
+    bool is_free = false;        ///< as long as it meets none of the others it certainly touches no wall
+    std::uint32_t material = 0;  ///< its number among PairMaterials
     // Out:
     MoveOutcome outcome{};
     MoveLists lists{};
@@ -67,8 +68,8 @@ struct ImpactLimit {
 class PairIsland {
 public:
     /// Both must outlive it.
-    PairIsland(const Response& response, const PairContactSettings& settings)
-        : response_(response), settings_(settings) {}
+    PairIsland(const Response& response, const PairMaterials& materials, std::uint32_t impact_budget)
+        : response_(response), materials_(materials), impact_budget_(impact_budget) {}
 
     /// Moves the members to the end of the step. The result does not depend on their order, but for the last bits of
     /// impacts that several of them share. scratch: says what is to be recorded; its lists are used. False where there
@@ -114,7 +115,8 @@ private:
     [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
 
     const Response& response_;
-    const PairContactSettings& settings_;
+    const PairMaterials& materials_;
+    std::uint32_t impact_budget_ = 0;  // of a member in a step
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;

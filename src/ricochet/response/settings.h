@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/integrator.h"
@@ -53,13 +55,34 @@ enum class PairMethod {
     contacts,   ///< all contacts of a step at once
 };
 
-/// What spheres do when they meet each other.
-struct PairContactSettings {
+/// What two spheres do to each other where they touch.
+struct PairMaterial {
     double restitution = 1.0;       ///< speed of parting over speed of approach along the normal, 0..1
     double friction = 0.0;          ///< Coulomb coefficient, >= 0
     double rolling_friction = 0.0;  ///< resisting moment over reduced radius times normal impulse, >= 0
+};
+
+/// What spheres of two materials do to each other, in either order; of one material, where both names are the same.
+struct MaterialPair {
+    std::string first;
+    std::string second;
+    PairMaterial material{};
+};
+
+/// Name of the column of a particle's material, a number in PairContactSettings::materials; to be declared, with one
+/// component, where there are materials.
+inline constexpr std::string_view kMaterialAttribute = "material";
+
+/// What spheres do when they meet each other.
+struct PairContactSettings {
+    // As of PairMaterial, of all pairs that are not in `pairs`.
+    double restitution = 1.0;
+    double friction = 0.0;
+    double rolling_friction = 0.0;
     PairMethod method = PairMethod::automatic;
-    std::uint32_t impact_budget = 1000;  ///< impacts on other spheres per particle and step, >= 1
+    std::uint32_t impact_budget = 1000;       ///< impacts on other spheres per particle and step, >= 1
+    std::vector<std::string> materials = {};  ///< names; none: all spheres are of one
+    std::vector<MaterialPair> pairs = {};     ///< of two of the materials each, in either order at most once
 };
 
 /// What a wall does to a particle that a flow carries into it, by the names in scenes.

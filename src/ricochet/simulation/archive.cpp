@@ -13,6 +13,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/pair_materials.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
@@ -94,6 +95,13 @@ std::uint64_t Simulation::Impl::settings_hash() const {
     if (options.particle_contacts) {
         const PairContactSettings& p = *options.particle_contacts;
         add(p.restitution, p.friction, p.rolling_friction, p.method, p.impact_budget);
+        const PairMaterials all(p);
+        for (std::uint32_t a = 0; a < p.materials.size(); ++a) {
+            for (std::uint32_t b = 0; b <= a; ++b) {
+                const PairMaterial& pair = all.of(a, b);
+                add(pair.restitution, pair.friction, pair.rolling_friction);
+            }
+        }
     }
     for (const Material& m : materials) {
         add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.spinning_friction, m.diffuse,
@@ -158,6 +166,7 @@ void Simulation::Impl::require_sound_state() const {
                 "a particle that moves and is nowhere");
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
+        require(!pairs || pairs->has_material(i), "a particle of no material");
     }
     for (const DrivenBody& body : driven.bodies()) {
         require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),

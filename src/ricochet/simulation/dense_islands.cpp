@@ -36,9 +36,8 @@ void keep_way(IslandMember& member, const ForceInput& from, const std::vector<Fl
 }  // namespace
 
 bool DenseIslands::begins_dense(const std::vector<IslandMember>& members) const {
-    const PairContactSettings& settings = parts_.settings;
     if (!parts_.may_be_dense() || members.size() < 2) return false;
-    if (settings.restitution < 1.0 && members.size() > kMostInFreeIsland) return true;
+    if (parts_.materials.loses_energy() && members.size() > kMostInFreeIsland) return true;
     return contacts_.memory().has_pair_of(members.begin(), members.end(),
                                           [](const IslandMember& member) { return member.moving.id; });
 }
@@ -49,18 +48,14 @@ ImpactLimit DenseIslands::impacts_before(const std::vector<IslandMember>& member
     ImpactLimit limit;
     if (!parts_.may_be_dense()) return limit;
     limit.in_all = kMostImpacts * members.size();
-    if (parts_.settings.method == PairMethod::contacts && parts_.settings.restitution < 1.0) limit.of_each = 1;
+    if (parts_.settings.method == PairMethod::contacts && parts_.materials.loses_energy()) limit.of_each = 1;
     return limit;
 }
 
 /// Islands in parallel have one each.
 std::unique_ptr<DenseIslands::Work> DenseIslands::take_work() {
     const std::lock_guard lock(spare_mutex_);
-    if (spare_.empty()) {
-        const PairContactSettings& law = parts_.settings;
-        return std::make_unique<Work>(parts_.response.rules(),
-                                      PairLaw{law.restitution, law.friction, law.rolling_friction});
-    }
+    if (spare_.empty()) return std::make_unique<Work>(parts_.response.rules(), parts_.materials);
     std::unique_ptr<Work> work = std::move(spare_.back());
     spare_.pop_back();
     return work;
@@ -75,6 +70,7 @@ void DenseIslands::take_members(std::vector<IslandMember>& members, Work& work) 
                                  member.moving.stored_time < member.moving.state.time;
         const bool sleeps = contacts_.sleeps(member.particle);
         work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps});
+        work.members.back().material = member.material;
     }
 }
 

@@ -34,7 +34,7 @@ public:
 private:
     /// What planning an island takes, kept for the next one.
     struct Work {
-        Work(const ResponseRules& rules, const PairLaw& law) : network(rules, law) {}
+        Work(const ResponseRules& rules, const PairMaterials& materials) : network(rules, materials) {}
         NetworkIsland network;
         NeighbourGrid grid;
         std::vector<Box3> boxes;

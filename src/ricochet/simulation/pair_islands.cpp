@@ -84,7 +84,7 @@ void PairIslands::run(const TimeSpan& step) {
     parallel_for_blocks(islands_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
         parts_.mover.prepare(scratch);
-        PairIsland worker(parts_.response, parts_.settings);
+        PairIsland worker(parts_.response, parts_.materials, parts_.settings.impact_budget);
         for (std::size_t n = begin; n < end; ++n) {
             Island& island = islands_[n];
             if (!island.members.empty()) continue;  // as before
@@ -120,6 +120,7 @@ void PairIslands::take_members(Island& island, const TimeSpan& step) {
         auto member = parts_.mover.member_of(first_ + k, step);
         if (!member) continue;
         member->is_fixed = member->is_fixed || contacts_.sleeps(first_ + k);
+        member->material = parts_.material_of(first_ + k);
         island.members.push_back(std::move(*member));
     }
 }

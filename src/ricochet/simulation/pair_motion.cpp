@@ -1,6 +1,7 @@
 #include "ricochet/simulation/pair_motion.h"
 
 #include <algorithm>
+#include <string>
 
 #include "ricochet/core/parallel.h"
 
@@ -11,6 +12,31 @@ namespace {
 constexpr std::size_t kBlock = 16;
 
 }  // namespace
+
+bool PairMotion::has_material(std::size_t particle) const {
+    if (!parts_.material_column) return true;
+    return is_material(parts_.store.particles().attributes.value(*parts_.material_column, particle),
+                       parts_.materials.count());
+}
+
+verify::PairBooks PairMotion::books() const {
+    const PairContactSettings& settings = parts_.settings;
+    const ResponseRules& rules = parts_.response.rules();
+    verify::PairBooks books{settings.restitution, settings.friction, settings.rolling_friction,
+                            rules.settings.resting_speed, rules.forces.is_uniform()};
+    books.materials = settings.materials.size();
+    for (const std::string& a : settings.materials) {
+        for (const std::string& b : settings.materials) {
+            PairMaterial found{settings.restitution, settings.friction, settings.rolling_friction};
+            for (const MaterialPair& pair : settings.pairs) {
+                const bool is_it = (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
+                if (is_it) found = pair.material;
+            }
+            books.by_materials.push_back({found.restitution, found.friction, found.rolling_friction});
+        }
+    }
+    return books;
+}
 
 void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;

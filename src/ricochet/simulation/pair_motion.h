@@ -13,6 +13,7 @@
 #include "ricochet/simulation/pair_islands.h"
 #include "ricochet/simulation/pair_parts.h"
 #include "ricochet/simulation/pair_plans.h"
+#include "ricochet/verify/pair_books.h"
 
 namespace ricochet {
 
@@ -39,8 +40,13 @@ public:
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
     /// The same for the verifier, where there is one.
     [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
+    /// What it holds them against.
+    [[nodiscard]] verify::PairBooks books() const;
     /// Islands that were dense and not solved to the tolerance, in all steps.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
+
+    /// Its attribute is the number of a material, or there are none.
+    [[nodiscard]] bool has_material(std::size_t particle) const;
 
     /// Wakes all spheres that sleep on others, at a time, s: what holds them may change.
     void wake_all(double time) { contacts_.wake_all(time); }

@@ -216,7 +216,9 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
     impl().require_between_steps();
     impl().share.require_alone("add_particles");
     for (std::size_t k = 0; k < particles.size(); ++k) {
-        validate(particles[k], k, impl().particles().attributes.columns().size());
+        const auto columns = impl().particles().attributes.columns();
+        validate(particles[k], k, columns.size());
+        if (options().particle_contacts) validate_material(particles[k], k, *options().particle_contacts, columns);
     }
     const std::uint64_t most = options().most_particles;
     const std::uint64_t room = room_below(most, impl().store.size());

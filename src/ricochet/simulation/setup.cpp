@@ -137,6 +137,16 @@ std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, 
     return offspring;
 }
 
+/// Null where spheres do not meet.
+std::unique_ptr<PairMotion> make_pairs(const SimulationOptions& options, ParticleStore& store, QuerySchedule& schedule,
+                                       ActiveMover& mover, const Response& response) {
+    if (!options.particle_contacts) return nullptr;
+    const PairContactSettings& settings = *options.particle_contacts;
+    PairParts parts{store, schedule, mover, response, settings, PairMaterials(settings)};
+    if (!settings.materials.empty()) parts.material_column = store.particles().attributes.find(kMaterialAttribute);
+    return std::make_unique<PairMotion>(parts);
+}
+
 /// Null where nothing changes temperatures.
 std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const ParticleStore& store,
                                      const ForceField& forces, const MovingColliders* bodies) {
@@ -263,9 +273,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
              heat ? heat->meter() : nullptr}),
-      pairs(options.particle_contacts
-                ? std::make_unique<PairMotion>(PairParts{store, schedule, mover, *response, *options.particle_contacts})
-                : nullptr),
+      pairs(make_pairs(options, store, schedule, mover, *response)),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
     if (bodies) {

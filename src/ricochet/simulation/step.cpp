@@ -225,10 +225,7 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     statistics.overlap_largest = std::max(statistics.overlap_largest, pairs->counts().largest_overlap);
     recorder.add_pair_impacts(pairs->impacts());
     if (!check) return;
-    const PairContactSettings& law = *options.particle_contacts;
-    const verify::PairBooks books{law.restitution, law.friction, law.rolling_friction, options.resting_speed,
-                                  forces.is_uniform()};
-    recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), books));
+    recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), pairs->books()));
 }
 
 void Simulation::Impl::check_spheres(double begin, double end) {

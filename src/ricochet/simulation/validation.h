@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "ricochet/simulation.h"
@@ -19,6 +20,12 @@ void validate_together(const SimulationSetup& setup);
 
 /// What changes temperatures: its values, and what it needs of particles and of what moves them.
 void validate_heat(const SimulationSetup& setup);
+
+/// What spheres do when they meet, their materials, and what else there is.
+void validate_particle_contacts(const SimulationSetup& setup);
+/// Whether a particle is of one of the materials; columns: of its attributes.
+void validate_material(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
+                       std::span<const AttributeDescription> columns);
 
 /// A particle, by its number among those that are given; columns: how many attributes particles have.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);

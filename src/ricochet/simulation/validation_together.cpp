@@ -85,33 +85,6 @@ void validate_moving_colliders(const SimulationSetup& setup) {
     }
 }
 
-/// Spheres that meet each other, and what does not know them.
-void validate_particle_contacts(const SimulationSetup& setup) {
-    if (!setup.options.particle_contacts) return;
-    const PairContactSettings& contacts = *setup.options.particle_contacts;
-    const Subject subject("particle_contacts");
-    subject.require_in(contacts.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
-    subject.require_not_negative(contacts.friction, "friction", "");
-    subject.require_not_negative(contacts.rolling_friction, "rolling_friction", "");
-    if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
-    if (setup.options.response != ResponseKind::exact) {
-        subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
-    }
-    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
-    if (!setup.springs.empty() || setup.solver) {
-        subject.refuse("springs", "particles that act on each other", "none beside spheres that meet");
-    }
-    if (!setup.bodies.empty()) {
-        subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
-    }
-    const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
-                                   [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
-    if (moves && kicks_first(setup.options.integrator.kind)) {
-        subject.refuse("integrator", name_of(setup.options.integrator.kind),
-                       "another one where colliders move: its kick would be given twice");
-    }
-}
-
 /// Bodies that impulses move, and what cannot be together with them.
 void validate_bodies(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.bodies.size(); ++k) {

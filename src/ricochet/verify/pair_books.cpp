@@ -63,6 +63,16 @@ private:
         return size(wide(first(contact).before.velocity)) + size(wide(second(contact).before.velocity));
     }
 
+    [[nodiscard]] PairBooks::Pair law(const MetContact& contact) const {
+        if (books_.materials == 0) return {books_.restitution, books_.friction, books_.rolling_friction};
+        return books_.by_materials[first(contact).material * books_.materials + second(contact).material];
+    }
+    template <class Holds>
+    [[nodiscard]] bool holds_for_all(const Holds& holds) const {
+        return std::all_of(meeting_.contacts.begin(), meeting_.contacts.end(),
+                           [&](const MetContact& contact) { return holds(law(contact)); });
+    }
+
     [[nodiscard]] bool is_apart(const MetContact& contact) const {
         const MetSphere& a = first(contact);
         const MetSphere& b = second(contact);
@@ -84,7 +94,7 @@ private:
         const Long push = product(impulse, n);
         const Long drag = size(impulse - push * n);
         const Long rounding = kPairBooks * size(impulse);
-        return !(push >= -rounding) || !(drag <= books_.friction * push + rounding);
+        return !(push >= -rounding) || !(drag <= law(contact).friction * push + rounding);
     }
 
     [[nodiscard]] Long departure(const MetContact& contact, bool is_after) const {
@@ -92,16 +102,24 @@ private:
         return product(velocity(second(contact)) - velocity(first(contact)), normal(contact));
     }
 
+    [[nodiscard]] bool rubs() const {
+        return !holds_for_all([](const PairBooks::Pair& pair) { return pair.friction == 0.0; });
+    }
+    [[nodiscard]] bool resists_rolling() const {
+        return !holds_for_all([](const PairBooks::Pair& pair) { return pair.rolling_friction == 0.0; });
+    }
+
     /// One by itself parts with the restitution's speed, one of several that do not rub with no less.
     [[nodiscard]] bool rebounds_otherwise(const MetContact& contact) const {
         const Long approach = -departure(contact, false);
         const Long rounding = kPairBooks * speeds(contact);
-        Long target = books_.restitution * approach;
+        const double restitution = law(contact).restitution;
+        Long target = restitution * approach;
         const bool is_alone = meeting_.contacts.size() == 1;
-        if (approach <= rounding || (!is_alone && books_.friction > 0.0)) return false;
+        if (approach <= rounding || (!is_alone && rubs())) return false;
         if (first(contact).is_fixed && second(contact).is_fixed) return true;
-        if (books_.restitution < 1.0 && std::fabs(target - books_.resting_speed) <= rounding) return false;
-        if (books_.restitution < 1.0 && target < books_.resting_speed) target = 0;
+        if (restitution < 1.0 && std::fabs(target - books_.resting_speed) <= rounding) return false;
+        if (restitution < 1.0 && target < books_.resting_speed) target = 0;
         const Long more = departure(contact, true) - target;
         const Long allowed = is_alone ? rounding : 1000 * rounding;
         return is_alone ? !(std::fabs(more) <= allowed) : !(more >= -allowed);
@@ -111,6 +129,7 @@ private:
         LongVec turning;
         Long turning_scale = 0;
         bool has_fixed = false;
+        const bool is_resisted = resists_rolling();
         for (std::size_t k = 0; k < meeting_.spheres.size(); ++k) {
             const MetSphere& sphere = meeting_.spheres[k];
             LongVec given;
@@ -132,7 +151,7 @@ private:
             const LongVec spin_after = inertia(sphere) * wide(sphere.after.spin);
             const LongVec off = spin_after - spin_before - turned;
             const Long off_scale = sphere.radius * scale + size(spin_before) + size(spin_after);
-            if (books_.rolling_friction == 0.0 && !(size(off) <= kPairAngularBooks * off_scale)) return true;
+            if (!is_resisted && !(size(off) <= kPairAngularBooks * off_scale)) return true;
             turning = turning + off;
             turning_scale += off_scale;
         }
@@ -150,7 +169,8 @@ private:
         }
         const Long rounding = kPairBooks * (before + after);
         if (!(after - before <= rounding)) return true;
-        const bool keeps = books_.restitution == 1.0 && books_.friction == 0.0 && books_.rolling_friction == 0.0;
+        const bool keeps = !rubs() && !resists_rolling() &&
+                           holds_for_all([](const PairBooks::Pair& pair) { return pair.restitution == 1.0; });
         return keeps && !(before - after <= rounding);
     }
 

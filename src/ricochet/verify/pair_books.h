@@ -4,6 +4,9 @@
 /// those before, that no energy was gained, and that none was lost where nothing takes any.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "ricochet/core/pair_meeting.h"
 
 namespace ricochet::verify {
@@ -22,6 +25,14 @@ struct PairBooks {
     double resting_speed = 0.0;  ///< m/s: with a restitution below 1 a slower rebound is none
     bool has_exact_paths =
         true;  ///< they are the parabolas of a uniform force: at the impact spheres touch to rounding
+    /// What spheres of two materials do instead: `materials` lists of as many, by the numbers of both.
+    struct Pair {
+        double restitution = 1.0;
+        double friction = 0.0;
+        double rolling_friction = 0.0;
+    };
+    std::size_t materials = 0;  ///< 0: all are of one
+    std::vector<Pair> by_materials = {};
 };
 
 /// True where something is wrong with it.

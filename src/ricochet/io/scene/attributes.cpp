@@ -145,6 +145,19 @@ void build_declared(const SceneContext& context, const NamedObject& named, Simul
     setup.attributes.push_back(std::move(attribute));
 }
 
+/// Where spheres that meet are of several.
+void declare_material(const SceneContext& context, SimulationSetup& setup) {
+    if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) return;
+    if (find_declared(setup, kMaterialAttribute) != nullptr) {
+        context.error(
+            context.root(), "attributes",
+            "declares \"material\", which is the number of one of particle_contacts' materials here, expected "
+            "another name");
+        return;
+    }
+    setup.attributes.push_back({std::string(kMaterialAttribute), 1, {}});
+}
+
 LifeCurve scalar_curve(const SceneContext& context, const ObjectView& view, std::string name, bool of_lifetime) {
     const KeyedCurve<double> curve = number_curve_of(view, context.diagnostics());
     std::vector<CurveKey<Vec3>> keys;
@@ -232,6 +245,8 @@ std::vector<KeySpec> emitter_look_keys() {
          LowEnd{kNotNegative}, Without{"particle_radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
          Without{"their defaults"}},
+        {"material", ValueType::text, "Of which of `particle_contacts.materials` the particles are.",
+         Without{"the parent's, else the first"}},
         {"over_life", ValueType::object, "Factors over the lifetime; keys from 0 (birth) to 1 (end of life).",
          &life_curves_spec(), Without{"none"}},
         {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
@@ -246,12 +261,14 @@ std::vector<KeySpec> particle_look_keys() {
          Without{"1 where others have one"}},
         {"size", ValueType::number, kLengthOrZero, "m", "Radius that is drawn.", Without{"its radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "",
-         "Values of the scene's `attributes`, by name; no spread.", Without{"their defaults"}}};
+         "Values of the scene's `attributes`, by name; no spread.", Without{"their defaults"}},
+        {"material", ValueType::text, "Of which of `particle_contacts.materials` it is.", Without{"the first"}}};
     return {fields.begin(), fields.end()};
 }
 
 void build_attributes(const SceneContext& context, SimulationSetup& setup) {
     for (const NamedObject& named : context.root().named_objects("attributes")) build_declared(context, named, setup);
+    declare_material(context, setup);
     for (const ObjectView& view : context.objects("emitters")) {
         for (const Look& look : kEmitterLooks) declare_used(view, look, setup);
         for (const char* const key : {"over_life", "over_age"}) {
@@ -280,6 +297,9 @@ void read_looks(const SceneContext& context, const SimulationSetup& setup, const
         emitter.attributes.push_back(std::move(*spread));
         return true;
     });
+    if (const auto material = material_of(context, setup, view)) {
+        emitter.attributes.push_back({std::string(kMaterialAttribute), *material, {}});
+    }
     read_curves(context, setup, view, "over_life", emitter);
     read_curves(context, setup, view, "over_age", emitter);
 }
@@ -300,6 +320,9 @@ std::vector<AttributeValue> particle_values(const SceneContext& context, const S
         if (value) set(&attribute, *value);
         return value.has_value();
     });
+    if (const auto material = material_of(context, setup, view)) {
+        set(find_declared(setup, kMaterialAttribute), *material);
+    }
     return values;
 }
 

@@ -158,55 +158,6 @@ const ObjectSpec& bounds_spec() {
     return spec;
 }
 
-const ObjectSpec& particle_contacts_spec() {
-    using P = PairContactSettings;
-    static const ObjectSpec spec = object<P>(
-        "particle contacts", "What spheres do when they meet each other.",
-        {{"restitution", &P::restitution, kFraction, "", "Speed of parting over speed of approach along the normal."},
-         {"friction", &P::friction, kNotNegative, "", "Coulomb coefficient between spheres."},
-         {"rolling_friction", &P::rolling_friction, kNotNegative, "",
-          "Moment that resists turning relative to each other, over the reduced radius times the normal impulse."},
-         {"method", &P::method, "How spheres that meet are moved.",
-          Choices{
-              choice(PairMethod::automatic, "auto",
-                     "impact by impact, and as `contacts` where spheres press on each other or one impact would "
-                     "follow another"),
-              choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-              choice(PairMethod::contacts, "contacts",
-                     "all contacts of a step at once, with its length as the error, but for spheres that meet alone")}},
-         {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
-          "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the rest of "
-          "the step, and the time left out is counted."}});
-    return spec;
-}
-
-/// Spheres that meet each other: what does not go together with them is refused where it stands.
-void build_particle_contacts(const SceneContext& context, SimulationSetup& setup) {
-    if (!context.root().has("particle_contacts")) return;
-    const ObjectView view = context.root().object("particle_contacts");
-    setup.options.particle_contacts = view.read<PairContactSettings>();
-    const auto refuse = [&](bool refused, std::string_view what) {
-        if (refused)
-            context.error(context.root(), "particle_contacts", fmt::format("does not go together with {}", what));
-    };
-    refuse(setup.options.response != ResponseKind::exact,
-           fmt::format("the response \"{}\", expected \"exact\"", name_of(setup.options.response)));
-    refuse(setup.options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
-    refuse(!setup.springs.empty(), "springs, expected none");
-    refuse(!setup.bodies.empty(),
-           "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out particle_contacts");
-    const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
-    const auto emits_points = [](const EmitterDescription& emitter) {
-        return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
-    };
-    const bool has_particles = !setup.particles.empty() || !setup.emitters.empty();
-    if (has_particles && std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
-        std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points)) {
-        context.warn(context.root(), "particle_contacts",
-                     "all particles are points, which never meet: it does nothing; give them a radius");
-    }
-}
-
 const ObjectSpec& reference_camera_spec() {
     using C = ReferenceCamera;
     static const ObjectSpec spec = object<C>(
@@ -368,13 +319,14 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_colliders(context, scene.setup, frames);
     build_bodies(context, scene.setup, frames);
     scene.setup.frames = std::make_shared<const FrameTree>(std::move(frames));
+    read_particle_contacts(context, scene.setup.options);
     build_attributes(context, scene.setup);
     build_reference_camera(context, scene.setup);
     build_emitters(context, scene.setup);
     warn_of_walls_along_flows(context, scene.setup);
     build_particles(context, scene.setup);
     build_springs(context, scene.setup);
-    build_particle_contacts(context, scene.setup);
+    check_particle_contacts(context, scene.setup);
     build_particle_forces(context, scene.setup);
     build_heat(context, forces, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);

@@ -93,6 +93,7 @@ private:
 [[nodiscard]] const ObjectSpec& force_spec();
 [[nodiscard]] const ObjectSpec& particle_force_spec();
 [[nodiscard]] const ObjectSpec& heat_spec();
+[[nodiscard]] const ObjectSpec& particle_contacts_spec();
 [[nodiscard]] const ObjectSpec& material_spec();
 [[nodiscard]] const ObjectSpec& collider_spec();
 [[nodiscard]] const ObjectSpec& frame_spec();
@@ -208,6 +209,14 @@ void build_emitters(SceneContext& context, SimulationSetup& setup);
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);
 void build_particles(SceneContext& context, SimulationSetup& setup);
+/// What spheres do when they meet; before the attributes, which hold their materials.
+void read_particle_contacts(const SceneContext& context, SimulationOptions& options);
+/// After the springs: refuses what does not go together with spheres that meet.
+void check_particle_contacts(const SceneContext& context, const SimulationSetup& setup);
+/// The value of kMaterialAttribute that an emitter's or a particle's key "material" says; nothing where it has none, or
+/// after reporting.
+[[nodiscard]] std::optional<AttributeValue> material_of(const SceneContext& context, const SimulationSetup& setup,
+                                                        const ObjectView& view);
 /// After the attributes, bodies and emitters.
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
 /// After all else of the setup.

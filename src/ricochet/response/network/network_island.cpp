@@ -87,11 +87,12 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         if (a.is_asleep || b.is_asleep) contact.gap = std::max(0.0, contact.gap);
         if (contact.gap > a.reach + b.reach) continue;
         contact.normal = apart / distance;
-        contact.friction = law_.friction;
-        contact.rolling_friction = law_.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
+        const PairMaterial& law = materials_.of(a.material, b.material);
+        contact.friction = law.friction;
+        contact.rolling_friction = law.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
         const Vec3 arriving = velocity_of(a) - velocity_of(b);
         const double approach = -dot(arriving, contact.normal);
-        contact.restitution = rebound(law_.restitution, approach);
+        contact.restitution = rebound(law.restitution, approach);
         warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id), memory);
     }
 }

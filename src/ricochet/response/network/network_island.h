@@ -12,26 +12,21 @@
 #include "ricochet/response/network/network_solver.h"
 #include "ricochet/response/network/planned_move.h"
 #include "ricochet/response/network/wall_contacts.h"
+#include "ricochet/response/pair_materials.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
 
-/// What spheres do to each other.
-struct PairLaw {
-    double restitution = 1.0;       ///< 0..1
-    double friction = 0.0;          ///< Coulomb's coefficient
-    double rolling_friction = 0.0;  ///< moment over reduced radius times normal impulse
-};
-
 /// One of the spheres.
 struct NetworkMember {
     MovingParticle* moving = nullptr;
-    double radius = 0.0;       ///< m, as others meet it
-    bool is_fixed = false;     ///< nothing moves it
-    double duration = 0.0;     ///< s, of its part of the step
-    bool is_squeezed = false;  ///< surfaces that close on it have stopped its clock: others find it where it is
-    bool is_asleep = false;    ///< fixed as long as it sleeps: what overlaps it is not parted from it
-    double reach = 0.0;        ///< m, how far beside its surface its contacts are looked for
+    double radius = 0.0;         ///< m, as others meet it
+    bool is_fixed = false;       ///< nothing moves it
+    double duration = 0.0;       ///< s, of its part of the step
+    bool is_squeezed = false;    ///< surfaces that close on it have stopped its clock: others find it where it is
+    bool is_asleep = false;      ///< fixed as long as it sleeps: what overlaps it is not parted from it
+    double reach = 0.0;          ///< m, how far beside its surface its contacts are looked for
+    std::uint32_t material = 0;  ///< its number among PairMaterials
     // Out:
     MoveOutcome outcome{};
 
@@ -43,8 +38,8 @@ struct NetworkMember {
 /// to the next.
 class NetworkIsland {
 public:
-    /// rules must outlive it.
-    NetworkIsland(const ResponseRules& rules, const PairLaw& law) : rules_(rules), law_(law) {}
+    /// Both must outlive it.
+    NetworkIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 
     /// m, for a first plan: as far as a member comes by itself, and more.
     [[nodiscard]] double first_reach(const NetworkMember& member) const;
@@ -84,7 +79,7 @@ private:
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
 
     const ResponseRules& rules_;
-    PairLaw law_;
+    const PairMaterials& materials_;
     double duration_ = 0.0;
     std::vector<NetworkBody> bodies_;
     std::vector<NetworkContact> contacts_;

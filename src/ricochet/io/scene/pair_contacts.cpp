@@ -1,0 +1,172 @@
+// Spheres that meet each other: what they do then, by pair of materials, and what does not go together with them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+// What is left out is that of all spheres.
+constexpr Without kOfAll{"that of all spheres"};
+constexpr std::string_view kRestitution = "Speed of parting over speed of approach along the normal.";
+constexpr std::string_view kFriction = "Coulomb coefficient between spheres.";
+constexpr std::string_view kRolling =
+    "Moment that resists turning relative to each other, over the reduced radius times the normal impulse.";
+
+Fields<PairMaterial> material_fields() {
+    using P = PairMaterial;
+    return {{"restitution", &P::restitution, kFraction, "", kRestitution, kOfAll},
+            {"friction", &P::friction, kNotNegative, "", kFriction, kOfAll},
+            {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling, kOfAll}};
+}
+
+const ObjectSpec& own_material_spec() {
+    static const ObjectSpec spec =
+        object<PairMaterial>("sphere material", "What spheres of this material do to each other.", material_fields());
+    return spec;
+}
+
+const ObjectSpec& material_pair_spec() {
+    static const ObjectSpec spec = [] {
+        const Fields<Unbound> names = {{"first", ValueType::text, "One of the materials.", kRequired},
+                                       {"second", ValueType::text, "Another one, or the same.", kRequired}};
+        ObjectSpec result = object<PairMaterial>("pair of materials", "What spheres of two materials do to each other.",
+                                                 material_fields());
+        result.keys.insert(result.keys.begin(), names.begin(), names.end());
+        return result;
+    }();
+    return spec;
+}
+
+/// What stands there, and else what is so for all.
+PairMaterial material_at(const ObjectView& view, const PairContactSettings& all) {
+    auto material = view.read<PairMaterial>();
+    if (!view.has("restitution")) material.restitution = all.restitution;
+    if (!view.has("friction")) material.friction = all.friction;
+    if (!view.has("rolling_friction")) material.rolling_friction = all.rolling_friction;
+    return material;
+}
+
+void read_pairs(const SceneContext& context, const ObjectView& view, PairContactSettings& settings) {
+    const std::vector<std::string_view> known(settings.materials.begin(), settings.materials.end());
+    std::set<std::pair<std::string, std::string>> taken;
+    for (const MaterialPair& pair : settings.pairs) taken.insert({pair.first, pair.second});
+    for (const ObjectView& pair : view.objects("pairs")) {
+        MaterialPair read{pair.text("first"), pair.text("second"), material_at(pair, settings)};
+        bool is_known = true;
+        for (const char* key : {"first", "second"}) {
+            const std::string name = pair.text(key);
+            if (!pair.has(key) || std::find(known.begin(), known.end(), name) != known.end()) continue;
+            is_known = false;
+            context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
+        }
+        if (!is_known) continue;
+        if (taken.insert(std::minmax(read.first, read.second)).second) {
+            settings.pairs.push_back(std::move(read));
+        } else {
+            context.error(
+                pair, "second",
+                fmt::format("\"{}\" and \"{}\" are there already, expected each pair once", read.first, read.second));
+        }
+    }
+}
+
+}  // namespace
+
+const ObjectSpec& particle_contacts_spec() {
+    using P = PairContactSettings;
+    static const ObjectSpec spec = [] {
+        ObjectSpec result = object<P>(
+            "particle contacts", "What spheres do when they meet each other.",
+            {{"restitution", &P::restitution, kFraction, "", kRestitution},
+             {"friction", &P::friction, kNotNegative, "", kFriction},
+             {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling},
+             {"method", &P::method, "How spheres that meet are moved.",
+              Choices{choice(PairMethod::automatic, "auto",
+                             "impact by impact, and as `contacts` where spheres press on each other or one impact "
+                             "would follow another"),
+                      choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+                      choice(PairMethod::contacts, "contacts",
+                             "all contacts of a step at once, with its length as the error, but for spheres that meet "
+                             "alone")}},
+             {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
+              "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the "
+              "rest "
+              "of the step, and the time left out is counted."}});
+        const Fields<Unbound> materials = {
+            {"materials", ValueType::table,
+             "Materials of spheres by name, and what spheres of one do to each other. Emitters and particles say of "
+             "which they are by `material`; the particles' column `material` is its number, in this order.",
+             &own_material_spec(), Without{"all spheres are of one"}},
+            {"pairs", ValueType::list, "What spheres of two materials do to each other.", &material_pair_spec()}};
+        result.keys.insert(result.keys.end(), materials.begin(), materials.end());
+        return result;
+    }();
+    return spec;
+}
+
+void read_particle_contacts(const SceneContext& context, SimulationOptions& options) {
+    if (!context.root().has("particle_contacts")) return;
+    const ObjectView view = context.root().object("particle_contacts");
+    auto settings = view.read<PairContactSettings>();
+    for (const NamedObject& named : view.named_objects("materials")) {
+        settings.materials.push_back(named.name);
+        settings.pairs.push_back({named.name, named.name, material_at(named.view, settings)});
+    }
+    read_pairs(context, view, settings);
+    options.particle_contacts = std::move(settings);
+}
+
+std::optional<AttributeValue> material_of(const SceneContext& context, const SimulationSetup& setup,
+                                          const ObjectView& view) {
+    if (!view.has("material")) return std::nullopt;
+    const std::string name = view.text("material");
+    if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) {
+        context.error(view, "material",
+                      "only goes together with particle_contacts.materials, which declares what it names; what walls "
+                      "are made of is said at the walls");
+        return std::nullopt;
+    }
+    const std::vector<std::string>& materials = setup.options.particle_contacts->materials;
+    const auto found = std::find(materials.begin(), materials.end(), name);
+    if (found == materials.end()) {
+        context.error(
+            view, "material",
+            unknown_name("material among particle_contacts.materials", name, {materials.begin(), materials.end()}));
+        return std::nullopt;
+    }
+    return AttributeValue{static_cast<double>(found - materials.begin()), 0.0, 0.0};
+}
+
+void check_particle_contacts(const SceneContext& context, const SimulationSetup& setup) {
+    if (!setup.options.particle_contacts) return;
+    const auto refuse = [&](bool refused, std::string_view what) {
+        if (refused)
+            context.error(context.root(), "particle_contacts", fmt::format("does not go together with {}", what));
+    };
+    refuse(setup.options.response != ResponseKind::exact,
+           fmt::format("the response \"{}\", expected \"exact\"", name_of(setup.options.response)));
+    refuse(setup.options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
+    refuse(!setup.springs.empty(), "springs, expected none");
+    refuse(!setup.bodies.empty(),
+           "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out particle_contacts");
+    const auto is_point = [](const Particle& particle) { return particle.radius == 0.0; };
+    const auto emits_points = [](const EmitterDescription& emitter) {
+        return emitter.radius.mean == 0.0 && emitter.radius.spread == 0.0;
+    };
+    const bool has_particles = !setup.particles.empty() || !setup.emitters.empty();
+    if (has_particles && std::all_of(setup.particles.begin(), setup.particles.end(), is_point) &&
+        std::all_of(setup.emitters.begin(), setup.emitters.end(), emits_points)) {
+        context.warn(context.root(), "particle_contacts",
+                     "all particles are points, which never meet: it does nothing; give them a radius");
+    }
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,33 @@
+#include "ricochet/response/pair_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "ricochet/core/error.h"
+
+namespace ricochet {
+namespace {
+
+std::size_t number_of(const std::vector<std::string>& materials, const std::string& name) {
+    const auto found = std::find(materials.begin(), materials.end(), name);
+    if (found == materials.end()) throw InputError(fmt::format("particle_contacts: no material is named '{}'", name));
+    return static_cast<std::size_t>(found - materials.begin());
+}
+
+}  // namespace
+
+PairMaterials::PairMaterials(const PairContactSettings& settings)
+    : count_(std::max<std::size_t>(1, settings.materials.size())),
+      table_(count_ * count_, PairMaterial{settings.restitution, settings.friction, settings.rolling_friction}) {
+    for (const MaterialPair& pair : settings.pairs) {
+        const std::size_t a = number_of(settings.materials, pair.first);
+        const std::size_t b = number_of(settings.materials, pair.second);
+        table_[a * count_ + b] = table_[b * count_ + a] = pair.material;
+    }
+    loses_energy_ =
+        std::any_of(table_.begin(), table_.end(), [](const PairMaterial& pair) { return pair.restitution < 1.0; });
+}
+
+}  // namespace ricochet

@@ -1,0 +1,39 @@
+/// \file
+/// Private to the responses: what spheres of any two materials do to each other, by the numbers of the materials.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/response/settings.h"
+
+namespace ricochet {
+
+/// A value of kMaterialAttribute that is the number of one of so many materials.
+[[nodiscard]] inline bool is_material(const AttributeValue& value, std::size_t materials) {
+    return value.x >= 0.0 && value.x < static_cast<double>(materials) && value.x == std::floor(value.x);
+}
+
+/// A table for all pairs; of one entry where there are no materials.
+class PairMaterials {
+public:
+    /// Names of pairs that are none of the materials are InputErrors.
+    explicit PairMaterials(const PairContactSettings& settings);
+
+    /// Of two numbers below count().
+    [[nodiscard]] const PairMaterial& of(std::uint32_t a, std::uint32_t b) const { return table_[a * count_ + b]; }
+    /// Materials; 1 where all spheres are of one.
+    [[nodiscard]] std::size_t count() const { return count_; }
+    /// Some impacts take energy along the normal.
+    [[nodiscard]] bool loses_energy() const { return loses_energy_; }
+
+private:
+    std::size_t count_ = 1;
+    std::vector<PairMaterial> table_;
+    bool loses_energy_ = false;
+};
+
+}  // namespace ricochet

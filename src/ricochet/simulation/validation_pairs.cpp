@@ -1,0 +1,120 @@
+// Spheres that meet each other: what they do to each other, their materials, and what does not know them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "ricochet/response/pair_materials.h"
+#include "ricochet/simulation/subject.h"
+#include "ricochet/simulation/validation.h"
+
+namespace ricochet {
+namespace {
+
+/// Names of their own, so that scenes stay readable in a table.
+constexpr std::size_t kMostMaterials = 1000;
+
+void require_material(const Subject& subject, const PairMaterial& material) {
+    subject.require_in(material.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
+    subject.require_not_negative(material.friction, "friction", "");
+    subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
+}
+
+void validate_names(const PairContactSettings& contacts, const Subject& subject) {
+    if (contacts.materials.size() > kMostMaterials) {
+        subject.refuse("materials", contacts.materials.size(), fmt::format("at most {}", kMostMaterials));
+    }
+    std::set<std::string> taken;
+    for (const std::string& name : contacts.materials) {
+        if (name.empty() || !taken.insert(name).second) {
+            subject.refuse("materials", "\"" + name + "\"", "names, each once");
+        }
+    }
+    std::set<std::pair<std::string, std::string>> pairs;
+    for (const MaterialPair& pair : contacts.pairs) {
+        for (const std::string& name : {pair.first, pair.second}) {
+            if (!taken.contains(name)) subject.refuse("pairs", "\"" + name + "\"", "names of `materials`");
+        }
+        require_material(subject, pair.material);
+        if (pairs.insert(std::minmax(pair.first, pair.second)).second) continue;
+        subject.refuse("pairs", fmt::format("\"{}\" and \"{}\" twice", pair.first, pair.second), "each pair once");
+    }
+}
+
+std::string expected_material(const PairContactSettings& contacts) {
+    return fmt::format("a whole number below {}, of one of particle_contacts' materials", contacts.materials.size());
+}
+
+void validate_column(const SimulationSetup& setup, const Subject& subject) {
+    const PairContactSettings& contacts = *setup.options.particle_contacts;
+    const auto& all = setup.attributes;
+    const auto column = std::find_if(all.begin(), all.end(),
+                                     [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
+    if (column == all.end()) {
+        subject.refuse("attributes", "none that is named \"material\"",
+                       "it to be declared: it says of which of `materials` a particle is");
+    }
+    if (column->components != 1) subject.refuse("attribute \"material\"", "a vector", "one component");
+    if (!is_material(column->fallback, contacts.materials.size())) {
+        subject.refuse("default of the attribute \"material\"", column->fallback.x, expected_material(contacts));
+    }
+    for (std::size_t k = 0; k < setup.particles.size(); ++k) validate_material(setup.particles[k], k, contacts, all);
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        for (const AttributeSpread& value : emitter.attributes) {
+            if (value.name != kMaterialAttribute) continue;
+            if (is_material(value.mean, contacts.materials.size()) && value.spread.x == 0.0) continue;
+            Subject("emitter", k, emitter.name)
+                .refuse("material", fmt::format("{:g} +- {:g}", value.mean.x, value.spread.x),
+                        expected_material(contacts) + ", without a spread");
+        }
+    }
+}
+
+/// What does not know spheres that meet.
+void validate_company(const SimulationSetup& setup, const Subject& subject) {
+    if (setup.options.response != ResponseKind::exact) {
+        subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
+    }
+    if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
+    if (!setup.springs.empty() || setup.solver) {
+        subject.refuse("springs", "particles that act on each other", "none beside spheres that meet");
+    }
+    if (!setup.bodies.empty()) {
+        subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
+    }
+    const bool moves = std::any_of(setup.colliders.begin(), setup.colliders.end(),
+                                   [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+    if (moves && kicks_first(setup.options.integrator.kind)) {
+        subject.refuse("integrator", name_of(setup.options.integrator.kind),
+                       "another one where colliders move: its kick would be given twice");
+    }
+}
+
+}  // namespace
+
+void validate_material(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
+                       std::span<const AttributeDescription> columns) {
+    if (contacts.materials.empty()) return;
+    const auto column = std::find_if(columns.begin(), columns.end(),
+                                     [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
+    const auto k = static_cast<std::size_t>(column - columns.begin());
+    if (k >= particle.attributes.size() || is_missing(particle.attributes[k])) return;
+    if (is_material(particle.attributes[k], contacts.materials.size())) return;
+    Subject("particle", number).refuse("material", particle.attributes[k].x, expected_material(contacts));
+}
+
+void validate_particle_contacts(const SimulationSetup& setup) {
+    if (!setup.options.particle_contacts) return;
+    const PairContactSettings& contacts = *setup.options.particle_contacts;
+    const Subject subject("particle_contacts");
+    require_material(subject, {contacts.restitution, contacts.friction, contacts.rolling_friction});
+    if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
+    validate_names(contacts, subject);
+    if (!contacts.materials.empty()) validate_column(setup, subject);
+    validate_company(setup, subject);
+}
+
+}  // namespace ricochet

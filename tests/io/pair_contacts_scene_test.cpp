@@ -1,0 +1,75 @@
+// What a scene says of spheres that meet and their materials: what each key makes, and what is refused with a line.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/scene_errors.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/simulation.h"
+
+namespace ricochet {
+namespace {
+
+using test::errors_of;
+using test::Lines;
+
+std::string scene_with(const std::string& contacts, const std::string& ball = "", const std::string& more = "") {
+    return R"({"ricochet": 1, "particle_contacts": {)" + contacts + "}, " + more +
+           R"("particles": [{"position": [0, 0, 1], "radius": 0.01)" + ball + "}]}";
+}
+
+const char* const kMaterials = R"("restitution": 0.6, "friction": 0.2,
+    "materials": {"steel": {"restitution": 0.9}, "glass": {}},
+    "pairs": [{"first": "glass", "second": "steel", "friction": 0.4, "rolling_friction": 0.01}])";
+
+TEST(PairContactsScene, WhatAPairLeavesOutIsThatOfAllSpheres) {
+    const SimulationSetup setup = parse_scene(scene_with(kMaterials, R"(, "material": "glass")"), "s.json").setup;
+    const PairContactSettings& contacts = setup.options.particle_contacts.value();
+    EXPECT_EQ(contacts.materials, (std::vector<std::string>{"steel", "glass"}));
+    ASSERT_EQ(contacts.pairs.size(), 3U);
+    EXPECT_EQ(contacts.pairs[0].first + contacts.pairs[0].second, "steelsteel");
+    EXPECT_EQ(contacts.pairs[0].material.restitution, 0.9);
+    EXPECT_EQ(contacts.pairs[0].material.friction, 0.2);
+    EXPECT_EQ(contacts.pairs[1].material.restitution, 0.6);
+    EXPECT_EQ(contacts.pairs[2].first + contacts.pairs[2].second, "glasssteel");
+    EXPECT_EQ(contacts.pairs[2].material.restitution, 0.6);
+    EXPECT_EQ(contacts.pairs[2].material.friction, 0.4);
+    EXPECT_EQ(contacts.pairs[2].material.rolling_friction, 0.01);
+    ASSERT_EQ(setup.attributes.size(), 1U);
+    EXPECT_EQ(setup.attributes[0].name, kMaterialAttribute);
+    EXPECT_EQ(setup.particles[0].attributes[0].x, 1.0);
+}
+
+TEST(PairContactsScene, EmittersNameTheMaterialOfWhatTheyEmit) {
+    SimulationSetup setup = parse_scene(scene_with(kMaterials, "",
+                                                   R"("emitters": [{"type": "point", "rate": 1, "particle_radius": 0.01,
+                                                "material": "glass"}],)"),
+                                        "s.json")
+                                .setup;
+    ASSERT_EQ(setup.emitters[0].attributes.size(), 1U);
+    EXPECT_EQ(setup.emitters[0].attributes[0].name, kMaterialAttribute);
+    EXPECT_EQ(setup.emitters[0].attributes[0].mean.x, 1.0);
+    EXPECT_NO_THROW(Simulation{std::move(setup)});
+}
+
+TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
+    EXPECT_EQ(errors_of(scene_with(kMaterials, R"(, "material": "stel")")),
+              (Lines{"particles[0].material: there is no material among particle_contacts.materials \"stel\"; did you "
+                     "mean \"steel\"?"}));
+    EXPECT_EQ(errors_of(scene_with("", R"(, "material": "steel")")),
+              (Lines{"particles[0].material: only goes together with particle_contacts.materials, which declares what "
+                     "it names; what walls are made of is said at the walls"}));
+    EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {}}, "pairs": [{"first": "a", "second": "b"}])")),
+              (Lines{"particle_contacts.pairs[0].second: there is no material among particle_contacts.materials \"b\"; "
+                     "did you mean \"a\"?"}));
+    EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {"friction": 1}}, "pairs": [{"first": "a", "second": "a"}])")),
+              (Lines{"particle_contacts.pairs[0].second: \"a\" and \"a\" are there already, expected each pair once"}));
+    EXPECT_EQ(errors_of(scene_with(kMaterials, "", R"("attributes": {"material": {}},)")),
+              (Lines{"attributes: declares \"material\", which is the number of one of particle_contacts' materials "
+                     "here, expected another name"}));
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -134,6 +134,17 @@ TEST(NeighbourGrid, NothingAndOneBoxHaveNoPairs) {
     EXPECT_EQ(grid.find_pairs(points).size(), 3U);
 }
 
+TEST(NeighbourGrid, WhereNothingIsLeftNothingIsNear) {
+    const std::vector<Box3> two = {{{0, 0, 0}, {1, 1, 1}}, {{0.5, 0.5, 0.5}, {2, 2, 2}}};
+    NeighbourGrid grid;
+    EXPECT_EQ(grid.find_pairs(two).size(), 1U);
+    const std::vector<Box3> none(1);
+    EXPECT_TRUE(grid.find_pairs(none).empty());
+    std::vector<std::uint32_t> found;
+    grid.find_near(two[0], found);
+    EXPECT_TRUE(found.empty());
+}
+
 TEST(NeighbourGrid, HasTheSamePairsInTheSameOrderForAnyNumberOfThreads) {
     const std::vector<Box3> boxes = random_balls(3, 30000, 1.0, {6, 6, 6}, {0, 0, 0});
     const ThreadLimit one(1);

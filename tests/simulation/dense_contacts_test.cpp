@@ -176,5 +176,54 @@ TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
+/// J over the mass.
+double energy_of(const Particles& p, std::size_t i) {
+    return 0.5 * length_squared(p.velocity[i]) + 9.81 * p.position[i].z;
+}
+
+// Two that touch swing through the bottom as one does, with the error of the step: every straight line along the wall
+// leads into it.
+TEST(DenseContacts, SpheresThatTouchSwingInAHollowSphereAndInAMeshOfIt) {
+    for (const double time_step : {1e-3, 2.5e-4}) {
+        SimulationSetup setup = setup_of(time_step, 0.6, {"", 0.0}, {0, 0, -9.81});
+        setup.options.particle_contacts = PairContactSettings{.restitution = 0.0};
+        setup.options.verify = true;
+        setup.colliders = {{"bowl", BallShape{0.5, {}}}};
+        const double way = 0.46;
+        const double between = 2.0 * std::asin(0.04 / way) * (1.0 + 1e-13);
+        for (const double angle : {1.0, 1.0 + between}) {
+            setup.particles.push_back(particle_of({-way * std::sin(angle), 0.0, -way * std::cos(angle)}, {}, 0.04));
+        }
+        Simulation simulation(std::move(setup));
+        const double before = energy_of(simulation.particles(), 0) + energy_of(simulation.particles(), 1);
+        double highest = 0.0;
+        while (!simulation.finished()) {
+            simulation.step();
+            highest = std::max(highest, simulation.particles().position[0].x);
+        }
+        const double after = energy_of(simulation.particles(), 0) + energy_of(simulation.particles(), 1);
+        EXPECT_GT(highest, 0.2);  // on the other side
+        EXPECT_LT(after, before + 1e-6);
+        EXPECT_GT(after, before - 40.0 * time_step);
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+        EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
+    }
+}
+
+TEST(DenseContacts, WhatIsPouredIntoAFormulasCylinderSettlesThere) {
+    SimulationSetup setup = setup_of(2e-3, 0.6, {"", 0.3, 0.4}, {0, 0, -9.81});
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = 0.4};
+    setup.colliders = {{"silo", CylinderShape{0.1, 4.0, {{0, 0, 2}}}}};
+    for (int k = 0; k < 60; ++k) {
+        const double turn = 1.1 * k;
+        setup.particles.push_back(
+            particle_of({0.05 * std::cos(turn), 0.05 * std::sin(turn), 0.03 + 0.022 * k}, {}, 0.02));
+    }
+    Simulation simulation(std::move(setup));
+    advance(simulation, 1000);
+    EXPECT_LT(simulation.statistics().overlap_largest, 0.01);
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+}
+
 }  // namespace
 }  // namespace ricochet

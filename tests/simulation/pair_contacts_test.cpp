@@ -441,5 +441,56 @@ TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
     EXPECT_TRUE(has(complaint([](auto& s) { s.springs.push_back({0, 1, 1.0}); }), "springs"));
 }
 
+// The upper one gives its momentum to the lower, which bounces off the floor at once and gives it back.
+TEST(PairContacts, WhatFallsOnASphereThatLiesOnTheFloorComesBack) {
+    for (const PairMethod method : {PairMethod::automatic, PairMethod::events, PairMethod::contacts}) {
+        for (const double aside : {0.0, 0.05}) {
+            SimulationSetup setup = pair_setup(1e-3, 0.6, {.method = method}, {0, 0, -9.81});
+            setup.options.verify = true;
+            setup.materials[0].restitution = 1.0;
+            setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
+            setup.particles = {particle_of({0, 0, 0.1}, {}, 0.1), particle_of({aside, 0, 0.8}, {}, 0.1)};
+            const Simulation simulation = run(std::move(setup));
+            EXPECT_EQ(simulation.statistics().energy_violations, 0U);
+            double energy = 0.0;
+            for (const std::size_t i : {0U, 1U}) {
+                energy += 0.5 * length_squared(simulation.particles().velocity[i]) +
+                          9.81 * simulation.particles().position[i].z;
+            }
+            EXPECT_NEAR(energy, 9.81 * 0.9, 1e-9) << aside;
+            if (aside > 0.0) continue;
+            const double lands = std::sqrt(2.0 * 0.5 / 9.81);
+            EXPECT_NEAR(simulation.particles().velocity[1].z, 9.81 * lands - 9.81 * (0.6 - lands), 1e-7);
+        }
+    }
+}
+
+// Friction that is found from the slip before the impact may act against another one after it.
+TEST(PairContacts, NothingIsGainedWhereFrictionActsInSeveralContactsAtOnce) {
+    for (const double e : {0.0, 0.5, 1.0}) {
+        for (const double friction : {0.1, 0.3, 1.0}) {
+            SimulationSetup setup = pair_setup(0.01, 0.05, {.restitution = e, .friction = friction});
+            setup.options.verify = true;
+            const double side = std::sqrt(0.0075);
+            setup.particles = {particle_of({-0.05, 0, 0}, {5, 0, 0}, 0.05), particle_of({side, -0.05, 0}, {}, 0.05),
+                               particle_of({side, 0.05, 0}, {}, 0.05)};
+            const Simulation simulation = run(std::move(setup));
+            EXPECT_LE(sums_of(simulation.particles()).energy, 12.5 * (1.0 + 1e-14)) << e << ' ' << friction;
+            EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+        }
+    }
+}
+
+// Many as few: as long as impacts do not crowd nothing is planned.
+TEST(PairContacts, AGasThatLosesEnergyDoesSoImpactByImpactHoweverManyThereAre) {
+    for (const std::size_t count : {200U, 600U}) {
+        const auto energy_by = [&](PairMethod method) {
+            return run(gas({.restitution = 0.95, .method = method}, count, 0.03, 0.02, 0.3)).kinetic_energy();
+        };
+        const double exact = energy_by(PairMethod::events);
+        EXPECT_NEAR(energy_by(PairMethod::automatic) / exact, 1.0, 1e-9) << count;
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

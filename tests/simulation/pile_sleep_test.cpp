@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -125,6 +126,26 @@ TEST(PileSleep, SameBitsWhetherOthersMaySleepAndAfterResume) {
         hashes.push_back(resumed.state_hash());
     }
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
+}
+
+// Without friction three balls on a floor that hold nothing roll apart under a fourth, in however short steps.
+TEST(PileSleep, WhatBeginsToMoveFallsAsleepInNoStep) {
+    for (const double time_step : {1e-3, 5e-5}) {
+        SimulationSetup setup = setup_of(time_step, 0.25, {"", 0.0, 0.9}, {0, 0, -9.81});
+        setup.options.particle_contacts = PairContactSettings{.restitution = 0.0};
+        setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
+        const double radius = 0.1;
+        for (int k = 0; k < 3; ++k) {
+            const double turn = 2.0 * 3.14159265358979 / 3.0 * k;
+            const double away = 2.0 * radius / std::sqrt(3.0);
+            setup.particles.push_back(particle_of({away * std::cos(turn), away * std::sin(turn), radius}, {}, radius));
+        }
+        setup.particles.push_back(particle_of({0, 0, radius * (1.0 + std::sqrt(8.0 / 3.0))}, {}, radius));
+        Simulation simulation(std::move(setup));
+        advance(simulation, 100000);
+        EXPECT_EQ(simulation.statistics().asleep, 0U) << time_step;
+        EXPECT_LT(simulation.particles().position[3].z, 0.24) << time_step;
+    }
 }
 
 }  // namespace

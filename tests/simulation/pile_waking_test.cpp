@@ -89,5 +89,21 @@ TEST(PileWaking, SpheresOnAFloorAnswerEachOtherWithTheirRestitution) {
     }
 }
 
+TEST(PileWaking, APileFallsWhereItsLowestSphereHasLivedItsLife) {
+    SimulationSetup setup = setup_of(2e-3, 0.5, {"", 0.3, 0.4}, {0, 0, -9.81});
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = 0.3};
+    setup.options.verify = true;
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
+    for (const double z : {0.1, 0.301, 0.502}) setup.particles.push_back(particle_of({0, 0, z}, {}, 0.099));
+    setup.particles[0].lifetime = 0.2;
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    ASSERT_EQ(simulation.particles().size(), 2U);
+    EXPECT_NEAR(simulation.particles().position[0].z, 0.099, 1e-4);
+    EXPECT_NEAR(simulation.particles().position[1].z, 0.297, 1e-4);
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -67,6 +67,16 @@ TEST(PairBooks, EnergyThatIsLostIsSeenWhereNothingTakesAny) {
     EXPECT_FALSE(is_wrong(meeting_of(0.9, 0.0), {.restitution = 0.9}));
 }
 
+TEST(PairBooks, SpheresInContactWithAWallMayBeApartByTheErrorOfTheirArcs) {
+    PairMeeting meeting = meeting_of(1.0, 0.0);
+    meeting.spheres[1].before.position.x += 5e-9;
+    EXPECT_TRUE(is_wrong(meeting, {}));
+    meeting.spheres[0].is_bound = true;
+    EXPECT_FALSE(is_wrong(meeting, {}));
+    meeting.spheres[1].before.position.x += 1e-7;
+    EXPECT_TRUE(is_wrong(meeting, {}));
+}
+
 TEST(PairBooks, EachPairOfMaterialsIsHeldAgainstItsOwn) {
     PairBooks books{.restitution = 1.0};
     books.materials = 2;

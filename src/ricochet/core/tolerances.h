@@ -520,6 +520,11 @@ inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 /// has stopped them. Smaller: such pairs meet again and again at one time. Larger: they sink in by it.
 inline constexpr double kPairApproachRounding = 0x1p-48;
 
+/// Overlap of two spheres, over the smaller radius, from which on they press on each other where it has grown in a step
+/// in which they were not planned together: a force drives them together that no impact answers. Reason: far above what
+/// roundings of impacts leave, far below what is seen. Smaller: rounding makes plans. Larger: spheres sink in by it.
+inline constexpr double kPressedOverlap = 1e-7;
+
 /// Impacts so many ulp of the time apart are at the same time. Reason: roundings of the times of symmetric pairs.
 /// Smaller: symmetric pairs are answered one after the other. Larger: impacts after each other are answered together.
 inline constexpr double kSameImpactUlps = 16.0;

@@ -108,7 +108,10 @@ private:
 
 const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3> boxes) {
     pairs_.clear();
-    if (!choose_cells(boxes)) return pairs_;
+    if (!choose_cells(boxes)) {
+        sorted_.clear();  // what was there before is not found near anything either
+        return pairs_;
+    }
     sort(boxes);
     find_rows();
     std::vector<std::vector<NeighbourPair>> found;

@@ -92,8 +92,11 @@ public:
             contact.impulse =
                 impulses_[k] * contact.normal + friction_of(law_of(contact), a, b, contact.normal, impulses_[k], share);
         }
+        const double part = contacts_.size() > 1 ? part_of_friction() : 1.0;
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
+            const Vec3 along = impulses_[k] * contact.normal;
+            if (part < 1.0) contact.impulse = along + part * (contact.impulse - along);
             push(first(contact), second(contact), contact.normal, contact.impulse);
         }
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -113,6 +116,34 @@ private:
         std::vector<std::size_t> counts(bodies_.size(), 0);
         for (const PairContact& contact : contacts_) ++counts[contact.first], ++counts[contact.second];
         return counts;
+    }
+
+    /// So much of it that it gives no energy to what the normal impulses leave: what they and the frictions of other
+    /// contacts do to a slip may turn it round.
+    [[nodiscard]] double part_of_friction() {
+        const std::vector<PairBody> before = bodies_;
+        const auto power = [&] {
+            double sum = 0.0;
+            for (std::size_t k = 0; k < contacts_.size(); ++k) {
+                const PairContact& contact = contacts_[k];
+                const Vec3 friction = contact.impulse - impulses_[k] * contact.normal;
+                sum += dot(friction, relative_velocity(first(contact), second(contact), contact.normal));
+            }
+            return sum;
+        };
+        const auto push_all = [&](bool is_friction) {
+            for (std::size_t k = 0; k < contacts_.size(); ++k) {
+                PairContact& contact = contacts_[k];
+                const Vec3 along = impulses_[k] * contact.normal;
+                push(first(contact), second(contact), contact.normal, is_friction ? contact.impulse - along : along);
+            }
+        };
+        push_all(false);
+        const double at_first = power();
+        push_all(true);
+        const double curvature = power() - at_first;  // the energy changes by f at_first + f^2 curvature / 2
+        bodies_ = before;
+        return curvature > 0.0 ? std::clamp(-2.0 * at_first / curvature, 0.0, 1.0) : 1.0;
     }
 
     /// N s more along the normal for the rebound.

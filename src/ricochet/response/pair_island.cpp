@@ -7,7 +7,6 @@
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
-#include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -17,25 +16,6 @@ void append_to(std::vector<FlownPiece>& way, const std::vector<FlownPiece>& more
 }
 
 }  // namespace
-
-FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end) {
-    const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, end - state.time);
-    FlownPiece way = piece_of(flight);
-    way.begin = state.time;
-    return way;
-}
-
-std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
-                                    double distance, double slow) {
-    for (std::size_t i = 0, j = 0; i < first.size() && j < second.size();) {
-        const TimedPath x{&first[i].path, first[i].begin, first[i].begin + first[i].duration};
-        const TimedPath y{&second[j].path, second[j].begin, second[j].begin + second[j].duration};
-        if (const auto time = first_meeting(x, y, distance, slow)) return time;
-        if (x.end <= y.end) ++i;
-        if (y.end <= x.end) ++j;
-    }
-    return std::nullopt;
-}
 
 bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit) {
     members_ = &members;
@@ -48,6 +28,8 @@ bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, c
     partners_.assign(members.size(), 0);
     times_.reset(members.size());
     resumed_.resize(std::max(resumed_.size(), members.size()));
+    begin_.clear();
+    for (const IslandMember& member : members) begin_.push_back(member.moving.state.position);
     scratch.record_flown = true;
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
     neighbours_.begin(boxes_);
@@ -60,13 +42,31 @@ bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, c
         answer(contacts, time);
     }
     scratch.record_flown = false;
-    if (exceeds(limit)) return false;
+    if (exceeds(limit) || (!limit.may_sink && sinks())) return false;
     for (std::size_t m = 0; m < members.size(); ++m) commit(m);
     return true;
 }
 
 bool PairIsland::exceeds(const ImpactLimit& limit) const {
     return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
+}
+
+/// At the ends of the paths of those that are there for all of the step.
+bool PairIsland::sinks() const {
+    const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
+    for (std::size_t m = 0; m < members_->size(); ++m) {
+        const IslandMember& member = (*members_)[m];
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const IslandMember& neighbour = (*members_)[other];
+            const bool is_pair = other > m && is_there(member) && is_there(neighbour) && member.end == neighbour.end;
+            if (!is_pair || predictions_[m].outcome.is_absorbed() || predictions_[other].outcome.is_absorbed())
+                continue;
+            const Vec3 apart = state_of(other, member.end).position - state_of(m, member.end).position;
+            const double smaller = std::min(member.radius(), neighbour.radius());
+            if (has_sunk(member.radius() + neighbour.radius(), smaller, begin_[other] - begin_[m], apart)) return true;
+        }
+    }
+    return false;
 }
 
 /// The path of a member to the end of its part of the step.
@@ -124,12 +124,31 @@ void PairIsland::stay(std::size_t m) {
     boxes_[m] = grown({state.position, state.position}, member.radius());
 }
 
-/// Moves a member to a time along the path that is predicted.
+/// Moves a member to a time along the path that is predicted. What bounces off a wall just then, as one that lies on a
+/// floor does when it is hit, has met the other on its way back: so it bounces first.
 void PairIsland::bring(std::size_t m, double time) {
+    const IslandMember& member = (*members_)[m];
+    if (member.is_fixed || member.is_cut_off) return;
+    go_to(m, time);
+    const double just_after = std::nextafter(time, std::numeric_limits<double>::infinity());
+    if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
+}
+
+bool PairIsland::bounces_at(std::size_t m, double time) const {
+    const Vec3& now = (*members_)[m].moving.state.velocity;
+    const auto is_it = [&](const FlownPiece& piece) {
+        const double most = kPairApproachRounding * (length(now) + length(piece.departure));
+        return std::fabs(piece.begin - time) <= kSameImpactUlps * ulp(time) && length(piece.departure - now) > most;
+    };
+    const std::vector<FlownPiece>& flown = predictions_[m].flown;
+    return !kicks_first(response_.rules().settings.integrator.kind) && std::any_of(flown.begin(), flown.end(), is_it);
+}
+
+void PairIsland::go_to(std::size_t m, double time) {
     IslandMember& member = (*members_)[m];
     MovingParticle& moving = member.moving;
     const double duration = time - moving.state.time;
-    if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) return;
+    if (!(duration > 0.0)) return;
     scratch_->flown.clear();
     if (member.is_free && !scratch_->record_segments) {
         fly_freely(member, duration);
@@ -397,7 +416,8 @@ void PairIsland::record_meeting(std::span<const PairContact> contacts, const std
                                    body.inverse_mass == 0.0,
                                    {body.position, body.velocity, body.spin},
                                    {after[k].position, after[k].velocity, after[k].spin},
-                                   body.material});
+                                   body.material,
+                                   moving.contact.count > 0});
     }
     for (const PairContact& contact : contacts) {
         meeting.contacts.push_back({contact.first, contact.second, contact.impulse});

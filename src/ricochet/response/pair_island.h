@@ -22,6 +22,7 @@
 #include "ricochet/response/move_lists.h"
 #include "ricochet/response/pair_impact.h"
 #include "ricochet/response/pair_record.h"
+#include "ricochet/response/pair_ways.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -51,17 +52,11 @@ struct IslandMember {
     }
 };
 
-/// The way of a sphere that certainly touches no wall and meets no other one, until `end`, s.
-[[nodiscard]] FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end);
-/// When spheres on two ways first meet, s; nothing where they do not. distance: of their centres then, m; slow: m/s, an
-/// approach that does not count.
-[[nodiscard]] std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
-                                                  double distance, double slow);
-
 /// Impacts of members of an island on each other in a step beyond which it is given up.
 struct ImpactLimit {
     std::size_t in_all = std::numeric_limits<std::size_t>::max();
     std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< of one member
+    bool may_sink = true;  ///< false: it is also given up where forces drive members into each other
 };
 
 /// Works islands off; keeps its memory for the next one. For one thread.
@@ -94,6 +89,8 @@ private:
     void stay(std::size_t m);
     void fly_freely(IslandMember& member, double duration);
     void bring(std::size_t m, double time);
+    void go_to(std::size_t m, double time);
+    [[nodiscard]] bool bounces_at(std::size_t m, double time) const;
     void commit(std::size_t m);
     void note(std::size_t m, double time, std::size_t partner);
     void find_all();
@@ -113,6 +110,7 @@ private:
                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
     [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
+    [[nodiscard]] bool sinks() const;
 
     const Response& response_;
     const PairMaterials& materials_;
@@ -120,6 +118,7 @@ private:
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;
+    std::vector<Vec3> begin_;  // m, of the members
     std::vector<Box3> boxes_;  // of the predictions
     IslandNeighbours neighbours_;
     EarliestTime times_;                 // s, of each member's first meeting; infinite: it meets nobody

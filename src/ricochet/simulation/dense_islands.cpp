@@ -8,11 +8,10 @@
 namespace ricochet {
 namespace {
 
-/// Spheres of an island that are looked at impact by impact, where impacts lose energy.
-constexpr std::size_t kMostInFreeIsland = 300;
-
-/// Impacts per sphere and step beyond which an island is dense.
+/// Impacts per sphere and step beyond which an island is dense: where impacts lose energy, and where none does, so that
+/// a plan would lose what they keep.
 constexpr std::size_t kMostImpacts = 4;
+constexpr std::size_t kMostElasticImpacts = 64;
 
 /// Plans of an island in a step, each with contacts looked for farther than in the one before.
 constexpr int kMostPlans = 8;
@@ -37,7 +36,6 @@ void keep_way(IslandMember& member, const ForceInput& from, const std::vector<Fl
 
 bool DenseIslands::begins_dense(const std::vector<IslandMember>& members) const {
     if (!parts_.may_be_dense() || members.size() < 2) return false;
-    if (parts_.materials.loses_energy() && members.size() > kMostInFreeIsland) return true;
     return contacts_.memory().has_pair_of(members.begin(), members.end(),
                                           [](const IslandMember& member) { return member.moving.id; });
 }
@@ -47,7 +45,8 @@ bool DenseIslands::begins_dense(const std::vector<IslandMember>& members) const 
 ImpactLimit DenseIslands::impacts_before(const std::vector<IslandMember>& members) const {
     ImpactLimit limit;
     if (!parts_.may_be_dense()) return limit;
-    limit.in_all = kMostImpacts * members.size();
+    limit.in_all = (parts_.materials.loses_energy() ? kMostImpacts : kMostElasticImpacts) * members.size();
+    limit.may_sink = false;
     if (parts_.settings.method == PairMethod::contacts && parts_.materials.loses_energy()) limit.of_each = 1;
     return limit;
 }

@@ -16,6 +16,11 @@ constexpr std::uint32_t kStepsToSleep = 50;
 /// Parts of the radius that what lies still may move in a step.
 constexpr double kStillWay = 1e-5;
 
+/// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
+/// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
+constexpr double kStillSpeed = 1e-3;
+constexpr double kStillTime = 0.1;
+
 /// What falls from so many parts of a radius, or is faster, wakes those that it hits.
 constexpr double kWakingFall = 0.01;
 
@@ -31,9 +36,18 @@ constexpr double kWeightsAside = 2.0;
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
 
-bool is_at_rest(const NetworkMember& member, const NetworkBody& planned) {
-    const double way = member.duration * (length(planned.velocity) + member.radius * length(planned.spin));
-    return way < kStillWay * member.radius;
+/// pull: m/s^2, of the forces on it.
+bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double pull) {
+    const double speed = length(planned.velocity) + member.radius * length(planned.spin);
+    if (pull > 0.0 && speed > kStillSpeed * std::sqrt(pull * member.radius)) return false;
+    return member.duration * speed < kStillWay * member.radius;
+}
+
+/// Steps that it has to lie still.
+std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
+    const double time = pull > 0.0 ? kStillTime * std::sqrt(member.radius / pull) : 0.0;
+    const double steps = std::min(std::ceil(time / member.duration), 1e9);
+    return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
 }
 
 }  // namespace
@@ -175,10 +189,13 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
         const std::uint64_t id = members[i].moving->id;
         by_id.emplace_back(id, i);
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!may_lie(members[i], step) || !is_at_rest(members[i], network.planned(i))) continue;
-        const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, kStepsToSleep);
+        if (!may_lie(members[i], step)) continue;
+        const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
+        if (!is_at_rest(members[i], network.planned(i), pull)) continue;
+        const std::uint32_t enough = steps_to_sleep(members[i], pull);
+        const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, enough);
         trace.still.push_back({id, steps});
-        sleepy[i] = steps == kStepsToSleep && !is_carried_by_material(network, i) ? 1 : 0;
+        sleepy[i] = steps == enough && !is_carried_by_material(network, i) ? 1 : 0;
     }
     std::sort(by_id.begin(), by_id.end());
     const auto number_of = [&](std::uint64_t id) {

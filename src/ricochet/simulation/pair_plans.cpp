@@ -165,8 +165,12 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     const FlownPiece first = way_of_free(pair.first);
     const FlownPiece second = way_of_free(pair.second);
     const std::vector<double>& radius = parts_.store.particles().radius;
-    const double distance = radius[first_ + pair.first] + radius[first_ + pair.second];
-    return first_meeting({&first, 1}, {&second, 1}, distance, 0.0).has_value();
+    const double a = radius[first_ + pair.first];
+    const double b = radius[first_ + pair.second];
+    if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
+    // Two that touch do not meet where forces drive them into each other, which only a plan can hold.
+    return parts_.may_be_dense() &&
+           has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }
 
 bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {

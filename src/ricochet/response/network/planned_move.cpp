@@ -35,6 +35,8 @@ private:
     void fly(const Path& path);
     void follow_among_bodies();
     void divert(const Contact& contact);
+    void cut_across();
+    void find_walls(const Vec3& center, std::vector<WallContact>& found) const;
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
     }
@@ -81,7 +83,45 @@ void PlannedMove::follow_at_rest() {
         if (!contact) break;
         divert(*contact);
     }
+    if (step_.remaining() > 0.0) cut_across();
     if (step_.remaining() > 0.0) static_cast<void>(step_.wait(step_.remaining()));
+}
+
+/// Where every line along a surface leads into it at once, as inside a sphere: along a chord, to a place that leaves
+/// the walls there free.
+void PlannedMove::cut_across() {
+    const ForceInput& state = particle_.state;
+    const Vec3 velocity = state.velocity;
+    const double duration = step_.remaining();
+    Vec3 end = state.position + duration * velocity;
+    std::vector<WallContact> walls;
+    for (int pass = 0; pass < kCorrections; ++pass) {
+        walls.clear();
+        find_walls(end, walls);
+        const double offset = 2.0 * contact_offset(end);
+        std::erase_if(walls, [&](const WallContact& wall) { return wall.gap >= offset; });
+        if (walls.empty()) break;
+        for (const WallContact& wall : walls) end += (2.0 * offset - wall.gap) * wall.normal;
+    }
+    end = flush_tiny(end);
+    Path path = line_path(state.position, (end - state.position) / duration, duration);
+    path.end = end;
+    const std::optional<Contact> contact = step_.follow(path);
+    particle_.state.velocity = velocity;
+    if (contact) divert(*contact);
+}
+
+/// That it would touch at the step's end.
+void PlannedMove::find_walls(const Vec3& center, std::vector<WallContact>& found) const {
+    const double radius = particle_.state.radius;
+    const double reach = 4.0 * contact_offset(center);
+    if (rules_.bodies == nullptr) {
+        const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
+        static_cast<void>(find_wall_contacts(geometry, center, radius, reach, found));
+    } else {
+        const double time = particle_.step_end;
+        find_wall_contacts(*rules_.bodies, {time, time}, center, radius, reach, found);
+    }
 }
 
 /// Along a line without anything in its way.
@@ -127,6 +167,7 @@ void PlannedMove::follow_among_bodies() {
             if (!along.empty()) come_off(*contact);
             for (const ContactSurface& surface : contact->all()) hold(surface.surface);
         }
+        if (step_.remaining() > 0.0) cut_across();
         if (step_.remaining() > 0.0) step_.stop();
     }
     step_.store_position();

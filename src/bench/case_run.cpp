@@ -70,6 +70,17 @@ TriangleMesh make_rough_bowl(double edge) {
     return mesh;
 }
 
+// Open at the top, its floor in z = 0.
+TriangleMesh make_bin(double edge) {
+    constexpr double kWalls = 0.8;
+    TriangleMesh mesh = meshes::make_box({.length = 0.2, .width = 0.2, .height = kWalls}, edge);
+    for (Vec3& vertex : mesh.vertices) vertex.z += 0.5 * kWalls;
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        return mesh.vertices[t[0]].z == kWalls && mesh.vertices[t[1]].z == kWalls && mesh.vertices[t[2]].z == kWalls;
+    });
+    return mesh;
+}
+
 TriangleMesh make_ground(Ground ground, double edge) {
     switch (ground) {
         case Ground::cavity:
@@ -82,6 +93,8 @@ TriangleMesh make_ground(Ground ground, double edge) {
             return meshes::make_terrain({}, edge);
         case Ground::wedge:
             return meshes::make_wedge({.length = 1.0, .opening = 0.01, .width = 1.0}, edge);
+        case Ground::bin:
+            return make_bin(edge);
         case Ground::rocks:
             break;  // many, each by itself
     }
@@ -96,10 +109,30 @@ constexpr std::size_t kBlock = 4096;
 constexpr std::uint32_t kPlaceStream = 0;
 constexpr std::uint32_t kRadiusStream = 1;
 
+double mass_of(const Case& c, double radius) {
+    constexpr double kUnitSphere = 4.18879020478639098;  // m^3
+    return c.density * kUnitSphere * radius * radius * radius;
+}
+
 double radius_of(const Case& c, std::uint64_t index) {
     if (c.least_radius == c.largest_radius) return c.least_radius;
     RandomSequence random(kSeed, kRadiusStream, index);
     return c.least_radius * portable_pow(c.largest_radius / c.least_radius, random.uniform());
+}
+
+// Inside a closed ground a sphere keeps clear of it wherever it stands beside its place.
+std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
+    std::vector<Vec3> places;
+    const Vec3 size = c.box.size();
+    const auto count = [&](int axis) { return static_cast<std::size_t>(size[axis] / c.pitch) + 1; };
+    for (std::size_t k = 0; places.size() < c.particles && k < count(0) * count(1) * count(2); ++k) {
+        const Vec3 step{static_cast<double>(k % count(0)), static_cast<double>(k / count(0) % count(1)),
+                        static_cast<double>(k / count(0) / count(1))};
+        const Vec3 place = c.box.lower + c.pitch * step;
+        if (insides == nullptr || insides->contains_ball(place, 0.5 * c.pitch)) places.push_back(place);
+    }
+    if (places.size() < c.particles) throw InputError("a benchmark case has more particles than its lattice has room");
+    return places;
 }
 
 Vec3 place_in(const Case& c, RandomSequence& random) {
@@ -127,15 +160,20 @@ std::shared_ptr<const TriangleMesh> make_mesh(const Case& c) {
 
 std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh) {
     std::optional<Insides> insides;
-    if (c.start == Start::inside) insides.emplace(mesh, heart_of(c.ground).value());
+    const std::optional<Vec3> heart = heart_of(c.ground);
+    if (c.start == Start::inside || (c.start == Start::lattice && heart)) insides.emplace(mesh, heart.value());
+    std::vector<Vec3> lattice;
+    if (c.start == Start::lattice) lattice = lattice_places(c, insides ? &*insides : nullptr);
+    const double beside = 0.49 * c.pitch - c.largest_radius;
     std::vector<Particle> particles(c.particles);
     parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Particle& particle = particles[i];
             particle.radius = radius_of(c, i);
             RandomSequence random(kSeed, kPlaceStream, i);
-            particle.position = place_in(c, random);
-            while (insides && !insides->contains_ball(particle.position, particle.radius)) {
+            particle.position = lattice.empty() ? place_in(c, random) : lattice[i] + beside * random.unit_vector();
+            if (c.density > 0.0) particle.mass = mass_of(c, particle.radius);
+            while (lattice.empty() && insides && !insides->contains_ball(particle.position, particle.radius)) {
                 particle.position = place_in(c, random);
             }
             const double speed = random.uniform_around(c.speed, c.spread);
@@ -153,6 +191,9 @@ SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMe
     setup.options.response = c.response;
     if (c.gravity != 0.0) setup.forces.push_back(make_gravity({0.0, 0.0, -c.gravity}));
     setup.materials.push_back({.name = "ground", .restitution = c.restitution, .friction = c.friction});
+    if (c.spheres_meet) {
+        setup.options.particle_contacts = PairContactSettings{.restitution = c.restitution, .friction = c.friction};
+    }
     setup.acceleration.look_ahead = c.looks_ahead;
     setup.colliders = colliders_of(c, mesh);
     setup.frames = frames_of(c);
@@ -248,6 +289,8 @@ bool CaseRun::scout(const Announce& announce, std::vector<std::vector<Flight>>& 
     }
     course_.particle_steps = simulation.statistics().particle_steps - before.particle_steps;
     course_.contacts = simulation.statistics().contacts - before.contacts;
+    course_.pair_impacts = simulation.statistics().pair_impacts - before.pair_impacts;
+    course_.largest_overlap = simulation.statistics().overlap_largest;
     course_.state_hash = simulation.state_hash();
     return true;
 }

@@ -96,6 +96,8 @@ inline constexpr std::uint64_t kReferenceFlights = 4'000'000;
 struct Course {
     std::uint64_t particle_steps = 0;
     std::uint64_t contacts = 0;
+    std::uint64_t pair_impacts = 0;  ///< of spheres on each other that are worked off one after the other
+    double largest_overlap = 0.0;    ///< of two spheres, over the smaller radius, from the start on
     std::uint64_t state_hash = 0;
 };
 

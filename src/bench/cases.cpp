@@ -231,6 +231,84 @@ Cases moving_cases() {
     return cases;
 }
 
+// Spheres in a case, those that pass through each other first: a group.
+std::vector<Case> beside_apart(Case c, std::string_view apart, std::string_view together) {
+    c.against = Against::apart;
+    c.base = c.name = apart;
+    Case other = c;
+    other.name = together;
+    other.spheres_meet = true;
+    return {c, other};
+}
+
+// A gas of packing 0.01 in which a step is a flight of one radius.
+Case dilute_spheres() {
+    constexpr std::size_t kMany = 20'000;
+    constexpr double kRadiusOfGas = 0.0079;  // (0.01 / 20 000)^(1/3) of the cavity's metre
+    Case c = with_steps(gas("pairs", "", 20'000, kMany, kRadiusOfGas), 4, 60);
+    c.spread = 0.0;
+    c.start = Start::lattice;
+    c.pitch = 0.05;
+    c.least_radius = c.largest_radius = kRadiusOfGas;
+    return c;
+}
+
+// The peers' scene of docs/particle-contacts.md: 5 mm, a fifth more or less, dropped as a loose cloud; one second.
+Case filling_spheres(std::size_t particles) {
+    return {.suite = "pairs",
+            .name = "filling",
+            .ground = Ground::bin,
+            .triangles = 500,
+            .particles = particles,
+            .time_step = 1e-3,
+            .restitution = 0.5,
+            .friction = 0.5,
+            .gravity = 9.81,
+            .start = Start::lattice,
+            .box = {{-0.0931, -0.0931, 0.007}, {0.0931, 0.0931, 0.79}},
+            .speed = 0.1,
+            .steps = 1000,
+            .least_radius = 0.004,
+            .largest_radius = 0.006,
+            .density = 2500.0,
+            .pitch = 0.0132};
+}
+
+// The cavity turns a quarter filled, at 25 degrees a second.
+Case tumbling_spheres() {
+    return {.suite = "pairs",
+            .name = "drum",
+            .ground = Ground::cavity,
+            .triangles = 20'000,
+            .particles = 3000,
+            .time_step = 2e-3,
+            .restitution = 0.5,
+            .friction = 0.5,
+            .gravity = 9.81,
+            .start = Start::lattice,
+            .box = kAroundCavity,
+            .speed = 0.1,
+            .warm_up = 500,
+            .steps = 500,
+            .least_radius = 0.03,
+            .largest_radius = 0.04,
+            .spheres_meet = true,
+            .density = 2500.0,
+            .pitch = 0.085,
+            .moves = Moves::tumbling};
+}
+
+Cases pair_cases() {
+    Cases cases;
+    append(cases, beside_apart(dilute_spheres(), "dilute-apart", "dilute"));
+    append(cases, beside_apart(filling_spheres(10'000), "filling-apart", "filling"));
+    Case pile = with_steps(filling_spheres(2000), 2500, 1000);
+    pile.name = "pile";
+    pile.spheres_meet = true;
+    append(cases, {pile, tumbling_spheres()});
+    return cases;
+}
+
 Cases make_all_cases() {
     Cases cases = {
         gas("gas", "gas-20k", 20'000, 1'000'000, kGasStep),
@@ -249,6 +327,7 @@ Cases make_all_cases() {
     append(cases, radius_cases());
     append(cases, response_cases());
     append(cases, moving_cases());
+    append(cases, pair_cases());
     append(cases, {gas("quick", "gas", 20'000, 100'000, kGasStep), hail("quick", "hail", 50'000, 50'000),
                    pinball("quick", "pinball", 20'000, 20'000)});
     return cases;

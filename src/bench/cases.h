@@ -22,6 +22,7 @@ enum class Ground {
     rough_bowl,  ///< the lower half of the cavity, open at the top
     terrain,     ///< open sheet of 120 m by 90 m
     wedge,       ///< closed, two planes of 1 m that meet at a hundredth of a radian; particles inside
+    bin,         ///< a square tray of 0.2 m with walls of 0.8 m, open at the top
     rocks,       ///< rocks of half a metre and a thousand triangles each on a lattice of 2 m, a collider each
 };
 
@@ -30,6 +31,7 @@ enum class Moves {
     nothing,
     shaken,     ///< the ground, to and fro by a decimetre in 5 s
     spinning,   ///< the ground by a degree a step; of rocks each about itself
+    tumbling,   ///< the ground about x, by a twentieth of a degree a step
     bystander,  ///< a rock far from the ground and all particles, by a degree a step
     breathing,  ///< every vertex of the ground, which deforms: to and fro by a twentieth of its way from the origin in
                 ///< 40 steps, with a key every fourth
@@ -37,8 +39,10 @@ enum class Moves {
 
 /// Where particles start.
 enum class Start {
-    box,            ///< anywhere in the box
-    inside,         ///< anywhere in the box that is inside the closed ground
+    box,      ///< anywhere in the box
+    inside,   ///< anywhere in the box that is inside the closed ground
+    lattice,  ///< on the places of a cubic lattice in the box, from below, of a closed ground those inside it, each
+              ///< beside its place by as much as leaves a gap between the largest spheres
     above_terrain,  ///< anywhere over the box's base; z of the box counts from the ground
 };
 
@@ -48,6 +52,7 @@ enum class Against {
     points,   ///< the same particles without size
     exact,    ///< the same particles with the exact response
     at_rest,  ///< the same particles where nothing moves
+    apart,    ///< the same spheres that pass through each other
 };
 
 /// One case. Particles start at random positions with random directions, so their order in memory is arbitrary.
@@ -71,6 +76,9 @@ struct Case {
     ResponseKind response = ResponseKind::exact;
     double least_radius = 0.0;  ///< m; the logarithms of the radii are spread evenly from the least to the largest
     double largest_radius = 0.0;
+    bool spheres_meet = false;  ///< as the ground: with the case's restitution and friction
+    double density = 0.0;       ///< kg/m^3, of spheres; 0: every particle has 1 kg
+    double pitch = 0.0;         ///< m, of a lattice
     Moves moves = Moves::nothing;
     bool looks_ahead = true;  ///< particles that certainly hit nothing are not queried
     Against against = Against::nothing;

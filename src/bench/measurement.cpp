@@ -116,6 +116,12 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     row.leaks = reference.leaks();
     if (!times.naive.empty()) row.ratio_naive = median_ratio(times.naive, times.simulation);
     row.naive_leaks = run.naive_leaks();
+    if (run.description().spheres_meet) {
+        const double simulated = static_cast<double>(row.steps) * run.description().time_step;
+        row.seconds_a_simulated_second = row.seconds / simulated;
+        row.largest_overlap = course.largest_overlap;
+        if (course.pair_impacts > 0) row.seconds_an_impact = row.seconds / static_cast<double>(course.pair_impacts);
+    }
     row.state_hash = course.state_hash;
     row.bytes_per_particle = run.memory().bytes_per_particle;
     row.bytes_per_triangle = run.memory().bytes_per_triangle;
@@ -150,6 +156,7 @@ std::vector<Row> Measurer::rows() const {
             if (run.description().against == Against::points) row.ratio_points = cost;
             if (run.description().against == Against::exact) row.ratio_exact = cost;
             if (run.description().against == Against::at_rest) row.ratio_rest = cost;
+            if (run.description().against == Against::apart) row.ratio_apart = cost;
             rows.push_back(row);
         }
     }

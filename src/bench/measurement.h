@@ -45,6 +45,11 @@ struct Row {
     std::optional<double> ratio_points;  ///< time of a particle-step over that of points; nothing without such a case
     std::optional<double> ratio_exact;   ///< the same over the exact response
     std::optional<double> ratio_rest;    ///< the same over the same where nothing moves
+    std::optional<double> ratio_apart;   ///< the same over spheres that pass through each other
+    // Where spheres meet:
+    std::optional<double> seconds_a_simulated_second;
+    std::optional<double> seconds_an_impact;  ///< of spheres on each other; nothing where there is none by itself
+    std::optional<double> largest_overlap;    ///< over the smaller radius
     /// Time of the same steps in the usual way, see NaiveMotion, over that of the simulation; nothing where nothing
     /// moves.
     std::optional<double> ratio_naive;

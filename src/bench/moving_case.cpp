@@ -19,6 +19,7 @@ constexpr std::size_t kTrianglesOfARock = 1000;
 constexpr double kLattice = 2.0;  // m
 constexpr double kCoarseEdge = 0.25;
 constexpr double kDegreesAStep = 1.0;
+constexpr double kDegreesATumblingStep = 0.05;
 constexpr double kBreath = 0.05;
 constexpr int kKeysABreath = 10;
 constexpr double kStepsAKey = 4.0;
@@ -96,7 +97,7 @@ std::vector<ColliderDescription> colliders_of(const Case& c, const std::shared_p
         }
         return colliders;
     }
-    const bool moves = c.moves == Moves::shaken || c.moves == Moves::spinning;
+    const bool moves = c.moves == Moves::shaken || c.moves == Moves::spinning || c.moves == Moves::tumbling;
     std::vector<ColliderDescription> colliders{{"ground", MeshShape{mesh, {}, ""}, 0, moves ? kGroundFrame : ""}};
     if (c.moves == Moves::breathing) {
         auto& shape = std::get<MeshShape>(colliders[0].shape);
@@ -121,6 +122,8 @@ std::shared_ptr<const FrameTree> frames_of(const Case& c) {
         frames.push_back(frame_at(kGroundFrame, {}, Oscillation{{0.05, 0.08, 0.03}, 0.2, 0.0}));
     } else if (c.moves == Moves::spinning) {
         frames.push_back(frame_at(kGroundFrame, {}, Spin{{1, 2, 3}, kDegreesAStep / c.time_step}));
+    } else if (c.moves == Moves::tumbling) {
+        frames.push_back(frame_at(kGroundFrame, {}, Spin{{1, 0, 0}, kDegreesATumblingStep / c.time_step}));
     } else {
         frames.push_back(frame_at(kBystanderFrame, {10, 0, 0}, spin_of(c, 0)));
     }

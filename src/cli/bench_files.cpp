@@ -235,6 +235,11 @@ std::string plot_script(std::string_view suite, std::span<const Row> all_rows) {
         return bars<Row>(suite, rows, "What colliders that move cost", "cost of a particle-step over that at rest",
                          {{"cost over rest", [](const Row& row) { return or_nothing(row.ratio_rest); }}}, true);
     }
+    if (suite == "pairs") {
+        return bars<Row>(
+            suite, rows, "What spheres that meet cost", "seconds for a simulated second",
+            {{"s / simulated s", [](const Row& row) { return or_nothing(row.seconds_a_simulated_second); }}}, true);
+    }
     return ratios_plot(suite, rows);
 }
 

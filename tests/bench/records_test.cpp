@@ -48,8 +48,9 @@ std::vector<std::string> with(std::vector<std::string> keys, const std::vector<s
 }
 
 const std::vector<std::string> kRowKeys =
-    with(kContract, {"contacts_per_particle_step", "ratio_points", "ratio_exact", "ratio_rest", "ratio_naive",
-                     "naive_leaks", "speedup", "speedup_raw"});
+    with(kContract, {"contacts_per_particle_step", "ratio_points", "ratio_exact", "ratio_rest", "ratio_apart",
+                     "seconds_a_simulated_second", "seconds_an_impact", "largest_overlap", "ratio_naive", "naive_leaks",
+                     "speedup", "speedup_raw"});
 
 TEST(BenchRecords, OfARowHaveTheKeysThatTheyPromise) {
     Row row;
@@ -64,8 +65,8 @@ TEST(BenchRecords, OfARowHaveTheKeysThatTheyPromise) {
     EXPECT_EQ(json["state_hash"], "00000000000000ab");
     EXPECT_EQ(json["speedup"], 1.5);
     EXPECT_EQ(json["contacts_per_particle_step"], 0.25);
-    for (const char* key : {"leaks", "ratio_native_bounces", "ratio_points", "ratio_exact", "ratio_rest", "ratio_naive",
-                            "naive_leaks", "speedup_raw"}) {
+    for (const char* key : {"leaks", "ratio_native_bounces", "ratio_points", "ratio_exact", "ratio_rest", "ratio_apart",
+                            "seconds_an_impact", "ratio_naive", "naive_leaks", "speedup_raw"}) {
         EXPECT_TRUE(json[key].is_null()) << key;
     }
 }

@@ -15,7 +15,7 @@ TEST(BenchSuites, HaveNamesOfTheirOwn) {
     const std::set<std::string> different(names.begin(), names.end());
     EXPECT_EQ(different.size(), names.size());
     EXPECT_EQ(different, (std::set<std::string>{"gas", "settle", "hail", "rain", "pinball", "wedge", "size", "count",
-                                                "threads", "radius", "response", "moving", "load", "quick"}));
+                                                "threads", "radius", "response", "moving", "pairs", "load", "quick"}));
     for (const std::string& name : names) EXPECT_NO_THROW(require_suite(name));
 }
 

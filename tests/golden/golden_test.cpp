@@ -75,6 +75,9 @@ constexpr ShippedScene kShippedScenes[] = {
     {"billiard_break", "1"},
     {"granular_gas", "0.3"},
     {"grinder", "0.8"},
+    {"newtons_cradle", "1.5"},
+    {"sandpile", "0.6"},
+    {"hopper", "0.7"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -78,6 +78,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"newtons_cradle", "1.5"},
     {"sandpile", "0.6"},
     {"hopper", "0.7"},
+    {"avalanche", "1"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -1,0 +1,187 @@
+// Laws that dense grains are known by: what the floor of a silo carries.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collision/worlds.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::mesh_collider;
+using testing::setup_of;
+
+constexpr double kDiameter = 0.01;  // m, of the mean grain
+constexpr double kSpread = 0.1;     // of the diameters, to either side, so that grains do not form crystals
+constexpr double kG = 9.81;
+constexpr double kPi = std::numbers::pi;
+
+SimulationSetup grain_setup(double duration, double friction, FrameMotion motion) {
+    SimulationSetup setup = setup_of(1e-3, duration, {"", 0.3, friction}, {0, 0, -kG});
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = friction};
+    FrameDescription frame;
+    frame.name = "mover";
+    frame.motions = {std::move(motion)};
+    setup.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{frame});
+    return setup;
+}
+
+double grain_mass(double radius) { return 2500.0 * 4.0 / 3.0 * kPi * radius * radius * radius; }
+
+/// Grains that do not touch, on the points of a lattice around an axis up to the distance `reach`, layer on layer.
+void add_cloud(SimulationSetup& setup, std::size_t count, double reach, double bottom, std::uint64_t seed) {
+    constexpr double kPitch = (1.0 + kSpread) * 1.02 * kDiameter;
+    RandomSequence random(seed, 0, 0);
+    const int most = static_cast<int>(reach / kPitch);
+    for (int layer = 0; setup.particles.size() < count; ++layer) {
+        for (int i = -most; i <= most; ++i) {
+            for (int j = -most; j <= most && setup.particles.size() < count; ++j) {
+                const Vec3 place{kPitch * i, kPitch * j, bottom + kPitch * (layer + 0.5)};
+                if (std::hypot(place.x, place.y) + 0.56 * kDiameter > 0.997 * reach) continue;
+                Particle grain;
+                grain.radius = 0.5 * kDiameter * (1.0 + kSpread * (2.0 * random.uniform() - 1.0));
+                grain.position = place + 0.005 * kDiameter * random.unit_vector();
+                grain.mass = grain_mass(grain.radius);
+                setup.particles.push_back(grain);
+            }
+        }
+    }
+}
+
+/// An upright tube of 48 sides around the axis, in rings of two diameters.
+TriangleMesh tube_mesh(double radius, double bottom, double top) {
+    constexpr std::uint32_t kSides = 48;
+    const auto rings = static_cast<std::uint32_t>(std::ceil((top - bottom) / (2.0 * kDiameter)));
+    TriangleMesh mesh;
+    for (std::uint32_t ring = 0; ring <= rings; ++ring) {
+        for (std::uint32_t k = 0; k < kSides; ++k) {
+            const double angle = 2.0 * kPi * k / kSides;
+            const double z = bottom + (top - bottom) * ring / rings;
+            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+    }
+    for (std::uint32_t ring = 0; ring < rings; ++ring) {
+        for (std::uint32_t k = 0; k < kSides; ++k) {
+            const std::uint32_t here = ring * kSides + k;
+            const std::uint32_t next = ring * kSides + (k + 1) % kSides;
+            mesh.triangles.push_back({here, next, next + kSides});
+            mesh.triangles.push_back({here, next + kSides, here + kSides});
+        }
+    }
+    return mesh;
+}
+
+void expect_sound(const Simulation& simulation) {
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    EXPECT_LT(simulation.statistics().overlap_largest, 0.01);
+}
+
+struct SiloLoad {
+    double filled = 0.0;   // kg
+    double carried = 0.0;  // kg, by the floor
+    double density = 0.0;  // kg/m^3, of the column
+};
+
+constexpr double kSiloFriction = 0.5;
+
+/// The floor goes down slowly, by one diameter before it is weighed and on while it is, so that friction on the wall is
+/// fully turned up. Where it stops the column lands on it, and less hangs on the wall.
+SiloLoad silo_load(double width, std::size_t grains, std::uint64_t seed) {
+    constexpr double kSettled = 0.4;
+    constexpr double kWeighed = 0.9;
+    constexpr double kEnd = 1.1;
+    const Vec3 down{0, 0, -kDiameter * (kEnd - kSettled) / (kWeighed - kSettled)};
+    const KeyedTranslation lowering{KeyedCurve<Vec3>({{0.0, {}}, {kSettled, {}}, {kEnd, down}})};
+    SimulationSetup setup = grain_setup(kEnd, kSiloFriction, lowering);
+    setup.colliders = {{"floor", PlaneShape{{}, {0, 0, 1}}, 0, "mover"},
+                       mesh_collider(tube_mesh(0.5 * width, -0.02, 0.7))};
+    add_cloud(setup, grains, 0.5 * width, 0.0, seed);
+    Simulation simulation(std::move(setup));
+    double before = 0.0;
+    while (!simulation.finished()) {
+        simulation.step();
+        if (simulation.time() < kWeighed + 0.5e-3) before = simulation.collider_totals()[0].impulse.z;
+    }
+    expect_sound(simulation);
+    SiloLoad load;
+    double moment = 0.0;
+    for (std::size_t i = 0; i < grains; ++i) {
+        load.filled += simulation.particles().mass[i];
+        moment += simulation.particles().mass[i] * (simulation.particles().position[i].z - down.z);
+    }
+    load.carried = (before - simulation.collider_totals()[0].impulse.z) / (kG * (kEnd - kWeighed));
+    load.density = load.filled * load.filled / (2.0 * moment * 0.25 * kPi * width * width);
+    return load;
+}
+
+/// kg, what a floor carries under a column of a mass (Janssen), by what it carries at most.
+double janssen(double filled, double most) { return most * (1.0 - std::exp(-filled / most)); }
+
+/// kg, what it carries at most: the wall holds 4 mu K / D of the stress a metre, K being the stress across over the
+/// stress along the axis.
+double most_by(double ratio, double density, double width) {
+    return density * kPi * width * width * width / (16.0 * kSiloFriction * ratio);
+}
+
+/// kg, the most with which the curve is nearest to all loads, by their relative distances.
+double fitted_most(std::span<const SiloLoad> loads) {
+    double best = 0.0;
+    double nearest = INFINITY;
+    for (double most = 0.02; most < 2.0; most *= 1.002) {
+        double sum = 0.0;
+        for (const SiloLoad& load : loads) {
+            const double off = load.carried / janssen(load.filled, most) - 1.0;
+            sum += off * off;
+        }
+        if (sum < nearest) nearest = sum, best = most;
+    }
+    return best;
+}
+
+// H. A. Janssen, Z. Ver. Dtsch. Ing. 39 (1895); that the floor is lowered first: L. Vanel, E. Clement, Eur. Phys. J. B
+// 11 (1999); that it carries the same while it goes on: Y. Bertho, F. Giorgiutti-Dauphine, J.-P. Hulin, Phys. Rev.
+// Lett. 90 (2003). In a short run one narrow column, whose wall must carry what a K between 0.3 and 1 says.
+TEST(GranularLaws, TheFloorOfASiloCarriesWhatJanssenSays) {
+    if (!test::is_long_run()) {
+        if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
+        constexpr double kNarrow = 4.0 * kDiameter;
+        const SiloLoad load = silo_load(kNarrow, 110, 1);
+        EXPECT_LT(load.carried, janssen(load.filled, most_by(0.3, load.density, kNarrow)));
+        EXPECT_GT(load.carried, janssen(load.filled, most_by(1.0, load.density, kNarrow)));
+        return;
+    }
+    constexpr double kWidth = 8.0 * kDiameter;
+    std::vector<SiloLoad> loads;
+    for (const std::size_t grains : {200U, 400U, 650U, 950U, 1350U, 1850U}) {
+        SiloLoad mean;
+        for (const std::uint64_t seed : {1U, 2U}) {
+            const SiloLoad load = silo_load(kWidth, grains, seed);
+            mean.filled += 0.5 * load.filled, mean.carried += 0.5 * load.carried, mean.density += 0.5 * load.density;
+        }
+        loads.push_back(mean);
+    }
+    const double most = fitted_most(loads);
+    const double ratio = most_by(1.0, loads.back().density, kWidth) / most;
+    std::string report = "most " + std::to_string(most) + " K " + std::to_string(ratio);
+    for (const SiloLoad& load : loads) {
+        EXPECT_NEAR(load.carried / janssen(load.filled, most), 1.0, 0.1) << load.filled;
+        report += "; " + std::to_string(load.filled) + " " + std::to_string(load.carried / janssen(load.filled, most));
+    }
+    EXPECT_GT(ratio, 0.3);
+    EXPECT_LT(ratio, 1.0);
+    RecordProperty("silo", report);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -7,6 +7,7 @@
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
 namespace {

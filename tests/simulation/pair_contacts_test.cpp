@@ -481,6 +481,15 @@ TEST(PairContacts, NothingIsGainedWhereFrictionActsInSeveralContactsAtOnce) {
     }
 }
 
+TEST(PairContacts, MassesThatTheArithmeticCannotCompareAreRefused) {
+    for (const double mass : {1e-300, 1e200}) {
+        SimulationSetup setup = pair_setup(0.01, 0.05, {});
+        setup.particles = {particle_of({0, 0, 0}, {1, 0, 0}, 0.1), particle_of({1, 0, 0}, {}, 0.1)};
+        setup.particles[1].mass = mass;
+        EXPECT_THROW(Simulation{std::move(setup)}, InputError) << mass;
+    }
+}
+
 // Many as few: as long as impacts do not crowd nothing is planned.
 TEST(PairContacts, AGasThatLosesEnergyDoesSoImpactByImpactHoweverManyThereAre) {
     for (const std::size_t count : {200U, 600U}) {

@@ -218,7 +218,7 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
     for (std::size_t k = 0; k < particles.size(); ++k) {
         const auto columns = impl().particles().attributes.columns();
         validate(particles[k], k, columns.size());
-        if (options().particle_contacts) validate_material(particles[k], k, *options().particle_contacts, columns);
+        if (options().particle_contacts) validate_sphere(particles[k], k, *options().particle_contacts, columns);
     }
     const std::uint64_t most = options().most_particles;
     const std::uint64_t room = room_below(most, impl().store.size());

@@ -23,9 +23,9 @@ void validate_heat(const SimulationSetup& setup);
 
 /// What spheres do when they meet, their materials, and what else there is.
 void validate_particle_contacts(const SimulationSetup& setup);
-/// Whether a particle is of one of the materials; columns: of its attributes.
-void validate_material(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
-                       std::span<const AttributeDescription> columns);
+/// A particle that is to meet others: its mass, and whether it is of one of the materials; columns: of its attributes.
+void validate_sphere(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
+                     std::span<const AttributeDescription> columns);
 
 /// A particle, by its number among those that are given; columns: how many attributes particles have.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);

@@ -16,6 +16,14 @@ namespace {
 /// Names of their own, so that scenes stay readable in a table.
 constexpr std::size_t kMostMaterials = 1000;
 
+/// kg: beyond them products of masses and their inverses leave the range of the arithmetic.
+constexpr double kLeastMass = 1e-100;
+constexpr double kLargestMass = 1e100;
+
+void require_mass(const Subject& subject, double mass) {
+    subject.require_in(mass, kLeastMass, kLargestMass, "mass", "1e-100 to 1e100 (kg) where spheres meet");
+}
+
 void require_material(const Subject& subject, const PairMaterial& material) {
     subject.require_in(material.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
     subject.require_not_negative(material.friction, "friction", "");
@@ -60,7 +68,6 @@ void validate_column(const SimulationSetup& setup, const Subject& subject) {
     if (!is_material(column->fallback, contacts.materials.size())) {
         subject.refuse("default of the attribute \"material\"", column->fallback.x, expected_material(contacts));
     }
-    for (std::size_t k = 0; k < setup.particles.size(); ++k) validate_material(setup.particles[k], k, contacts, all);
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
         for (const AttributeSpread& value : emitter.attributes) {
@@ -95,8 +102,9 @@ void validate_company(const SimulationSetup& setup, const Subject& subject) {
 
 }  // namespace
 
-void validate_material(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
-                       std::span<const AttributeDescription> columns) {
+void validate_sphere(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
+                     std::span<const AttributeDescription> columns) {
+    if (particle.radius > 0.0) require_mass(Subject("particle", number), particle.mass);
     if (contacts.materials.empty()) return;
     const auto column = std::find_if(columns.begin(), columns.end(),
                                      [](const AttributeDescription& a) { return a.name == kMaterialAttribute; });
@@ -113,6 +121,15 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     require_material(subject, {contacts.restitution, contacts.friction, contacts.rolling_friction});
     if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
     validate_names(contacts, subject);
+    for (std::size_t k = 0; k < setup.particles.size(); ++k) {
+        validate_sphere(setup.particles[k], k, contacts, setup.attributes);
+    }
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        if (emitter.parent && emitter.parent->share) continue;  // masses follow from the parent's
+        require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean - emitter.mass.spread);
+        require_mass(Subject("emitter", k, emitter.name), emitter.mass.mean + emitter.mass.spread);
+    }
     if (!contacts.materials.empty()) validate_column(setup, subject);
     validate_company(setup, subject);
 }

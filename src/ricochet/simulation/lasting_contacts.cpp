@@ -185,6 +185,7 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
     if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
     std::vector<std::pair<std::uint64_t, std::size_t>> by_id;
     std::vector<std::uint8_t> sleepy(members.size(), 0);
+    bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const std::uint64_t id = members[i].moving->id;
         by_id.emplace_back(id, i);
@@ -196,7 +197,9 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
         const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, enough);
         trace.still.push_back({id, steps});
         sleepy[i] = steps == enough && !is_carried_by_material(network, i) ? 1 : 0;
+        is_any_sleepy = is_any_sleepy || sleepy[i] != 0;
     }
+    if (!is_any_sleepy) return;
     std::sort(by_id.begin(), by_id.end());
     const auto number_of = [&](std::uint64_t id) {
         return std::lower_bound(by_id.begin(), by_id.end(), std::pair<std::uint64_t, std::size_t>(id, 0))->second;

@@ -46,7 +46,7 @@ void PairIslands::find_islands(const ParticleRange& range) {
     for (std::uint32_t k = 0; plans_.may_roam() && k < range.size(); ++k) {
         if (plans_.is_bound(k)) involved.push_back(k);
     }
-    islands_ = islands_of(std::move(involved));
+    islands_ = islands_of(involved);
 }
 
 std::uint32_t PairIslands::root_of(std::uint32_t k) {
@@ -65,17 +65,20 @@ bool PairIslands::join(std::uint32_t a, std::uint32_t b) {
     return true;
 }
 
-/// Islands in the order of their lowest particles.
-std::vector<PairIslands::Island> PairIslands::islands_of(std::vector<std::uint32_t> involved) {
-    std::vector<std::uint64_t> keys;
-    keys.reserve(involved.size());
-    for (const std::uint32_t k : involved) keys.push_back(std::uint64_t{root_of(k)} << 32U | k);
-    parallel_sort(keys);
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+/// Islands in the order of their lowest particles, which lead them.
+std::vector<PairIslands::Island> PairIslands::islands_of(const std::vector<std::uint32_t>& involved) {
+    is_involved_.assign(parents_.size(), 0);
+    for (const std::uint32_t k : involved) is_involved_[k] = 1;
+    island_of_.resize(parents_.size());
     std::vector<Island> islands;
-    for (std::size_t n = 0; n < keys.size(); ++n) {
-        if (n == 0 || keys[n] >> 32U != keys[n - 1] >> 32U) islands.emplace_back();
-        islands.back().particles.push_back(static_cast<std::uint32_t>(keys[n]));
+    for (std::uint32_t k = 0; k < is_involved_.size(); ++k) {
+        if (is_involved_[k] == 0) continue;
+        const std::uint32_t root = root_of(k);
+        if (root == k) {
+            island_of_[k] = islands.size();
+            islands.emplace_back();
+        }
+        islands[island_of_[root]].particles.push_back(k);
     }
     return islands;
 }
@@ -215,7 +218,7 @@ void PairIslands::rebuild(const TimeSpan& step) {
     for (const Island& island : islands_) {
         involved.insert(involved.end(), island.particles.begin(), island.particles.end());
     }
-    std::vector<Island> next = islands_of(std::move(involved));
+    std::vector<Island> next = islands_of(involved);
     auto before = islands_.begin();
     for (Island& island : next) {
         while (before != islands_.end() && before->particles.front() < island.particles.front()) ++before;

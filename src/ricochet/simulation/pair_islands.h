@@ -51,7 +51,7 @@ private:
     void find_islands(const ParticleRange& range);
     [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
     bool join(std::uint32_t a, std::uint32_t b);
-    [[nodiscard]] std::vector<Island> islands_of(std::vector<std::uint32_t> involved);
+    [[nodiscard]] std::vector<Island> islands_of(const std::vector<std::uint32_t>& involved);
     void run(const TimeSpan& step);
     void take_members(Island& island, const TimeSpan& step);
     [[nodiscard]] bool is_off_plan(const Island& island, const IslandMember& member) const;
@@ -68,6 +68,8 @@ private:
     std::size_t first_ = 0;  // of the range: numbers count from it
     std::vector<Island> islands_;
     std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
+    std::vector<std::uint8_t> is_involved_;
+    std::vector<std::size_t> island_of_;  // by the particle that leads it
     std::size_t round_ = 0;               // of joining islands
     std::vector<std::uint32_t> joined_;   // in the last round
     NeighbourGrid off_plan_grid_;

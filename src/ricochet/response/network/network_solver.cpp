@@ -170,8 +170,11 @@ void NetworkSolver::for_each_color(const Work& work) {
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
-        const std::size_t block = coloring_.is_serial(color) ? count : kBlock;
-        parallel_for_blocks(count, block, [&](std::size_t k, std::size_t begin, std::size_t end) {
+        if (count <= kBlock || coloring_.is_serial(color)) {
+            work(0, first, first + count);
+            continue;
+        }
+        parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
             work(k, first + begin, first + end);
         });
     }

@@ -1,6 +1,8 @@
-// Laws that dense grains are known by: what the floor of a silo carries.
+// Laws that dense grains are known by: what the floor of a silo carries, how fast a hopper runs out, how steep a drum's
+// surface is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -181,6 +183,157 @@ TEST(GranularLaws, TheFloorOfASiloCarriesWhatJanssenSays) {
     EXPECT_GT(ratio, 0.3);
     EXPECT_LT(ratio, 1.0);
     RecordProperty("silo", report);
+}
+
+/// A flat sheet around a round hole; the hole is a polygon of the circle's area.
+TriangleMesh sheet_with_hole(double width, double outer) {
+    constexpr std::uint32_t kCorners = 48;
+    const double turn = 2.0 * kPi / kCorners;
+    const double inner = 0.5 * width * std::sqrt(turn / std::sin(turn));
+    TriangleMesh mesh;
+    for (std::uint32_t k = 0; k < kCorners; ++k) {
+        for (const double radius : {inner, outer}) {
+            mesh.vertices.push_back({radius * std::cos(turn * k), radius * std::sin(turn * k), 0.0});
+        }
+    }
+    for (std::uint32_t k = 0; k < 2 * kCorners; k += 2) {
+        const std::uint32_t next = (k + 2) % (2 * kCorners);
+        mesh.triangles.push_back({k, k + 1, next + 1});
+        mesh.triangles.push_back({k, next + 1, next});
+    }
+    return mesh;
+}
+
+struct Outflow {
+    double begin = 0.0;     // s, of what is counted
+    double duration = 0.0;  // s, of that
+    double bin = 0.0;       // m, width of the flat-bottomed bin
+    double height = 0.0;    // m, of the filling
+};
+
+/// Grains a second that leave a bin through a hole in its floor.
+double outflow(double hole, const Outflow& flow) {
+    SimulationSetup setup = grain_setup(flow.begin + flow.duration, 0.5, Spin{});
+    setup.colliders = {mesh_collider(sheet_with_hole(hole, flow.bin)),
+                       mesh_collider(tube_mesh(0.5 * flow.bin, 0.0, 0.5), {}, "tube")};
+    setup.bounds = Box3{{-1, -1, -0.05}, {1, 1, 4}};
+    const double volume = 0.25 * kPi * flow.bin * flow.bin * flow.height;
+    const auto grains = static_cast<std::size_t>(0.6 * volume / (kPi / 6.0 * kDiameter * kDiameter * kDiameter));
+    add_cloud(setup, grains, 0.5 * flow.bin, 0.0, 3);
+    Simulation simulation(std::move(setup));
+    std::uint64_t before = 0;
+    while (!simulation.finished()) {
+        simulation.step();
+        if (simulation.time() < flow.begin + 0.5e-3) before = simulation.statistics().out_of_bounds;
+    }
+    expect_sound(simulation);
+    return static_cast<double>(simulation.statistics().out_of_bounds - before) / flow.duration;
+}
+
+/// Slope and intercept of the line of least squares.
+std::pair<double, double> line_through(std::span<const double> x, std::span<const double> y) {
+    const auto n = static_cast<double>(x.size());
+    double sx = 0.0;
+    double sy = 0.0;
+    double sxx = 0.0;
+    double sxy = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) sx += x[k], sy += y[k], sxx += x[k] * x[k], sxy += x[k] * y[k];
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    return {slope, (sy - slope * sx) / n};
+}
+
+// W. A. Beverloo, H. A. Leniger, J. van de Velde, Chem. Eng. Sci. 15 (1961): the rate is C sqrt(g) (D - k d)^(5/2)
+// times the density, C 0.58, k 1.4 for spheres. In a short run one hole.
+TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
+    if (!test::is_long_run()) {
+        if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
+        const double rate = outflow(6.0 * kDiameter, {0.15, 0.15, 11.0 * kDiameter, 8.0 * kDiameter});
+        const double density = 0.58 / (kPi / 6.0 * kDiameter * kDiameter * kDiameter);
+        EXPECT_NEAR(rate / (0.58 * density * std::sqrt(kG) * std::pow(4.6 * kDiameter, 2.5)), 1.0, 0.25);
+        return;
+    }
+    std::vector<double> holes;
+    std::vector<double> roots;
+    std::vector<double> gaps;
+    std::vector<double> logarithms;
+    std::string report;
+    for (const double hole : {5.0, 6.5, 8.0, 10.0}) {
+        // Five hundred grains and more each, of bins that are not half empty then.
+        const Outflow flow{0.3, std::clamp(1.5 * std::pow(5.0 / hole, 2.5), 0.25, 1.5), (hole + 10.0) * kDiameter,
+                           (hole + 5.0) * kDiameter};
+        const double rate = outflow(hole * kDiameter, flow);
+        holes.push_back(hole), roots.push_back(std::pow(rate, 0.4));
+        gaps.push_back(std::log(hole - 1.4)), logarithms.push_back(std::log(rate));
+        report += std::to_string(hole) + " " + std::to_string(rate) + "; ";
+    }
+    const auto [slope, intercept] = line_through(holes, roots);
+    const double k = -intercept / slope;
+    const double exponent = line_through(gaps, logarithms).first;
+    RecordProperty("outflow", report + "k " + std::to_string(k) + " exponent " + std::to_string(exponent));
+    EXPECT_GT(k, 1.2);
+    EXPECT_LT(k, 1.6);
+    EXPECT_NEAR(exponent, 2.5, 0.1);
+}
+
+/// Degrees, by which the centre of the grains in a drum is turned from below its axis, on the mean over the last half:
+/// the slope of a flat surface.
+double flowing_angle(double radius, double length, double friction, double duration) {
+    constexpr double kRate = 30.0;  // degrees/s
+    SimulationSetup setup = grain_setup(duration, friction, Spin{{0, 1, 0}, kRate});
+    setup.materials.push_back({"glass", 0.3, 0.0});
+    CylinderShape shell{radius, 2.0 * length, {}};
+    shell.placement.rotation_axis = {1, 0, 0};
+    shell.placement.rotation_degrees = 90.0;
+    // Smooth walls in front and behind, which hold nothing up.
+    setup.colliders = {{"shell", shell, 0, "mover"},
+                       {"front", PlaneShape{{0, -0.5 * length, 0}, {0, 1, 0}}, 1},
+                       {"behind", PlaneShape{{0, 0.5 * length, 0}, {0, -1, 0}}, 1}};
+    const double filled = 0.35 * kPi * radius * radius * length;
+    const auto grains = static_cast<std::size_t>(0.6 * filled / (kPi / 6.0 * kDiameter * kDiameter * kDiameter));
+    constexpr double kPitch = (1.0 + kSpread) * 1.02 * kDiameter;
+    RandomSequence random(4, 0, 0);
+    const auto across = static_cast<int>(length / kPitch);
+    const auto most = static_cast<int>(radius / kPitch);
+    for (int z = -most; z <= most; ++z) {
+        for (int x = -most; x <= most; ++x) {
+            for (int y = 0; y < across && setup.particles.size() < grains; ++y) {
+                const Vec3 place = kPitch * Vec3{x + 0.0, y - 0.5 * (across - 1), z + 0.0};
+                if (std::hypot(place.x, place.z) + 0.56 * kDiameter > radius) continue;
+                Particle grain;
+                grain.radius = 0.5 * kDiameter * (1.0 + kSpread * (2.0 * random.uniform() - 1.0));
+                grain.position = place + 0.005 * kDiameter * random.unit_vector();
+                grain.mass = grain_mass(grain.radius);
+                setup.particles.push_back(grain);
+            }
+        }
+    }
+    Simulation simulation(std::move(setup));
+    Vec3 centre;
+    while (!simulation.finished()) {
+        simulation.step();
+        if (simulation.time() < 0.5 * duration) continue;
+        for (const Vec3& position : simulation.particles().position) centre += position;
+    }
+    expect_sound(simulation);
+    return std::atan2(-centre.x, -centre.z) * 180.0 / kPi;
+}
+
+// Steady flows of glass beads have friction between tan 20.9 (slow) and tan 32.8 degrees (fast): P. Jop, Y. Forterre,
+// O. Pouliquen, Nature 441 (2006). With less friction of the grains on each other they flow on less steep surfaces.
+TEST(GranularLaws, ADrumFlowsAsSteeplyAsGlassBeadsDo) {
+    if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
+    const bool is_long = test::is_long_run();
+    const double radius = (is_long ? 15.0 : 6.0) * kDiameter;
+    const double length = (is_long ? 7.0 : 3.0) * kDiameter;
+    const double duration = is_long ? 5.0 : 2.4;
+    const double angle = flowing_angle(radius, length, 0.5, duration);
+    RecordProperty("angle", std::to_string(angle));
+    EXPECT_GT(angle, 20.9);
+    EXPECT_LT(angle, 32.8);
+    if (!is_long) return;
+    const double smoother = flowing_angle(radius, length, 0.1, duration);
+    RecordProperty("smoother", std::to_string(smoother));
+    EXPECT_LT(smoother, angle - 2.0);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct MetSphere {
     RecordedMotion before;
     RecordedMotion after;
     std::uint32_t material = 0;  ///< its number
-    bool is_bound = false;       ///< it was sliding, rolling or resting on a wall, along an approximate path
+    bool is_bound = false;       ///< it has slid, rolled or rested on a wall in this step, in approximate arcs
 };
 
 /// Two of the spheres touch.

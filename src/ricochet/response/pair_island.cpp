@@ -166,7 +166,10 @@ void PairIsland::go_to(std::size_t m, double time) {
     member.lists.append(lists);
     append_to(member.way, scratch_->flown);
     Box3 box;
-    for (const FlownPiece& piece : scratch_->flown) box.include(box_of(piece.path, piece.duration));
+    for (const FlownPiece& piece : scratch_->flown) {
+        box.include(box_of(piece.path, piece.duration));
+        member.is_bound = member.is_bound || !piece.is_free;
+    }
     box.include(moving.state.position);
     member.swept.include(grown(box, member.radius()));
 }
@@ -418,7 +421,7 @@ void PairIsland::record_meeting(std::span<const PairContact> contacts, const std
                                    {body.position, body.velocity, body.spin},
                                    {after[k].position, after[k].velocity, after[k].spin},
                                    body.material,
-                                   moving.contact.count > 0});
+                                   (*members_)[changed[k]].is_bound});
     }
     for (const PairContact& contact : contacts) {
         meeting.contacts.push_back({contact.first, contact.second, contact.impulse});

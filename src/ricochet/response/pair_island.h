@@ -39,6 +39,7 @@ struct IslandMember {
     MoveOutcome outcome{};
     MoveLists lists{};
     std::uint32_t impacts = 0;  ///< on other members
+    bool is_bound = false;      ///< some of its way was along walls, in arcs
     bool is_cut_off = false;    ///< it has spent its budget
     Box3 swept{};               ///< of the whole sphere on all of its way
     /// All of its way, where it has met others.

@@ -26,7 +26,8 @@ PairMaterials::PairMaterials(const PairContactSettings& settings)
         const std::size_t b = number_of(settings.materials, pair.second);
         table_[a * count_ + b] = table_[b * count_ + a] = pair.material;
     }
-    for (const PairMaterial& pair : table_) least_restitution_ = std::min(least_restitution_, pair.restitution);
+    loses_energy_ =
+        std::any_of(table_.begin(), table_.end(), [](const PairMaterial& pair) { return pair.restitution < 1.0; });
 }
 
 }  // namespace ricochet

@@ -27,15 +27,13 @@ public:
     [[nodiscard]] const PairMaterial& of(std::uint32_t a, std::uint32_t b) const { return table_[a * count_ + b]; }
     /// Materials; 1 where all spheres are of one.
     [[nodiscard]] std::size_t count() const { return count_; }
-    /// Of all pairs.
-    [[nodiscard]] double least_restitution() const { return least_restitution_; }
     /// Some impacts take energy along the normal.
-    [[nodiscard]] bool loses_energy() const { return least_restitution_ < 1.0; }
+    [[nodiscard]] bool loses_energy() const { return loses_energy_; }
 
 private:
     std::size_t count_ = 1;
     std::vector<PairMaterial> table_;
-    double least_restitution_ = 1.0;
+    bool loses_energy_ = false;
 };
 
 }  // namespace ricochet

@@ -8,12 +8,6 @@
 namespace ricochet {
 namespace {
 
-/// More spheres that forces pull, and whose impacts lose a good part of their energy, will soon lie on each other: they
-/// are planned from the begin, so that the first plan of a collapse is not one without a start. Gases are none of
-/// these.
-constexpr std::size_t kMostInFreeIsland = 300;
-constexpr double kSoonLies = 0.9;
-
 /// Impacts per sphere and step beyond which an island is dense: where impacts lose energy, and where none does, so that
 /// a plan would lose what they keep.
 constexpr std::size_t kMostImpacts = 4;
@@ -42,10 +36,6 @@ void keep_way(IslandMember& member, const ForceInput& from, const std::vector<Fl
 
 bool DenseIslands::begins_dense(const std::vector<IslandMember>& members) const {
     if (!parts_.may_be_dense() || members.size() < 2) return false;
-    if (members.size() > kMostInFreeIsland && parts_.materials.least_restitution() < kSoonLies &&
-        parts_.response.rules().forces.acceleration(members.front().moving.state) != Vec3{}) {
-        return true;
-    }
     return contacts_.memory().has_pair_of(members.begin(), members.end(),
                                           [](const IslandMember& member) { return member.moving.id; });
 }

@@ -23,7 +23,7 @@ public:
     DenseIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
 
     /// An island that is dense before anything has been tried: where spheres pressed on each other in the last step
-    /// they still do; many that forces pull soon will.
+    /// they still do.
     [[nodiscard]] bool begins_dense(const std::vector<IslandMember>& members) const;
     /// Beyond these an island that does not begin so is dense: spheres that meet alone in a step do so at their exact
     /// time with every method.

@@ -44,7 +44,7 @@ TEST(SphereOverlaps, FindsWhatAllAgainstAllFinds) {
         std::vector<std::pair<std::uint64_t, std::uint64_t>> found;
         for (const auto& pair : overlaps.check(spheres, 0.01)) found.emplace_back(pair.first, pair.second);
         EXPECT_EQ(found, expected);
-        EXPECT_GT(expected.size(), 10U);
+        EXPECT_GE(expected.size(), test::scaled(1500) < 1500 ? 0U : 11U);
         EXPECT_EQ(overlaps.largest(), largest);
     }
 }

@@ -88,7 +88,8 @@ TEST(BenchCases, AllRunAsSmallCopies) {
         EXPECT_EQ(simulation.particles().size(), 50U);
         EXPECT_EQ(simulation.statistics().frozen, 0U);
         EXPECT_EQ(simulation.statistics().started_inside, 0U);
-        // In the corners of a rough mesh that turns a sphere that others push may find no way on for a step.
+        // Spheres in the mesh that tumbles lose some of their steps, five times in as many even where they do not meet;
+        // why is not known. Others lose none.
         const std::uint64_t most = c.moves == Moves::tumbling ? simulation.statistics().particle_steps / 100 : 0;
         EXPECT_LE(simulation.statistics().budget_exhausted, most);
     }

@@ -11,31 +11,38 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
 
+/// Without the table that spheres are moved by.
+verify::PairBooks books_of(const PairParts& parts) {
+    const PairContactSettings& settings = parts.settings;
+    const ResponseRules& rules = parts.response.rules();
+    verify::PairBooks books{settings.restitution, settings.friction, settings.rolling_friction,
+                            rules.settings.resting_speed, rules.forces.is_uniform()};
+    const std::vector<std::string>& names = settings.materials;
+    books.materials = names.size();
+    books.by_materials.assign(names.size() * names.size(),
+                              {settings.restitution, settings.friction, settings.rolling_friction});
+    for (const MaterialPair& pair : settings.pairs) {
+        const auto number = [&](const std::string& name) {
+            return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        };
+        const std::size_t a = number(pair.first);
+        const std::size_t b = number(pair.second);
+        const verify::PairBooks::Pair own{pair.material.restitution, pair.material.friction,
+                                          pair.material.rolling_friction};
+        books.by_materials[a * names.size() + b] = books.by_materials[b * names.size() + a] = own;
+    }
+    return books;
+}
+
 }  // namespace
+
+PairMotion::PairMotion(const PairParts& parts)
+    : parts_(parts), contacts_(parts), plans_(parts), islands_(parts, plans_, contacts_), books_(books_of(parts)) {}
 
 bool PairMotion::has_material(std::size_t particle) const {
     if (!parts_.material_column) return true;
     return is_material(parts_.store.particles().attributes.value(*parts_.material_column, particle),
                        parts_.materials.count());
-}
-
-verify::PairBooks PairMotion::books() const {
-    const PairContactSettings& settings = parts_.settings;
-    const ResponseRules& rules = parts_.response.rules();
-    verify::PairBooks books{settings.restitution, settings.friction, settings.rolling_friction,
-                            rules.settings.resting_speed, rules.forces.is_uniform()};
-    books.materials = settings.materials.size();
-    for (const std::string& a : settings.materials) {
-        for (const std::string& b : settings.materials) {
-            PairMaterial found{settings.restitution, settings.friction, settings.rolling_friction};
-            for (const MaterialPair& pair : settings.pairs) {
-                const bool is_it = (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
-                if (is_it) found = pair.material;
-            }
-            books.by_materials.push_back({found.restitution, found.friction, found.rolling_friction});
-        }
-    }
-    return books;
 }
 
 void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {

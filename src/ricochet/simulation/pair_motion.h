@@ -25,8 +25,7 @@ struct PairCounts {
 
 class PairMotion {
 public:
-    explicit PairMotion(const PairParts& parts)
-        : parts_(parts), contacts_(parts), plans_(parts), islands_(parts, plans_, contacts_) {}
+    explicit PairMotion(const PairParts& parts);
 
     /// Works off the islands among the particles of the range; none of their members is moved by the ordinary way any
     /// more in this step.
@@ -41,7 +40,7 @@ public:
     /// The same for the verifier, where there is one.
     [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
     /// What it holds them against.
-    [[nodiscard]] verify::PairBooks books() const;
+    [[nodiscard]] const verify::PairBooks& books() const { return books_; }
     /// Islands that were dense and not solved to the tolerance, in all steps.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
 
@@ -67,6 +66,7 @@ private:
     LastingContacts contacts_;
     PairPlans plans_;
     PairIslands islands_;
+    verify::PairBooks books_;
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;
     PairCounts counts_;

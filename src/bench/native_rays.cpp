@@ -20,7 +20,7 @@ constexpr int kMostBounces = 1000;
 /// Sixteen rays and which of them are there.
 struct Packet {
     alignas(64) std::array<int, kPacket> valid{};
-    RTCRayHit16 rays;
+    RTCRayHit16 rays{};  // Embree looks at lanes without a ray, too
 
     void set(std::size_t lane, const RaySegment& segment) {
         valid[lane] = -1;

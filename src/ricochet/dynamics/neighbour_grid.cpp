@@ -163,9 +163,13 @@ void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) 
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::vector<double>& x = sample[axis];
         if (x.empty()) x.push_back(all.lower[static_cast<int>(axis)]);
-        std::sort(x.begin(), x.end());
-        const double low = x[x.size() / 64];
-        const double high = x[x.size() - 1 - x.size() / 64];
+        const auto at = [&](std::size_t rank) {
+            const auto item = x.begin() + static_cast<std::ptrdiff_t>(rank);
+            std::nth_element(x.begin(), item, x.end());
+            return *item;
+        };
+        const double low = at(x.size() / 64);
+        const double high = at(x.size() - 1 - x.size() / 64);
         middle[axis] = 0.5 * low + 0.5 * high;
         span = std::max(span, high - low);
     }

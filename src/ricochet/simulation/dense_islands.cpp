@@ -16,6 +16,9 @@ constexpr std::size_t kMostElasticImpacts = 64;
 /// Plans of an island in a step, each with contacts looked for farther than in the one before.
 constexpr int kMostPlans = 8;
 
+/// Part of what another sphere may go that one near it is expected to be pushed.
+constexpr double kPushed = 0.5;
+
 /// Where a member has gone; what has no time left stays where it is to the end.
 void keep_way(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
     member.way = flown;
@@ -73,20 +76,41 @@ void DenseIslands::take_members(std::vector<IslandMember>& members, Work& work) 
     }
 }
 
+void DenseIslands::find_pairs(Work& work) {
+    work.boxes.clear();
+    for (const NetworkMember& member : work.members) {
+        work.boxes.push_back(ball_box(member.moving->state.position, member.radius + member.reach));
+    }
+    work.pairs.clear();
+    for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) work.pairs.push_back({pair.first, pair.second});
+}
+
+/// What is near something that goes far may be pushed by it: then the first plan is the last one. False where nobody
+/// reaches farther by that.
+bool DenseIslands::expect_pushes(Work& work) {
+    std::vector<double> pushed(work.members.size(), 0.0);
+    for (const auto& [first, second] : work.pairs) {
+        pushed[first] = std::max(pushed[first], kPushed * work.members[second].reach);
+        pushed[second] = std::max(pushed[second], kPushed * work.members[first].reach);
+    }
+    bool is_any = false;
+    for (std::size_t i = 0; i < pushed.size(); ++i) {
+        NetworkMember& member = work.members[i];
+        if (member.stays() || !(pushed[i] > member.reach)) continue;
+        member.reach = pushed[i];
+        is_any = true;
+    }
+    return is_any;
+}
+
 /// Again where a sphere is pushed farther than its contacts have been looked for.
 NetworkReport DenseIslands::plan(Work& work, double duration) const {
     for (NetworkMember& member : work.members) member.reach = work.network.first_reach(member);
     MoveScratch scratch;
     NetworkReport report;
     for (int k = 0; k < kMostPlans; ++k) {
-        work.boxes.clear();
-        for (const NetworkMember& member : work.members) {
-            work.boxes.push_back(ball_box(member.moving->state.position, member.radius + member.reach));
-        }
-        work.pairs.clear();
-        for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) {
-            work.pairs.push_back({pair.first, pair.second});
-        }
+        find_pairs(work);
+        if (k == 0 && expect_pushes(work)) find_pairs(work);
         report = work.network.plan(work.members, work.pairs, duration, contacts_.memory(), scratch);
         if (!work.network.reach_farther(work.members)) break;
     }

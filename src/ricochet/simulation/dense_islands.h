@@ -43,6 +43,8 @@ private:
     };
     [[nodiscard]] std::unique_ptr<Work> take_work();
     void take_members(std::vector<IslandMember>& members, Work& work) const;
+    static void find_pairs(Work& work);
+    [[nodiscard]] static bool expect_pushes(Work& work);
     [[nodiscard]] NetworkReport plan(Work& work, double duration) const;
     void move(std::vector<IslandMember>& members, Work& work, const DenseTrace& trace) const;
 

@@ -16,6 +16,10 @@ namespace {
 /// Parts of the radius beside what lies held by walls in which a collider that moves may disturb it.
 constexpr double kDisturbed = 0.01;
 
+/// Spheres one behind the other that are expected to be deflected by one that lies; what comes behind these, and meets
+/// them, is found when they have been moved, and costs that again.
+constexpr int kDeflections = 2;
+
 }  // namespace
 
 void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces) {
@@ -30,6 +34,11 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     std::vector<std::uint32_t> asked;
     for (std::uint32_t k = 0; !is_bounded_ && k < boxes_.size(); ++k) asked.push_back(k);
     ask(std::move(asked));
+    find_pairs();
+    for (int k = 0; k < kDeflections && expect_deflections(); ++k) find_pairs();
+}
+
+void PairPlans::find_pairs() {
     pairs_ = grid_.find_pairs(boxes_);
     add_pairs_with_sleepers();
     std::erase_if(pairs_, [&](const NeighbourPair& pair) { return !moves(pair.first) && !moves(pair.second); });
@@ -40,6 +49,23 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     parallel_for_blocks(pairs_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) met_[n] = do_meet(pairs_[n]) ? 1 : 0;
     });
+}
+
+/// What flies freely onto something that lies, presses or is expected to be deflected itself does not go on as it has
+/// declared: it says again how far it may come. False where there is none.
+bool PairPlans::expect_deflections() {
+    if (!parts_.may_be_dense()) return false;
+    std::vector<std::uint32_t> deflected;
+    for (std::size_t n = 0; n < pairs_.size(); ++n) {
+        const NeighbourPair& pair = pairs_[n];
+        if (met_[n] == 0 || is_free(pair.first) == is_free(pair.second)) continue;
+        deflected.push_back(is_free(pair.first) ? pair.first : pair.second);
+    }
+    for (const std::uint32_t k : deflected) {
+        freedom_[k] = Freedom::bound;
+        boxes_[k] = reachable_box(k);
+    }
+    return !deflected.empty();
 }
 
 /// What is known without asking.

@@ -68,6 +68,8 @@ private:
     [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;
     [[nodiscard]] const Box3& place_of(std::uint32_t k) const { return is_asleep(k) ? sleeper_boxes_[k] : boxes_[k]; }
     void declare();
+    void find_pairs();
+    [[nodiscard]] bool expect_deflections();
     void add_pairs_with_sleepers();
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 

@@ -34,26 +34,20 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
 
 }  // namespace
 
+bool NetworkSolver::may_rebound(std::span<const NetworkContact> contacts) {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [](const NetworkContact& contact) { return contact.restitution > 0.0 && !contact.touched; });
+}
+
 /// The impact without rebound says what is connected.
 void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings,
                             NetworkReport& report) {
-    const bool may_rebound = std::any_of(contacts.begin(), contacts.end(), [](const NetworkContact& contact) {
-        return contact.restitution > 0.0 && !contact.touched;
-    });
-    if (!may_rebound) return;
-    impacts_.assign(before_, rows_);
-    const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
-    bool rebounds = false;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        NetworkRow& row = rows_[i];
-        const double approach = approach_of(row, before_[row.a], before_[row.b]);
-        const double e = own_restitution(contacts[coloring_.order()[i]]) == 0.0 ? 0.0 : least[impacts_.of(row)];
-        if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
-        row.bound = std::min(row.bound, e * approach);
-        rebounds = true;
-    }
-    if (!rebounds) return;
-    iterate(settings, report);
+    NetworkSettings first = settings;
+    first.tolerance = std::max(settings.tolerance, settings.connecting);
+    iterate(first, report);
+    const bool any = let_rebound(contacts);
+    if (any || first.tolerance > settings.tolerance) iterate(settings, report);
+    if (!any) return;
     const std::vector<Gain> gains = gains_of_impacts();
     bool gained = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -63,6 +57,22 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
         gained = true;
     }
     if (gained) iterate(settings, report);
+}
+
+/// Sets the speeds with which contacts have to leave; false where none has to.
+bool NetworkSolver::let_rebound(std::span<const NetworkContact> contacts) {
+    impacts_.assign(before_, rows_);
+    const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
+    bool any = false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        NetworkRow& row = rows_[i];
+        const double approach = approach_of(row, before_[row.a], before_[row.b]);
+        const double e = own_restitution(contacts[coloring_.order()[i]]) == 0.0 ? 0.0 : least[impacts_.of(row)];
+        if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
+        row.bound = std::min(row.bound, e * approach);
+        any = true;
+    }
+    return any;
 }
 
 /// By connected impact, which are found anew. The work that parts what overlaps is no gain.

@@ -18,7 +18,13 @@ constexpr double kSlow = 0.1;
 
 /// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
 constexpr std::size_t kFewContacts = 64;
+
+/// Part of the overlap that many contacts may leave that so few may.
+constexpr double kOfFew = 0.5;
 constexpr double kRounding = 1e-12;
+
+/// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.
+constexpr double kConnecting = 4.0;
 
 /// Part of a radius beside it in which contacts are looked for even where nothing moves.
 constexpr double kReach = 0.05;
@@ -181,9 +187,15 @@ NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) 
     NetworkSettings settings;
     settings.duration = duration_;
     const double still = kNetworkStill * smallest / duration_;
-    settings.enough = std::min(kNetworkOverlap * smallest / duration_, std::max(kSlow * fastest, still));
+    const bool is_few = contacts_.size() <= kFewContacts;
+    const double overlap = (is_few ? kOfFew : 1.0) * kNetworkOverlap;
+    settings.enough = std::min(overlap * smallest / duration_, std::max(kSlow * fastest, still));
     settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * fastest, still));
-    if (contacts_.size() <= kFewContacts) settings.tolerance = std::min(still, kRounding * fastest);
+    if (is_few) {
+        settings.tolerance = std::min(still, kRounding * fastest);
+    } else {
+        settings.connecting = kConnecting * settings.enough;
+    }
     settings.sweeps = kSweeps;
     settings.most_sweeps = kMostSweeps;
     return settings;

@@ -36,8 +36,10 @@ struct NetworkRow {
     double bound = 0.0;    ///< m/s, with which it may still approach; < 0: with which it has to leave
     double parting = 0.0;  ///< m/s, >= 0, with which what overlaps is parted
     double friction = 0.0;
-    double normal_mass = 0.0;  ///< kg, impulse that changes the approach by 1 m/s
-    double slip_mass = 0.0;    ///< kg, the same of the slip
+    double normal_mass = 0.0;    ///< kg, impulse that changes the approach by 1 m/s
+    double slip_mass = 0.0;      ///< kg, the same of the slip
+    double mobility = 0.0;       ///< 1/kg, the inverse of the first: sweeps need not divide
+    double slip_mobility = 0.0;  ///< 1/kg, of the second
     NetworkPush push;
     std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
 
@@ -59,13 +61,14 @@ struct RollingRow {
 
 /// How much a sweep has changed.
 struct SweepChange {
-    double squared = 0.0;  ///< J, sum of impulses times the velocities that they change
-    double worst = 0.0;    ///< m/s, the largest change of a contact's velocity
+    double squared = 0.0;        ///< J, sum of impulses times the velocities that they change
+    double worst_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's velocity
 
     void add(const SweepChange& other) {
         squared += other.squared;
-        worst = std::max(worst, other.worst);
+        worst_squared = std::max(worst_squared, other.worst_squared);
     }
+    [[nodiscard]] double worst() const { return std::sqrt(worst_squared); }
 };
 
 [[nodiscard]] inline double approach_of(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
@@ -103,31 +106,34 @@ inline void apply_moment(const RollingRow& rolling, const Vec3& moment, NetworkS
     if (b.mobility != 0.0) b.turning -= (b.turnability * rolling.per_radius_b) * moment;
 }
 
-/// v, shortened to a length where it is longer.
-[[nodiscard]] inline Vec3 shortened(const Vec3& v, double most) {
+/// The part of a vector's length that is left where it may be no longer than `most`.
+[[nodiscard]] inline double length_kept(const Vec3& v, double most) {
     const double squared = length_squared(v);
-    return squared > most * most ? (most / std::sqrt(squared)) * v : v;
+    return squared > most * most ? most / std::sqrt(squared) : 1.0;
 }
+
+/// v, shortened to a length where it is longer.
+[[nodiscard]] inline Vec3 shortened(const Vec3& v, double most) { return length_kept(v, most) * v; }
 
 /// Puts a row right for the state that there is; returns by what it has changed its impulse.
 [[nodiscard]] inline NetworkPush relax(NetworkRow& row, NetworkState& a, NetworkState& b, SweepChange& change) {
     NetworkPush by;
     by.normal =
         std::max(-row.push.normal, -kNetworkOverRelaxation * row.normal_mass * (approach_of(row, a, b) + row.bound));
+    const bool pushes = row.push.normal > 0.0 || by.normal != 0.0;
+    if (!pushes) return by;
     row.push.normal += by.normal;
-    if (by.normal != 0.0) {
-        const double velocity = by.normal / row.normal_mass;
-        change.squared += by.normal * velocity;
-        change.worst = std::max(change.worst, std::fabs(velocity));
-    }
-    if (row.friction > 0.0 && (row.push.normal > 0.0 || by.normal != 0.0)) {
+    const double velocity = by.normal * row.mobility;
+    change.squared += by.normal * velocity;
+    change.worst_squared = std::max(change.worst_squared, velocity * velocity);
+    if (row.friction > 0.0) {
         const Vec3 wish = row.push.tangential - row.slip_mass * slip_of(row, a, b);
-        const Vec3 cut = shortened(wish, row.friction * row.push.normal);
+        const Vec3 cut = length_kept(wish, row.friction * row.push.normal) * wish;
         by.tangential = cut - row.push.tangential;
         row.push.tangential = cut;
-        const double squared = length_squared(by.tangential) / row.slip_mass;
+        const double squared = length_squared(by.tangential) * row.slip_mobility;
         change.squared += squared;
-        change.worst = std::max(change.worst, std::sqrt(squared / row.slip_mass));
+        change.worst_squared = std::max(change.worst_squared, squared * row.slip_mobility);
     }
     apply(row, by, a, b);
     return by;
@@ -143,7 +149,7 @@ inline void relax(const NetworkRow& row, RollingRow& rolling, NetworkState& a, N
     const double squared = length_squared(rolling.change) / rolling.inertia;
     change.squared += squared;
     const double per_radius = std::max(rolling.per_radius_a, rolling.per_radius_b);
-    change.worst = std::max(change.worst, std::sqrt(squared / rolling.inertia) / per_radius);
+    change.worst_squared = std::max(change.worst_squared, squared / (rolling.inertia * per_radius * per_radius));
 }
 
 }  // namespace ricochet

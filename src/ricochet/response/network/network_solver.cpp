@@ -23,8 +23,11 @@ NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<cons
     NetworkReport report;
     set_up(bodies, contacts, settings.duration);
     apply_start();
-    iterate(settings, report);
-    rebound(contacts, settings, report);
+    if (may_rebound(contacts)) {
+        rebound(contacts, settings, report);
+    } else {
+        iterate(settings, report);
+    }
     take_back_gains(report);
     hand_over(bodies);
     return report;
@@ -75,7 +78,9 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
     const NetworkState& b = before_[row.b];
     const double mobility = a.mobility + b.mobility;
     row.normal_mass = mobility > 0.0 ? 1.0 / mobility : 0.0;
-    row.slip_mass = mobility > 0.0 ? 1.0 / (mobility + a.turnability + b.turnability) : 0.0;
+    row.mobility = mobility;
+    row.slip_mobility = mobility + a.turnability + b.turnability;
+    row.slip_mass = mobility > 0.0 ? 1.0 / row.slip_mobility : 0.0;
     row.push.normal = std::max(0.0, contact.start.normal);
     const Vec3& friction = contact.start.tangential;
     row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
@@ -152,10 +157,10 @@ void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& repo
     for (int k = 1;; ++k) {
         const SweepChange change = sweep();
         ++report.sweeps;
-        report.residual = change.worst;
+        report.residual = change.worst();
         const double enough = k < settings.sweeps ? settings.tolerance : std::max(settings.tolerance, settings.enough);
-        report.is_converged = change.worst <= std::max(settings.tolerance, settings.enough);
-        if (change.worst <= enough || k >= settings.most_sweeps) return;
+        report.is_converged = report.residual <= std::max(settings.tolerance, settings.enough);
+        if (report.residual <= enough || k >= settings.most_sweeps) return;
         if (before > 0.0 && change.squared <= before) {
             go_on(static_cast<double>(momentum_) / (momentum_ + 3));
         } else {

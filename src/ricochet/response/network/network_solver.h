@@ -49,6 +49,8 @@ private:
     void begin_anew();
     template <class Work>
     void for_each_color(const Work& work);
+    [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
+    [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);
     void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
     [[nodiscard]] std::vector<Gain> gains_of_impacts();
     void take_back_gains(NetworkReport& report);

@@ -23,6 +23,9 @@ install(FILES
 
 string(REGEX MATCH "^[0-9]+" embree_major "${EMBREE_VERSION}")
 set(ricochet_private_libraries "-lembree${embree_major} -lOpenMeshCore -ltbb -lfmt")
+if(RICOCHET_ASSIMP)
+  string(APPEND ricochet_private_libraries " -lassimp")
+endif()
 if(ricochet_library_type STREQUAL "STATIC_LIBRARY")
   set(ricochet_public_libraries "-lricochet ${ricochet_private_libraries}")
 else()

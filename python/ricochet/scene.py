@@ -149,13 +149,16 @@ class MeshCollider(Thing):
     motion: A frame of its own: poses in the order of time, at least one, each `{"time": ..., "position": ...,
         "rotation": ..., "scale": ...}`, within `frame` where that is given too. The collider's own position and
         rotation are within that.
-    file: The mesh: OBJ, PLY, STL or OFF. Required.
+    file: The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb). Required.
+    up: Axis of the file that points up; z does in scenes. Where y does, (x, y, z) is read as (x, -z, y), before the
+        scale.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
     scale: Factor, or one for each of its own axes; a negative one mirrors. Default: 1.
-    group_materials: Materials of parts of an OBJ mesh: names that the file gives to its faces, each with one of the
-        names in `materials`. A face goes by its `usemtl` name; where that is not listed by its `g` name (the whole
-        line, then word by word), then by its `o` name. Faces without a listed name take the collider's material.
+    group_materials: Materials of parts of an OBJ or glTF mesh: names that the file gives to its faces, each with
+        one of the names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed
+        by its `g` name (the whole line, then word by word; of glTF the mesh's), then by its `o` name (the node's).
+        Faces without a listed name take the collider's material.
     deformation: Its vertices move: `file` says the faces only. Only with the response "exact", and without `frame`
         and `motion`.
     """
@@ -489,8 +492,10 @@ class MeshEmitter(Thing):
     material: Of which of `particle_contacts.materials` the particles are.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
-    file: The mesh: OBJ, PLY, STL or OFF.
+    file: The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).
     collider: The name of a mesh collider: its surface, in the frame that it stands in.
+    up: Axis of the file that points up; z does in scenes. Where y does, (x, y, z) is read as (x, -z, y), before the
+        scale.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
     scale: Factor, or one for each of its own axes; a negative one mirrors. Default: 1.
@@ -1287,7 +1292,9 @@ class ChainSprings(Thing):
 class ClothSprings(Thing):
     """A particle at every vertex of a mesh, a spring along every edge; at rest as the mesh is. A particle has a third of the mass of every triangle around it.
 
-    file: The mesh: OBJ, PLY, STL or OFF. Required.
+    file: The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb). Required.
+    up: Axis of the file that points up; z does in scenes. Where y does, (x, y, z) is read as (x, -z, y), before the
+        scale.
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
     scale: Factor, or one for each of its own axes; a negative one mirrors. Default: 1.

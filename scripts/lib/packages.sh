@@ -16,10 +16,11 @@ packages_test=(libgtest-dev libbenchmark-dev pkgconf)
 packages_format=(clang-format)
 packages_tidy=(clang-tidy)
 packages_clang=(clang)
+packages_assimp=(libassimp-dev)           # mesh files in FBX, DAE, 3DS and others
 packages_mpi=(libopenmpi-dev openmpi-bin) # runs that several processes share
 # Tests that read the output with the programs users have. Without them those tests say that they were skipped.
 # Blender, which one of them uses too, is left to who wants it: half a gigabyte.
-packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv "${packages_mpi[@]}")
+packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv "${packages_assimp[@]}" "${packages_mpi[@]}")
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.
 

@@ -55,6 +55,8 @@ Json json_of(const MeshReport& report, const std::string& file) {
     out["unused_vertices"] = topology.unused_vertices;
     out["consistently_oriented"] = topology.consistently_oriented;
     out["inconsistent_edges"] = topology.inconsistent_edges;
+    out["y_up"] = report.y_up;
+    out["notes"] = report.notes;
     out["welded_corners"] = report.weld ? Json(report.weld->corners) : Json(nullptr);
     out["warnings"] = report.warnings;
     return out;
@@ -76,6 +78,7 @@ void print_sizes(const MeshReport& report) {
     print_line("vertices", report.vertices);
     print_line("faces", report.faces);
     print_line("triangles", report.triangles);
+    if (report.y_up) print_line("up", "y, as glTF says; read as (x, -z, y), so that z points up");
     print_line("bounds", fmt::format("{} to {}", text_of(report.bounds.lower), text_of(report.bounds.upper)));
     print_line("area", fmt::format("{:.6g} m^2", report.area));
     print_line("volume", report.volume ? fmt::format("{:.6g} m^3", *report.volume) : "none (open surface)");
@@ -109,6 +112,7 @@ void run_info(const InfoOptions& options) {
     print_line("file", options.mesh);
     print_sizes(report);
     print_topology(report);
+    for (const std::string& note : report.notes) cli::print("note: {}\n", note);
     for (const std::string& warning : report.warnings) cli::print("warning: {}\n", warning);
 }
 
@@ -117,7 +121,7 @@ void run_info(const InfoOptions& options) {
 void add_info_command(cli::Command program, int& exit_code) {
     const auto options = std::make_shared<InfoOptions>();
     cli::Command command = program.add_command("info", "Counts, topology and defects of a mesh file");
-    command.add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file").required();
+    command.add_option("mesh", options->mesh, "OBJ, PLY, STL, OFF or glTF file").required();
     command.add_flag("--json", options->json, "Print one JSON object");
     command.on_call([options, &exit_code] {
         run_info(*options);
@@ -145,6 +149,7 @@ void print_warnings(const std::string& file, const std::vector<std::string>& war
 
 void run_check(const cli::SceneArguments& arguments) {
     SceneDescription scene = cli::load_scene(arguments);
+    for (const std::string& note : scene.notes) cli::print("{}\n", note);
     const std::string memory = memory_text(scene.memory_bytes);
     const std::string counts = fmt::format(
         "{} ({}), {}, {}, {}", counted(scene.setup.colliders.size(), "collider"),

@@ -24,7 +24,7 @@ struct NewArguments {
     std::string mesh;
     std::string output;
     std::string kind = "rain";
-    std::string up = "z";
+    std::string up;  ///< empty: as the format says
     bool force = false;
 };
 
@@ -34,9 +34,11 @@ cli::SceneTemplate wanted_template(const NewArguments& arguments) {
         fmt::format("--template: found \"{}\", expected rain, debris, sparks, gas or fountain", arguments.kind));
 }
 
-// The box of what the quarter turn about x makes of it: y becomes z, z becomes -y.
-Box3 turned(const Box3& box) {
-    return {{box.lower.x, -box.upper.z, box.lower.y}, {box.upper.x, -box.lower.z, box.upper.y}};
+// The box of what a quarter turn about x makes of it.
+Box3 turned(const Box3& box, Vec3 (*turn)(const Vec3&)) {
+    Box3 result;
+    for (const Vec3& corner : {box.lower, box.upper}) result.include(turn(corner));
+    return result;
 }
 
 // As the scene names it: from its own folder, so that both can be moved together.
@@ -46,12 +48,15 @@ std::string file_from(const fs::path& scene, const fs::path& mesh) {
 }
 
 cli::FittedMesh fitted_mesh(const NewArguments& arguments) {
-    if (arguments.up != "z" && arguments.up != "y")
+    if (!arguments.up.empty() && arguments.up != "z" && arguments.up != "y")
         throw InputError(fmt::format("--up: found \"{}\", expected z or y", arguments.up));
     const MeshReport report = report_on(read_mesh(arguments.mesh));
     cli::FittedMesh mesh;
-    mesh.y_up = arguments.up == "y";
-    mesh.bounds = mesh.y_up ? turned(report.bounds) : report.bounds;
+    mesh.up = arguments.up;
+    mesh.bounds = report.bounds;
+    if (mesh.up == "y" && !report.y_up) mesh.bounds = turned(report.bounds, y_up_as_z_up);
+    if (mesh.up == "z" && report.y_up) mesh.bounds = turned(report.bounds, z_up_as_y_up);
+    mesh.format_up = report.y_up ? "y" : "z";
     mesh.closed = report.topology.closed;
     mesh.file = file_from(arguments.output, arguments.mesh);
     if (!(mesh.bounds.diagonal() > 0.0) || !std::isfinite(mesh.bounds.diagonal()))
@@ -78,12 +83,14 @@ void make_scene(const NewArguments& arguments) {
     if (!arguments.force && fs::exists(fs::symlink_status(target, ignored)))
         throw InputError(
             fmt::format("--output {}: exists already; another name, or --force to replace it", arguments.output));
-    const std::string text = cli::scene_text(kind, fitted_mesh(arguments));
+    const cli::FittedMesh mesh = fitted_mesh(arguments);
+    const std::string text = cli::scene_text(kind, mesh);
     check_scene(arguments, text);
     write_file(target, text);
     const std::string folder = (target.parent_path() / target.stem()).generic_string();
-    cli::print("{}: a {} scene for {}, {} up\n", arguments.output, arguments.kind, arguments.mesh, arguments.up);
-    if (arguments.up == "z") cli::print("  where the mesh lies on its side: --up y --force\n");
+    const std::string up = mesh.up.empty() ? mesh.format_up : mesh.up;
+    cli::print("{}: a {} scene for {}, {} up\n", arguments.output, arguments.kind, arguments.mesh, up);
+    cli::print("  where the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
     cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);
 }
 
@@ -92,12 +99,13 @@ void make_scene(const NewArguments& arguments) {
 void add_new_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<NewArguments>();
     cli::Command command = program.add_command("new", "Write a scene that is fitted to a mesh, to begin with");
-    command.add_option("mesh", arguments->mesh, "OBJ, PLY, STL or OFF file").required();
+    command.add_option("mesh", arguments->mesh, "OBJ, PLY, STL, OFF or glTF file").required();
     command.add_option("--output", arguments->output, "Scene file to write").type_name("FILE.json").required();
     command.add_option("--template", arguments->kind, "What happens in it")
         .type_name("rain|debris|sparks|gas|fountain")
         .show_default();
-    command.add_option("--up", arguments->up, "Axis of the mesh file that points up").type_name("z|y").show_default();
+    command.add_option("--up", arguments->up, "Axis of the mesh file that points up (default: y of glTF, else z)")
+        .type_name("z|y");
     command.add_flag("--force", arguments->force, "Replace a scene file of that name");
     command.on_call([arguments, &exit_code] {
         make_scene(*arguments);

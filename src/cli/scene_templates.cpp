@@ -227,9 +227,7 @@ constexpr const char* kGlass = R"(, "looks": {"glass": true})";
 
 std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& part) {
     const std::string turned =
-        mesh.y_up ? ",\n     // The file's y axis points up; z does here.\n     \"rotation\": {\"axis\": [1, 0, 0], "
-                    "\"degrees\": 90}"
-                  : "";
+        mesh.up.empty() || mesh.up == mesh.format_up ? "" : fmt::format(R"(, "up": "{}")", mesh.up);
     std::string text =
         fmt::format(R"(    {{"name": "mesh", "type": "mesh", "file": {}, "material": "surface"{}{}}})",
                     nlohmann::json(mesh.file).dump(), turned, part.has_gravity || part.has_box ? "" : kGlass);

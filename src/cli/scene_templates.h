@@ -18,10 +18,11 @@ enum class SceneTemplate { rain, debris, sparks, gas, fountain };
 
 /// What a scene is fitted to.
 struct FittedMesh {
-    std::string file;     ///< as the scene names it
-    Box3 bounds;          ///< m, as the mesh stands in the scene; not empty
-    bool y_up = false;    ///< turned by a quarter about x, so that its y axis points up
-    bool closed = false;  ///< a gas can be inside
+    std::string file;       ///< as the scene names it
+    Box3 bounds;            ///< m, as the mesh stands in the scene; not empty
+    std::string up;         ///< axis of the file that points up, "y" or "z"; empty: as its format says
+    std::string format_up;  ///< and what that says
+    bool closed = false;    ///< a gas can be inside
 };
 
 /// The text of a scene file: the mesh on a ground (a gas has none), emitter, camera; sizes and times from the bounds.

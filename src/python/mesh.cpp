@@ -208,7 +208,7 @@ void bind_mesh(py::module_& module) {
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))
-        .def_static("read", &read, arg("file"), "A mesh from an OBJ, PLY, STL or OFF file, in doubles.")
+        .def_static("read", &read, arg("file"), "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")

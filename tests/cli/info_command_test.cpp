@@ -6,6 +6,7 @@
 
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
+#include "support/gltf_files.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {
@@ -36,6 +37,30 @@ TEST(InfoCommand, PrintsOneJsonObjectWithEveryFieldOfTheContract) {
     }
     EXPECT_EQ(info.at("consistently_oriented"), true);
     EXPECT_EQ(info.at("warnings"), Json::array());
+}
+
+TEST(InfoCommand, SaysOfAGltfFileWhichWayIsUpAndWhatWasLeftOut) {
+    const test::TemporaryFolder folder;
+    test::GltfFile cube = test::gltf_cube();
+    cube.document["animations"] = Json::array({Json::object()});
+    const std::string path = folder.write("cube.glb", test::glb_of(cube)).string();
+    const Json info = Json::parse(test::run_ricochet({"info", path, "--json"}).output);
+    EXPECT_EQ(info.at("format"), "glTF 2.0, binary");
+    EXPECT_EQ(info.at("y_up"), true);
+    EXPECT_EQ(info.at("bounds"), Json::parse("[[0.5,-5.0,1.0],[1.5,-1.0,3.0]]"));
+    EXPECT_EQ(info.at("volume"), 8.0);
+    EXPECT_EQ(info.at("notes").size(), 1U);
+    const std::string text = test::run_ricochet({"info", path}).output;
+    EXPECT_NE(text.find("\nup                    y, as glTF says"), std::string::npos) << text;
+    EXPECT_NE(text.find("\nnote: animations"), std::string::npos) << text;
+    // A scene that is made for it, and its check, say the same.
+    const std::string scene = folder.path("s.json").string();
+    const auto made = test::run_ricochet({"new", path, "--output", scene});
+    EXPECT_NE(made.output.find(", y up\n"), std::string::npos) << made.output << made.errors;
+    const auto checked = test::run_ricochet({"check", scene});
+    EXPECT_EQ(checked.exit_code, 0);
+    EXPECT_EQ(checked.errors, "");
+    EXPECT_NE(checked.output.find("cube.glb has y up, as glTF says"), std::string::npos) << checked.output;
 }
 
 TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {

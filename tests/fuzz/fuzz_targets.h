@@ -23,6 +23,8 @@ inline void require(bool holds, const char* claim) {
 // Each returns whether the bytes were accepted, and throws a Finding, or whatever else the program let out, where
 // something is wrong.
 
+/// As text, or binary where it begins so.
+[[nodiscard]] bool fuzz_gltf(std::string_view bytes);
 [[nodiscard]] bool fuzz_obj(std::string_view bytes);
 [[nodiscard]] bool fuzz_off(std::string_view bytes);
 [[nodiscard]] bool fuzz_ply(std::string_view bytes);
@@ -50,6 +52,7 @@ struct FuzzTarget {
 inline constexpr std::array kFuzzTargets{
     FuzzTarget{"checkpoint", fuzz_checkpoint},
     FuzzTarget{"csv", fuzz_csv},
+    FuzzTarget{"gltf", fuzz_gltf},
     FuzzTarget{"obj", fuzz_obj},
     FuzzTarget{"off", fuzz_off},
     FuzzTarget{"ply", fuzz_ply},

@@ -233,7 +233,7 @@ std::vector<BadFile> bad_off_files() {
 std::vector<BadFile> bad_files_of_no_format() {
     return {
         {"Empty", "a.obj", "", ": ", "empty file"},
-        {"UnknownFormat", "a.gltf", "{\"asset\": {}}", ": ", "unknown mesh format"},
+        {"UnknownFormat", "a.xyz", "{\"asset\": {}}", ": ", "unknown mesh format"},
         {"NoExtension", "mesh", "\x01\x02\x03\x04", ": ", "unknown mesh format"},
     };
 }

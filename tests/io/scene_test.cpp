@@ -462,7 +462,7 @@ TEST(SceneGroupMaterials, CountAsUseOfAMaterialAndAnEntryWithoutEffectIsAWarning
     ASSERT_EQ(scene.warnings.size(), 2U);  // the other one: nothing will move
     EXPECT_TRUE(scene.warnings[1].ends_with(
         "s.json:2:129: colliders[0].group_materials.lid: no triangle takes this material: all faces of the group also "
-        "have a name that comes before (usemtl before g before o)"))
+        "have a name that comes before (material before group before object)"))
         << scene.warnings[1];
 }
 
@@ -497,11 +497,11 @@ TEST(SceneGroupMaterials, RefuseMeshesThatHaveNoGroups) {
     };
     EXPECT_EQ(
         error("plain.obj"),
-        (Lines{"s.json:2:53: colliders[0].group_materials: the mesh has no groups (no usemtl, g or o statement with "
+        (Lines{"s.json:2:53: colliders[0].group_materials: the mesh has no groups (no material, group or object with "
                "a name), leave this key out"}));
     EXPECT_EQ(error("plain.off"),
               (Lines{"s.json:2:53: colliders[0].group_materials: the mesh is a file of the format OFF, which has no "
-                     "groups; expected an OBJ file"}));
+                     "groups; expected an OBJ or glTF file"}));
     EXPECT_EQ(error("none.obj").size(), 1U);
 }
 

@@ -64,8 +64,11 @@ constexpr std::array kDoors = {
          "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/(preview\\.cpp|drawn_mesh\\.h|"
          "shape_copies\\.h)|src/bench/native_ray\\.h"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
+    Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
-    Door{"nlohmann/", "src/(ricochet/io|ricochet/compare|bench|page|cli)/.*\\.cpp|tests/.*"},
+    Door{"nlohmann/",
+         "src/(ricochet/io|ricochet/compare|bench|page|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
+         ".*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // its print() checks formats as fmt does
     Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},

@@ -62,6 +62,7 @@ SceneDescription parse_scene(std::string_view text, const std::filesystem::path&
     }
     scene.fingerprint = fingerprint.value();
     scene.warnings = diagnostics.warnings();
+    scene.notes = diagnostics.notes();
     return scene;
 }
 

@@ -92,6 +92,7 @@ struct SceneDescription {
     std::vector<ColliderLooks> looks;          ///< of the setup's colliders, one each
     std::string file;                          ///< as it was named
     std::vector<std::string> warnings;         ///< one line each, with file and source location
+    std::vector<std::string> notes;            ///< of the same kind: what was done to meshes as they were read
     std::vector<std::filesystem::path> files;  ///< every file that it names and reads, each once
     double memory_bytes = 0.0;                 ///< that a run of it needs at its peak, about
     /// Hash of all that decides the run (not of output and camera), what is in its files too: a run may be resumed

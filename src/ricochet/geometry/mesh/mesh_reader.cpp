@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -17,14 +19,26 @@ std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesys
     if (looks_like_ply(source)) return MeshFormat::kPly;
     if (has_binary_stl_size(source) || starts_with_solid(source)) return MeshFormat::kStl;
     if (looks_like_off(source)) return MeshFormat::kOff;
+    if (looks_like_glb(source)) return MeshFormat::kGltf;
     if (const std::optional<MeshFormat> by_name = mesh_format_of(path)) return by_name;
     if (looks_like_obj(source)) return MeshFormat::kObj;
     return std::nullopt;
 }
 
-ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path) {
+// Locale-free on purpose: file formats are ASCII.
+std::string ascii_lower(std::string text) {
+    for (char& c : text) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return text;
+}
+
+/// Where a glTF file's buffers may be; nothing for a file that is in memory.
+using Folder = std::optional<std::filesystem::path>;
+
+ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path, const Folder& folder) {
     const std::optional<MeshFormat> format = format_of(source, path);
-    if (!format) source.fail("unknown mesh format, expected an OBJ, PLY, STL or OFF file");
+    if (!format) source.fail(fmt::format("unknown mesh format, expected a file of the format {}", kMeshFormats));
     switch (*format) {
         case MeshFormat::kObj:
             return read_obj(source);
@@ -32,16 +46,20 @@ ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path) {
             return read_ply(source);
         case MeshFormat::kStl:
             return read_stl(source);
+        case MeshFormat::kGltf:
+            return read_gltf(source, folder);
+        case MeshFormat::kForeign:
+            return read_foreign(source, ascii_lower(path.extension().string()));
         case MeshFormat::kOff:
             break;
     }
     return read_off(source);
 }
 
-ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view bytes) {
+ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view bytes, const Folder& folder) {
     const MeshSource source{path.string(), bytes};
-    if (bytes.empty()) source.fail("empty file, expected an OBJ, PLY, STL or OFF mesh");
-    ParsedMesh parsed = parse(source, path);
+    if (bytes.empty()) source.fail(fmt::format("empty file, expected a mesh of the format {}", kMeshFormats));
+    ParsedMesh parsed = parse(source, path, folder);
     if (parsed.polygons.face_count() == 0) {
         source.fail(fmt::format("no faces ({} vertices), expected a surface that particles can hit",
                                 parsed.polygons.vertices.size()));
@@ -63,6 +81,9 @@ ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
     result.polygons = std::move(parsed.polygons);
     result.format = std::move(parsed.format);
     result.weld = parsed.weld;
+    result.y_up = parsed.y_up;
+    result.files = std::move(parsed.files);
+    result.notes = std::move(parsed.notes);
     Triangulation triangulation = triangulate(result.polygons);
     result.mesh.triangles = std::move(triangulation.triangles);
     result.triangle_face = std::move(triangulation.triangle_face);
@@ -76,26 +97,18 @@ ImportedMesh finish(ParsedMesh parsed, MeshContent content) {
     return result;
 }
 
-// Locale-free on purpose: file formats are ASCII.
-std::string ascii_lower(std::string text) {
-    for (char& c : text) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return text;
-}
-
 }  // namespace
 
 ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
     ParsedMesh parsed = [&path] {
         const FileBytes bytes = read_regular_file(path);
-        return parse_checked(path, bytes.view());
+        return parse_checked(path, bytes.view(), path.parent_path());
     }();  // the file's bytes are gone before the triangles are made
     return finish(std::move(parsed), content);
 }
 
 ImportedMesh read_mesh(const std::filesystem::path& name, std::string_view bytes, MeshContent content) {
-    return finish(parse_checked(name, bytes), content);
+    return finish(parse_checked(name, bytes, std::nullopt), content);
 }
 
 std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path) {
@@ -104,6 +117,10 @@ std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path) {
     if (extension == ".ply") return MeshFormat::kPly;
     if (extension == ".stl") return MeshFormat::kStl;
     if (extension == ".off") return MeshFormat::kOff;
+    if (extension == ".gltf" || extension == ".glb") return MeshFormat::kGltf;
+    constexpr std::array<std::string_view, 10> kForeign = {".fbx", ".dae", ".3ds", ".3mf", ".ac",
+                                                           ".ase", ".b3d", ".lwo", ".x",   ".x3d"};
+    if (std::find(kForeign.begin(), kForeign.end(), extension) != kForeign.end()) return MeshFormat::kForeign;
     return std::nullopt;
 }
 

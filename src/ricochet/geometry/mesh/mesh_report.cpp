@@ -186,7 +186,7 @@ void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) 
                                    counted(topology.boundary_loops, "loop", "loops")));
     if (report.weld) {
         warnings.push_back(
-            "STL corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
+            "corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
             "wide as the difference, through which particles can pass");
     }
 }
@@ -312,6 +312,8 @@ MeshReport report_on(const ImportedMesh& imported) {
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;
     report.crossing_faces = imported.crossing_faces;
     report.weld = imported.weld;
+    report.y_up = imported.y_up;
+    report.notes = imported.notes;
     report.warnings = warnings_for(report);
     return report;
 }

@@ -30,7 +30,9 @@ struct MeshReport {
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
     std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, see self_intersection.h
-    std::optional<WeldReport> weld;      ///< STL only
+    std::optional<WeldReport> weld;      ///< STL and glTF only
+    bool y_up = false;                   ///< the file has y up; the bounds have z up
+    std::vector<std::string> notes;      ///< what the file holds and was not read
     std::vector<std::string> warnings;   ///< one sentence per kind of defect: what it is, what it means for leaks
 };
 

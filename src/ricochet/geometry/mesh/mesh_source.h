@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
@@ -49,6 +50,9 @@ struct ParsedMesh {
     PolygonMesh polygons;
     std::string format;
     std::optional<WeldReport> weld;
+    bool y_up = false;                           ///< the file has y up; what was read has z up
+    std::vector<std::filesystem::path> files{};  ///< read besides the file itself
+    std::vector<std::string> notes{};            ///< what the file holds and was not read, a sentence each
 };
 
 /// Indices are 32-bit: more vertices or corners than this are refused.
@@ -181,5 +185,25 @@ private:
 
 /// Reads STL and joins corners of equal coordinates. The facets' normals are not used.
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
+
+/// Corners of triangles that a glTF file may show however small it is; beyond, 16 for each of its bytes.
+inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
+
+/// Reads glTF 2.0, as text or binary (GLB): the triangles of the scene that the file shows, where its nodes put them,
+/// with z up. Corners of one mesh at one node are joined where their coordinates are equal. A face has the name of its
+/// material, the mesh's name as its group, and the node's as its object. folder: where files of buffers are; nothing:
+/// such files are refused.
+[[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
+                                   std::size_t free_corners = kFreeGltfCorners);
+
+/// True when the bytes begin as a GLB file does.
+[[nodiscard]] bool looks_like_glb(const MeshSource& source);
+
+/// Reads a file by the Assimp library, which finds the format by content and extension (".fbx"): the faces that its
+/// nodes place, as read_gltf() does. Nothing else is opened. Throws InputError too where this build has no Assimp.
+[[nodiscard]] ParsedMesh read_foreign(const MeshSource& source, const std::string& extension);
+
+/// True where this build has Assimp.
+[[nodiscard]] bool reads_foreign();
 
 }  // namespace ricochet

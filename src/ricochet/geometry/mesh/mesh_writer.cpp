@@ -123,6 +123,11 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path) {
 }
 
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path, MeshFormat format) {
+    if (format == MeshFormat::kGltf || format == MeshFormat::kForeign) {
+        throw InputError(
+            fmt::format("{}: files of this format are read only, expected a name that ends in .obj, .ply, .stl or .off",
+                        path.string()));
+    }
     BlockWriter out(path);
     switch (format) {
         case MeshFormat::kObj:
@@ -137,6 +142,9 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path, Mes
         case MeshFormat::kOff:
             write_off(mesh, out);
             break;
+        case MeshFormat::kGltf:
+        case MeshFormat::kForeign:
+            break;  // refused above
     }
     out.commit();
 }

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <functional>
-#include <unordered_map>
 
+#include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {
@@ -49,13 +48,6 @@ LineCounts count_lines(std::string_view text) {
     }
     return counts;
 }
-
-struct FaceGroupHash {
-    std::size_t operator()(const FaceGroup& group) const {
-        const std::hash<std::uint64_t> hash;
-        return hash(hash(std::uint64_t{group.material} << 32U | group.group) * 31 + group.object);
-    }
-};
 
 class ObjReader {
 public:
@@ -99,11 +91,11 @@ private:
         } else if (keyword == "f") {
             read_face();
         } else if (keyword == "usemtl") {
-            enter(material_);
+            names_.names().material = cursor_.rest_of_line();
         } else if (keyword == "g") {
-            enter(group_);
+            names_.names().group = cursor_.rest_of_line();
         } else if (keyword == "o") {
-            enter(object_);
+            names_.names().object = cursor_.rest_of_line();
         } else if (contains(kRefused, keyword)) {
             cursor_.fail(fmt::format("statement {} (curves, surfaces and calls) is not supported, export polygons only",
                                      in_quotes(keyword)));
@@ -136,7 +128,7 @@ private:
         if (mesh_.corners.size() > kLargestIndexCount)
             cursor_.fail(fmt::format("more than {} corners", kLargestIndexCount));
         close_face(mesh_);
-        record_group();
+        names_.record(mesh_);
     }
 
     // v, v/t, v//n or v/t/n; only v counts.
@@ -167,53 +159,10 @@ private:
                                                             use.index, mesh_.vertices.size()));
     }
 
-    void enter(std::string& name) {
-        name = cursor_.rest_of_line();
-        has_names_ = has_names_ || !name.empty();
-        group_is_known_ = false;
-    }
-
-    // Files without names keep empty lists; the first name found gives the faces before it the empty names.
-    void record_group() {
-        if (!has_names_) return;
-        if (!group_is_known_) {
-            if (mesh_.group_names.empty()) (void)name_number("");
-            const FaceGroup group{name_number(material_), name_number(group_), name_number(object_)};
-            if (mesh_.groups.empty() && mesh_.face_count() > 1) {
-                (void)group_number(FaceGroup{});
-                mesh_.face_groups.assign(mesh_.face_count() - 1, 0);
-            }
-            current_group_ = group_number(group);
-            group_is_known_ = true;
-        }
-        mesh_.face_groups.push_back(current_group_);
-    }
-
-    std::uint32_t group_number(const FaceGroup& group) {
-        const auto [entry, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh_.groups.size()));
-        if (is_new) mesh_.groups.push_back(group);
-        return entry->second;
-    }
-
-    // Every name is stored once, however many combinations it is part of, so that memory stays bounded by the file.
-    std::uint32_t name_number(const std::string& name) {
-        const auto [entry, is_new] = names_.try_emplace(name, static_cast<std::uint32_t>(mesh_.group_names.size()));
-        if (is_new) mesh_.group_names.push_back(name);
-        return entry->second;
-    }
-
     TextCursor cursor_;
     PolygonMesh mesh_;
     IndexUse forward_;
-    std::string material_;
-    std::string group_;
-    std::string object_;
-    bool has_names_ = false;
-    bool group_is_known_ = false;
-    std::uint32_t current_group_ = 0;
-    // Numbers go by first use, so that the tables' own order reaches nothing.
-    std::unordered_map<FaceGroup, std::uint32_t, FaceGroupHash> groups_;
-    std::unordered_map<std::string, std::uint32_t> names_;
+    FaceGroupTable names_;
 };
 
 }  // namespace

@@ -19,12 +19,13 @@ namespace {
 
 Fields<MeshShape> mesh_fields() {
     return joined<MeshShape>(
-        {{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF.", kRequired}},
+        {{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<MeshShape>()},
          placement_fields(&MeshShape::placement),
          {{"group_materials", ValueType::text_table,
-           "Materials of parts of an OBJ mesh: names that the file gives to its faces, each with one of the names in "
-           "`materials`. A face goes by its `usemtl` name; where that is not listed by its `g` name (the whole line, "
-           "then word by word), then by its `o` name. Faces without a listed name take the collider's material.",
+           "Materials of parts of an OBJ or glTF mesh: names that the file gives to its faces, each with one of the "
+           "names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed by its "
+           "`g` name (the whole line, then word by word; of glTF the mesh's), then by its `o` name (the node's). Faces "
+           "without a listed name take the collider's material.",
            Without{"the collider's material everywhere"}},
           {"deformation", ValueType::object,
            "Its vertices move: `file` says the faces only. Only with the response \"exact\", and without `frame` and "
@@ -161,9 +162,9 @@ private:
 
     static std::string without_groups(const MeshGroups& groups) {
         if (groups.format_has_groups()) {
-            return "the mesh has no groups (no usemtl, g or o statement with a name), leave this key out";
+            return "the mesh has no groups (no material, group or object with a name), leave this key out";
         }
-        return fmt::format("the mesh is a file of the format {}, which has no groups; expected an OBJ file",
+        return fmt::format("the mesh is a file of the format {}, which has no groups; expected an OBJ or glTF file",
                            groups.format);
     }
 
@@ -188,7 +189,7 @@ private:
             context_.diagnostics().warning(member.key_location,
                                            path_of_key(view.path_of("group_materials"), member.key),
                                            "no triangle takes this material: all faces of the group also have a name "
-                                           "that comes before (usemtl before g before o)");
+                                           "that comes before (material before group before object)");
         }
     }
 

@@ -40,11 +40,27 @@ std::filesystem::path SceneContext::file_of(const ObjectView& view) const {
 std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& view) {
     if (!view.has("file")) return nullptr;
     try {
-        return meshes_.load(file_of(view));
+        const std::filesystem::path path = file_of(view);
+        auto mesh = meshes_.load(path, up_of(view));
+        for (const std::filesystem::path& file : meshes_.files(path)) note(file);
+        if (meshes_.is_y_up(path) && !view.has("up")) {
+            diagnostics_.note(
+                view.location_of("file"), view.path_of("file"),
+                fmt::format("{} has y up, as glTF says: read as (x, -z, y), so that z points up", path.string()));
+        }
+        for (const std::string& what : meshes_.notes(path)) {
+            diagnostics_.note(view.location_of("file"), view.path_of("file"), path.string() + ": " + what);
+        }
+        return mesh;
     } catch (const InputError& problem) {
         error(view, "file", problem.what());
         return nullptr;
     }
+}
+
+MeshUp up_of(const ObjectView& view) {
+    const std::string up = view.text("up");
+    return up == "y" ? MeshUp::y : up == "z" ? MeshUp::z : MeshUp::by_format;
 }
 
 std::shared_ptr<const TriangleMesh> SceneContext::placed_mesh(const ObjectView& view, std::string_view key,

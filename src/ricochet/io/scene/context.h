@@ -59,7 +59,8 @@ public:
     [[nodiscard]] double memory_bytes() const { return memory_bytes_; }
     /// Every path that file_of() has given, each once.
     [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
-    /// The mesh that the key "file" names; null pointer after reporting why there is none.
+    /// The mesh that the key "file" names, with the axis up that "up" says; null pointer after reporting why there is
+    /// none.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
     /// A mesh in world coordinates; null pointer after reporting, for this key, that a vertex is out of range.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> placed_mesh(const ObjectView& view, std::string_view key,
@@ -136,6 +137,23 @@ template <class Struct>
             {"scale", [placement](Struct& s) -> Vec3& { return (s.*placement).scale; }, kCoordinate, "",
              "Factor, or one for each of its own axes; a negative one mirrors.", ValueType::scale, needs}};
 }
+
+inline constexpr std::string_view kMeshFileMeaning = "The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).";
+
+/// The axis of a mesh file that points up, for load_mesh().
+template <class Struct>
+[[nodiscard]] Field<Struct> up_field(Needs needs = {}) {
+    return {"up",
+            ValueType::choice,
+            "Axis of the file that points up; z does in scenes. Where y does, (x, y, z) is read as (x, -z, y), before "
+            "the scale.",
+            Choices{choice(MeshUp::z, "z", "coordinates are taken as they are in the file"),
+                    choice(MeshUp::y, "y", "a quarter turn about x")},
+            Without{"`y` for glTF files, as their standard says, `z` for all others"},
+            needs};
+}
+/// What the key "up" of an object says.
+[[nodiscard]] MeshUp up_of(const ObjectView& view);
 
 /// {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}; the unit is that of the key that
 /// holds the curve.

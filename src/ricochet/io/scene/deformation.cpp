@@ -57,12 +57,17 @@ struct NumberedFile {
 
 class DeformationBuilder {
 public:
-    DeformationBuilder(SceneContext& context, const ObjectView& view, const fs::path& base)
-        : context_(context), view_(view), base_(base) {}
+    DeformationBuilder(SceneContext& context, const ObjectView& view, const fs::path& base, MeshUp up)
+        : context_(context), view_(view), base_(base), up_(up) {}
 
     /// Throws InputError with what is wrong as a whole.
     [[nodiscard]] MeshMotion build() {
         Series series = view_.type() == "series" ? of_series() : view_.type() == "keys" ? of_keys() : of_cache();
+        if (up_ == MeshUp::y) {
+            for (std::vector<Vec3>& positions : series.positions) {
+                for (Vec3& p : positions) p = y_up_as_z_up(p);
+            }
+        }
         const MeshEnds ends = view_.read<DeformationKeys>().ends;
         const std::size_t count = series.times.size();
         if (ends == MeshEnds::repeat && count > 1 && series.positions.front() != series.positions.back()) {
@@ -102,6 +107,7 @@ private:
         constexpr std::uint64_t kLargest = std::uint64_t{1} << 40;
         const fs::path path = context_.file_of(view_);
         PointCache cache = read_point_cache(path, read_bytes(path, kLargest));
+        require_numbers(base(), base_);
         const std::size_t expected = base().mesh.vertices.size();
         if (cache.positions.front().size() != expected) {
             throw InputError(fmt::format("{}: found {} points, expected the {} vertices of {}", path.string(),
@@ -178,12 +184,8 @@ private:
         }
         asked_for_memory_ = true;
         ImportedMesh mesh = read_mesh(path);
-        if (mesh.weld || base().weld) {
-            throw InputError(
-                fmt::format("{}: found an STL file, which has no numbered vertices; expected OBJ, PLY or "
-                            "OFF",
-                            (mesh.weld ? path : base_).string()));
-        }
+        require_numbers(mesh, path);
+        require_numbers(base(), base_);
         if (mesh.mesh.vertices.size() != base().mesh.vertices.size()) {
             throw InputError(fmt::format("{}: found {} vertices, expected the {} of {}", path.string(),
                                          mesh.mesh.vertices.size(), base().mesh.vertices.size(), base_.string()));
@@ -198,9 +200,19 @@ private:
         return std::move(mesh.mesh.vertices);
     }
 
+    // Vertices that were joined by where they are have no numbers of their own.
+    static void require_numbers(const ImportedMesh& mesh, const fs::path& path) {
+        if (!mesh.weld) return;
+        throw InputError(
+            fmt::format("{}: found a file of the format {}, which has no numbered vertices; expected OBJ, "
+                        "PLY or OFF",
+                        path.string(), mesh.format));
+    }
+
     SceneContext& context_;
     const ObjectView& view_;
     fs::path base_;
+    MeshUp up_;
     std::optional<ImportedMesh> mesh_;
     bool asked_for_memory_ = false;
 };
@@ -285,7 +297,8 @@ std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const Ob
     const ObjectView view = collider.object("deformation");
     if (view.is_absent() || view.type().empty() || !collider.has("file")) return nullptr;
     try {
-        return std::make_shared<const MeshMotion>(DeformationBuilder(context, view, context.file_of(collider)).build());
+        return std::make_shared<const MeshMotion>(
+            DeformationBuilder(context, view, context.file_of(collider), up_of(collider)).build());
     } catch (const InputError& problem) {
         if (!context.failed()) context.error(view, problem.what());
         return nullptr;

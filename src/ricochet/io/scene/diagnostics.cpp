@@ -43,6 +43,10 @@ void Diagnostics::warning(const SourceLocation& location, const std::string& pat
     warnings_.push_back(entry(location, path, what));
 }
 
+void Diagnostics::note(const SourceLocation& location, const std::string& path, std::string_view what) {
+    notes_.push_back(entry(location, path, what));
+}
+
 Diagnostics::Entry Diagnostics::entry(const SourceLocation& location, const std::string& path,
                                       std::string_view what) const {
     constexpr std::size_t kLongestLine = 2000;

@@ -15,7 +15,7 @@ namespace ricochet::detail {
 [[nodiscard]] std::string path_of_key(const std::string& parent, std::string_view key);
 [[nodiscard]] std::string path_of_item(const std::string& parent, std::size_t index);
 
-/// Errors and warnings with their source locations.
+/// Errors, warnings and notes with their source locations.
 class Diagnostics {
 public:
     /// file: the scene file's name as the user wrote it. overrides: the `--set` arguments.
@@ -24,11 +24,14 @@ public:
     /// path: empty where no single value is meant.
     void error(const SourceLocation& location, const std::string& path, std::string_view what);
     void warning(const SourceLocation& location, const std::string& path, std::string_view what);
+    /// What is done without being asked for in so many words, and is as it should be.
+    void note(const SourceLocation& location, const std::string& path, std::string_view what);
 
     [[nodiscard]] bool failed() const { return !errors_.empty(); }
     /// One line each, in the order of their source locations.
     [[nodiscard]] std::vector<std::string> errors() const { return lines(errors_); }
     [[nodiscard]] std::vector<std::string> warnings() const { return lines(warnings_); }
+    [[nodiscard]] std::vector<std::string> notes() const { return lines(notes_); }
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
 
 private:
@@ -43,6 +46,7 @@ private:
     std::vector<std::string> overrides_;
     std::vector<Entry> errors_;
     std::vector<Entry> warnings_;
+    std::vector<Entry> notes_;
 };
 
 /// Insertions, deletions, replacements and swaps of neighbours that turn a into b (optimal string alignment).

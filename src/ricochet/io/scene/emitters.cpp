@@ -87,9 +87,10 @@ Variant mesh_variant() {
         "mesh",
         "Uniform by area on a mesh, just off its surface on the side that the triangles' normals point to, and "
         "launched along them.",
-        joined<MeshKeys>({{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF."},
+        joined<MeshKeys>({{{"file", ValueType::file, kMeshFileMeaning},
                            {"collider", ValueType::text,
                             "The name of a mesh collider: its surface, in the frame that it stands in."}},
+                          {up_field<MeshKeys>(Needs{"file"})},
                           placement_fields(&MeshKeys::placement, Needs{"file"}),
                           {{"volume", &MeshKeys::volume,
                             "true: uniform in the inside, launched in any direction; the mesh must be closed."}}}),

@@ -88,7 +88,17 @@ void add_bytes(StateHash& hash, const fs::path& path) {
     hash.add(size);
 }
 
-const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
+namespace {
+
+// A mesh with the other axis up: from y up to z up, or back to how a file that has y up says it.
+std::shared_ptr<const TriangleMesh> turned_mesh(TriangleMesh mesh, bool to_z_up) {
+    for (Vec3& v : mesh.vertices) v = to_z_up ? y_up_as_z_up(v) : z_up_as_y_up(v);
+    return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+}  // namespace
+
+MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
     std::error_code ignored;
     const auto [found, is_new] = entries_.try_emplace(fs::weakly_canonical(path, ignored));
     Entry& entry = found->second;
@@ -97,6 +107,9 @@ const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
             if (const auto problem = file_problem(path)) throw InputError(*problem);
             ImportedMesh imported = read_mesh(path, MeshContent::triangles);
             entry.groups = groups_of(imported);
+            entry.is_y_up = imported.y_up;
+            entry.notes = std::move(imported.notes);
+            entry.files = std::move(imported.files);
             entry.mesh = std::make_shared<const TriangleMesh>(std::move(imported.mesh));
         } catch (const InputError& error) {
             entry.error = error.what();
@@ -106,7 +119,12 @@ const MeshLibrary::Entry& MeshLibrary::entry(const fs::path& path) {
     return entry;
 }
 
-std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path) { return entry(path).mesh; }
+std::shared_ptr<const TriangleMesh> MeshLibrary::load(const fs::path& path, MeshUp up) {
+    Entry& found = entry(path);
+    if (up == MeshUp::by_format || (up == MeshUp::y) == found.is_y_up) return found.mesh;
+    if (!found.turned) found.turned = turned_mesh(*found.mesh, up == MeshUp::y);
+    return found.turned;
+}
 
 const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path).groups; }
 

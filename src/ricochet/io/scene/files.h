@@ -26,9 +26,9 @@ struct MeshGroups {
     std::vector<std::string> names;
 
     /// False for formats that cannot name groups at all.
-    [[nodiscard]] bool format_has_groups() const { return format == "OBJ"; }
-    /// Every name that a triangle can be meant by, in order of first use: usemtl, g (the whole line, and each of its
-    /// words where it has several) and o.
+    [[nodiscard]] bool format_has_groups() const { return format == "OBJ" || format.starts_with("glTF"); }
+    /// Every name that a triangle can be meant by, in order of first use: material, group (the whole name, and each of
+    /// its words where it has several) and object.
     [[nodiscard]] std::vector<std::string_view> all_names() const;
 };
 
@@ -48,8 +48,8 @@ struct TriangleMaterials {
     std::vector<std::string_view> names_not_used;  ///< names of the request by which no triangle takes its material
 };
 
-/// The material that every triangle takes: by its usemtl name, else by its g name (the whole line, then word by word),
-/// else by its o name.
+/// The material that every triangle takes: by its material's name, else by its group's (the whole name, then word by
+/// word), else by its object's.
 [[nodiscard]] TriangleMaterials materials_by_group(const MeshGroups& groups, const NamedMaterials& named);
 
 /// What keeps a path from being a readable regular file, with the nearest file name of its folder; nothing when it is
@@ -62,21 +62,40 @@ struct TriangleMaterials {
 /// Adds what is in a file. Throws InputError when it cannot be read.
 void add_bytes(StateHash& hash, const std::filesystem::path& path);
 
+/// Which axis of a mesh file points up; z does in scenes.
+enum class MeshUp : std::uint8_t {
+    by_format,  ///< y of glTF files, z of all others
+    z,
+    y,
+};
+
 /// Meshes by file; each is read once however often it is used.
 class MeshLibrary {
 public:
-    /// Throws InputError, with the reader's message.
-    [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path);
+    /// The mesh with z up. Throws InputError, with the reader's message.
+    [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path, MeshUp up);
+    /// Of a file that load() gives: true where y is up in it by its format.
+    [[nodiscard]] bool is_y_up(const std::filesystem::path& path) { return entry(path).is_y_up; }
+    /// The same: what it holds and was not read, a sentence each.
+    [[nodiscard]] const std::vector<std::string>& notes(const std::filesystem::path& path) { return entry(path).notes; }
+    /// The same: files that were read with it.
+    [[nodiscard]] const std::vector<std::filesystem::path>& files(const std::filesystem::path& path) {
+        return entry(path).files;
+    }
     /// The same for the groups that the file names.
     [[nodiscard]] const MeshGroups& groups(const std::filesystem::path& path);
 
 private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
+        std::shared_ptr<const TriangleMesh> turned;  ///< with the other axis up, once it was asked for
+        bool is_y_up = false;
         MeshGroups groups;
+        std::vector<std::string> notes;
+        std::vector<std::filesystem::path> files;
         std::string error;  ///< where it could not be read
     };
-    [[nodiscard]] const Entry& entry(const std::filesystem::path& path);
+    [[nodiscard]] Entry& entry(const std::filesystem::path& path);
 
     std::map<std::filesystem::path, Entry> entries_;
 };

@@ -160,7 +160,7 @@ Variant cloth_variant() {
         "cloth",
         "A particle at every vertex of a mesh, a spring along every edge; at rest as the mesh is. A particle has a "
         "third of the mass of every triangle around it.",
-        joined<ClothKeys>({{{"file", ValueType::file, "The mesh: OBJ, PLY, STL or OFF.", kRequired}},
+        joined<ClothKeys>({{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<ClothKeys>()},
                            placement_fields(&ClothKeys::placement),
                            cloth_fields()}),
         {"mass", "mass_per_area"});

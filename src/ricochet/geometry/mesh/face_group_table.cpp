@@ -1,0 +1,44 @@
+#include "ricochet/geometry/mesh/face_group_table.h"
+
+#include <functional>
+
+namespace ricochet {
+
+std::size_t FaceGroupTable::Hash::operator()(const FaceGroup& group) const {
+    const std::hash<std::uint64_t> hash;
+    return hash(hash(std::uint64_t{group.material} << 32U | group.group) * 31 + group.object);
+}
+
+void FaceGroupTable::record(PolygonMesh& mesh) {
+    if (!is_known_ && !has_names_) {
+        has_names_ = !(current_.material.empty() && current_.group.empty() && current_.object.empty());
+    }
+    if (!has_names_) return;
+    if (!is_known_) {
+        if (mesh.group_names.empty()) (void)name_number(mesh, "");
+        const FaceGroup group{name_number(mesh, current_.material), name_number(mesh, current_.group),
+                              name_number(mesh, current_.object)};
+        if (mesh.groups.empty() && mesh.face_count() > 1) {
+            (void)group_number(mesh, FaceGroup{});
+            mesh.face_groups.assign(mesh.face_count() - 1, 0);
+        }
+        current_group_ = group_number(mesh, group);
+        is_known_ = true;
+    }
+    mesh.face_groups.push_back(current_group_);
+}
+
+std::uint32_t FaceGroupTable::group_number(PolygonMesh& mesh, const FaceGroup& group) {
+    const auto [entry, is_new] = groups_.try_emplace(group, static_cast<std::uint32_t>(mesh.groups.size()));
+    if (is_new) mesh.groups.push_back(group);
+    return entry->second;
+}
+
+// Every name is stored once, however many combinations it is part of, so that memory stays bounded by the file.
+std::uint32_t FaceGroupTable::name_number(PolygonMesh& mesh, const std::string& name) {
+    const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh.group_names.size()));
+    if (is_new) mesh.group_names.push_back(name);
+    return entry->second;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,170 @@
+#include "ricochet/geometry/mesh/gltf_buffers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "ricochet/core/memory_limit.h"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNoDigit = -1;
+
+int base64_digit(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+' || c == '-') return 62;
+    return c == '/' || c == '_' ? 63 : kNoDigit;
+}
+
+std::string decode_base64(const GltfPlace& uri, std::string_view text) {
+    while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+    if (text.size() % 4 == 1) uri.fail("its base64 data is cut off");
+    require_memory(static_cast<double>(text.size()), "a buffer of a glTF file");
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const int digit = base64_digit(c);
+        if (digit == kNoDigit) uri.fail("its data is not base64");
+        bits = (bits << 6U | static_cast<std::uint32_t>(digit)) & 0xffffffU;
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 0xffU);
+    }
+    return bytes;
+}
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : kNoDigit;
+}
+
+// "%20" is a blank.
+std::string without_percents(const GltfPlace& uri, std::string_view text) {
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            plain += text[i];
+            continue;
+        }
+        const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : kNoDigit;
+        const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : kNoDigit;
+        if (high == kNoDigit || low == kNoDigit) uri.fail(fmt::format("{} ends within a %", in_quotes(text)));
+        plain += static_cast<char>(16 * high + low);
+        i += 2;
+    }
+    return plain;
+}
+
+bool is_within(const fs::path& path, const fs::path& folder) {
+    const auto [rest, ignored] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+    return rest == folder.end();
+}
+
+// The file that a buffer names: beside the glTF file or below, also where links lead.
+fs::path file_below(const GltfPlace& uri, const fs::path& folder) {
+    const std::string name = without_percents(uri, uri.text());
+    const fs::path path(name);
+    const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
+    if (name.empty() || name.find('\0') != std::string::npos || name.find_first_of(":\\") != std::string::npos ||
+        path.is_absolute() || climbs) {
+        uri.fail(fmt::format("found {}, expected a file beside the glTF file or in a folder below", in_quotes(name)));
+    }
+    std::error_code error;
+    const fs::path home = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+    const fs::path target = fs::weakly_canonical(home / path, error);
+    if (error || !is_within(target, home)) {
+        uri.fail(fmt::format("{} is a link that leads out of the glTF file's folder", in_quotes(name)));
+    }
+    return (folder / path).lexically_normal();
+}
+
+}  // namespace
+
+GltfBuffers::GltfBuffers(const GltfPlace& document, GltfSurroundings surroundings)
+    : buffers_(document.items("buffers")),
+      views_(document.items("bufferViews")),
+      surroundings_(std::move(surroundings)) {}
+
+std::vector<fs::path> GltfBuffers::files() const {
+    std::vector<fs::path> files;
+    for (const auto& [path, bytes] : read_) files.push_back(path);
+    return files;
+}
+
+std::size_t GltfBuffers::bytes_of_files() const {
+    std::size_t sum = 0;
+    for (const auto& [path, bytes] : read_) sum += bytes.size;
+    return sum;
+}
+
+GltfBuffers::View GltfBuffers::view(const GltfPlace& owner, std::string_view key) {
+    const GltfPlace view = views_[owner.at(key).index_below(views_.size(), "bufferViews")];
+    const std::string_view bytes = buffer(view.at("buffer").index_below(buffers_.size(), "buffers"));
+    const std::uint64_t offset = view.whole_number("byteOffset", 0);
+    const std::uint64_t length = view.at("byteLength").whole_number();
+    if (offset > bytes.size() || length > bytes.size() - offset) {
+        view.fail(fmt::format("bytes {} to {}, but its buffer has {}", offset, offset + length, bytes.size()));
+    }
+    const std::uint64_t stride = view.whole_number("byteStride", 0);
+    constexpr std::uint64_t kLargestStride = 252;
+    if (view.has("byteStride") && (stride < 4 || stride > kLargestStride)) {
+        view.fail(fmt::format("found the byteStride {}, expected 4 to {}", stride, kLargestStride));
+    }
+    return {bytes.substr(offset, length), static_cast<std::size_t>(stride)};
+}
+
+std::string_view GltfBuffers::buffer(std::size_t number) {
+    const auto [entry, is_new] = known_.try_emplace(number);
+    if (is_new) {
+        const GltfPlace buffer = buffers_[number];
+        const std::uint64_t length = buffer.at("byteLength").whole_number();
+        const std::string_view bytes = bytes_of(number, buffer);
+        if (length > bytes.size()) {
+            buffer.fail(fmt::format("{} bytes, but there are {}; is it cut off?", length, bytes.size()));
+        }
+        entry->second = bytes.substr(0, length);
+    }
+    return entry->second;
+}
+
+std::string_view GltfBuffers::bytes_of(std::size_t number, const GltfPlace& buffer) {
+    if (!buffer.has("uri")) {
+        if (number != 0 || !surroundings_.chunk) {
+            buffer.fail(
+                "no \"uri\", and no binary chunk of a GLB file; compressed files have such buffers: "
+                "export without compression");
+        }
+        return *surroundings_.chunk;
+    }
+    const GltfPlace uri = buffer.at("uri");
+    const std::string_view text = uri.text();
+    if (!text.starts_with("data:")) return file_bytes(uri);
+    const std::size_t comma = text.find(',');
+    constexpr std::string_view kBase64 = ";base64";
+    if (comma == std::string_view::npos || !text.substr(0, comma).ends_with(kBase64)) {
+        uri.fail(fmt::format("found {}, expected data in base64", in_quotes(text)));
+    }
+    return decoded_[number] = decode_base64(uri, text.substr(comma + 1));
+}
+
+std::string_view GltfBuffers::file_bytes(const GltfPlace& uri) {
+    if (!surroundings_.folder) uri.fail("names a file, expected its data in the glTF file itself");
+    const fs::path path = file_below(uri, *surroundings_.folder);
+    const auto found = read_.find(path);
+    if (found != read_.end()) return found->second.view();
+    return read_.emplace(path, read_regular_file(path)).first->second.view();
+}
+
+}  // namespace ricochet

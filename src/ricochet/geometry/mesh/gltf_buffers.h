@@ -1,0 +1,91 @@
+/// \file
+/// Private to the glTF reader: the bytes of its buffers, and the points and indices that accessors find in them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/gltf_json.h"
+#include "ricochet/geometry/mesh/mesh_source.h"
+
+namespace ricochet {
+
+/// Where buffers may come from besides the JSON.
+struct GltfSurroundings {
+    std::optional<std::string_view> chunk;        ///< the binary chunk of a GLB file
+    std::optional<std::filesystem::path> folder;  ///< of files that buffers name; nothing: such files are refused
+};
+
+/// Bytes of buffers, each fetched once and only when something in it is asked for.
+class GltfBuffers {
+public:
+    GltfBuffers(const GltfPlace& document, GltfSurroundings surroundings);
+
+    /// A buffer view: its bytes, and the bytes from one element to the next (0: they lie side by side).
+    struct View {
+        std::string_view bytes;
+        std::size_t stride = 0;
+    };
+    /// Of the number that a key says. Throws InputError where buffer or view do not reach as far as they say.
+    [[nodiscard]] View view(const GltfPlace& owner, std::string_view key);
+
+    /// Files that were read, in the order of their names.
+    [[nodiscard]] std::vector<std::filesystem::path> files() const;
+    /// Their size together.
+    [[nodiscard]] std::size_t bytes_of_files() const;
+
+private:
+    [[nodiscard]] std::string_view buffer(std::size_t number);
+    [[nodiscard]] std::string_view bytes_of(std::size_t number, const GltfPlace& buffer);
+    [[nodiscard]] std::string_view file_bytes(const GltfPlace& uri);
+
+    GltfList buffers_;
+    GltfList views_;
+    GltfSurroundings surroundings_;
+    std::map<std::size_t, std::string_view> known_;  ///< of buffers by number
+    std::map<std::size_t, std::string> decoded_;     ///< of data URIs by number of the buffer
+    std::map<std::filesystem::path, FileBytes> read_;
+};
+
+/// What an accessor says of its elements, checked against the bytes that there are.
+class GltfAccessor {
+public:
+    /// An accessor of points: three floats each, or small integers with KHR_mesh_quantization.
+    [[nodiscard]] static GltfAccessor of_points(const GltfPlace& accessor, GltfBuffers& buffers, bool quantized);
+    /// An accessor of indices: one unsigned integer each.
+    [[nodiscard]] static GltfAccessor of_indices(const GltfPlace& accessor, GltfBuffers& buffers);
+
+    [[nodiscard]] std::size_t size() const { return count_; }
+    /// As the file has it, finite or not.
+    [[nodiscard]] Vec3 point(std::size_t i) const;
+    [[nodiscard]] std::uint32_t index(std::size_t i) const;
+    /// The largest value of an index's type, which means no vertex.
+    [[nodiscard]] std::uint32_t no_index() const;
+
+private:
+    GltfAccessor(const GltfPlace& accessor, GltfBuffers& buffers, std::size_t components);
+
+    void read_sparse(const GltfPlace& accessor, GltfBuffers& buffers);
+    void read_sparse_values(const GltfPlace& sparse, GltfBuffers& buffers);
+    [[nodiscard]] const char* element(std::size_t i) const;
+    [[nodiscard]] double component(const char* at) const;
+
+    std::size_t components_;
+    std::uint64_t type_ = 0;
+    std::size_t component_bytes_ = 0;
+    bool is_normalized_ = false;
+    std::size_t count_ = 0;
+    std::size_t stride_ = 0;
+    std::string_view bytes_;                     ///< from the first element; empty: all elements are zero
+    std::vector<std::uint32_t> sparse_indices_;  ///< elements whose values stand in sparse_values_, rising
+    std::string_view sparse_values_;
+};
+
+}  // namespace ricochet

@@ -19,6 +19,13 @@ struct Start {
     int sweeps;
 };
 constexpr std::array<Start, 5> kStarts{{{false, 20}, {true, 30}, {false, 300}, {true, 1000}, {true, 6000}}};
+/// The long ones begin anew: what they do not find at one compliance they do not find at the next. They are tried once
+/// for a problem, with all of its friction.
+constexpr std::size_t kShortStarts = 3;
+/// Where another answer is looked for when forces run away, with all of the friction: compliances, and sweeps that
+/// begin without forces at each. Of 1200 random problems whose forces run away one in a hundred has one.
+constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
+constexpr std::array kSweepsToOther{30, 300};
 /// Sweeps after which what a sweep changes is looked at first, then after twice as many; and by which part it may
 /// differ from the change then, so that forces run away: they would not settle in ten thousand.
 constexpr int kFirstLook = 32;
@@ -29,6 +36,12 @@ constexpr int kSweepsOfPart = 100;
 /// Defects of the equations on the way, where the largest rate is 1, that are small enough to go on from.
 constexpr double kEnoughOnTheWay = 1e-10;
 constexpr double kHopeless = 1e6;
+/// Forces, where the largest rate is 1, from which on they may run away, and whose rounding exceeds what is enough on
+/// the way; and those that may do so already where no answer is found. By which part of what they gave way before
+/// contacts give way, as stiffer ones, when forces run away.
+constexpr double kRunawayForce = 1e6;
+constexpr double kLostForce = 1e5;
+constexpr double kSteadyGiving = 0.5;
 
 }  // namespace
 
@@ -40,12 +53,13 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     residual_ = 0.0;
     if (scale == 0.0) return true;
     for (std::size_t i = 0; i < unknowns_; ++i) free_rate_[i] /= scale;
-    const bool apart = is_apart();
-    if (apart) solve_apart();
-    const bool is_stiff = apart || make_stiff(effort);
-    if (is_stiff && !apart) make_rigid();
-    residual_ = find_defects({});
-    if (!is_stiff || !(residual_ < kHopeless)) residual_ = kHopeless;
+    if (is_apart()) {
+        solve_apart();
+        residual_ = find_defects({});
+    } else {
+        follow({}, effort);
+        if (effort == Effort::all && runs_away_ && !(residual_ <= kNearlySolved)) look_elsewhere();
+    }
     cut_to_bounds();
     for (std::size_t i = 0; i < unknowns_; ++i) force_[i] *= scale;
     return residual_ <= kCoulombResidual;
@@ -55,6 +69,7 @@ double CoulombProblem::solve_with_most(Effort effort, double friction) {
     constexpr std::array kParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
     for (const double part : kParts) {
         if (solve(effort, part * friction) || residual_ <= kNearlySolved) return part;
+        effort = std::min(effort, Effort::most);
     }
     return kParts.back();
 }
@@ -110,24 +125,63 @@ void CoulombProblem::solve_apart() {
     }
 }
 
+/// From where the way has come to, to the end.
+void CoulombProblem::follow(const Reached& reached, Effort effort) {
+    const bool is_stiff = make_stiff(reached, effort);
+    if (is_stiff) make_rigid();
+    residual_ = find_defects({});
+    if (!is_stiff || !(residual_ < kHopeless)) residual_ = kHopeless;
+}
+
 /// From soft contacts, which have one answer, to stiff ones; by shorter ways where a long one loses it.
-bool CoulombProblem::make_stiff(Effort effort) {
-    Compliance compliance{1.0, {}};
-    double reached = 1.0;
+bool CoulombProblem::make_stiff(Reached reached, Effort effort) {
+    may_try_long_ = effort == Effort::all;
+    runs_away_ = false;
     double factor = kStiffening;
     Unknowns kept = force_;
+    Compliance compliance{reached.force > 0.0 ? factor * reached.compliance : 1.0, {}};
     while (true) {
-        if (solve_at(compliance, effort)) {
+        compliance.value = std::max(kStiffCompliance, compliance.value);
+        bool is_found = newton(compliance, kEnoughOnTheWay);
+        runs_away_ = runs_away(reached, compliance.value, is_found);
+        if (runs_away_ && !is_found) return false;
+        if (is_found || solve_at(compliance, kept, effort)) {
             if (compliance.value <= kStiffCompliance) return true;
             kept = force_;
-            reached = compliance.value;
+            reached = reached.next(compliance.value, largest_force());
         } else {
             factor = std::sqrt(factor);
-            if (factor > (effort == Effort::all ? kShortestStiffening : kSomeStiffening)) return false;
+            if (factor > (effort == Effort::some ? kSomeStiffening : kShortestStiffening)) return false;
             force_ = kept;
         }
-        compliance.value = std::max(kStiffCompliance, factor * reached);
+        compliance.value = factor * reached.compliance;
     }
+}
+
+/// For an answer whose forces do not run away, where those do that have been come to from soft contacts.
+void CoulombProblem::look_elsewhere() {
+    const Unknowns kept = force_;
+    const double residual = residual_;
+    for (const double compliance : kOthersAt) {
+        if (!find_other({compliance, {}})) continue;
+        follow({compliance, largest_force(), false}, Effort::most);
+        if (residual_ <= kCoulombResidual) return;
+    }
+    force_ = kept;
+    residual_ = residual;
+}
+
+CoulombProblem::Reached CoulombProblem::Reached::next(double value, double largest) const {
+    return {value, largest, value * largest >= kSteadyGiving * compliance * force};
+}
+
+/// True where forces grow as contacts become stiff, so that these give way by as much as before: no rigid ones have
+/// such an answer. is_found: that at the compliance is; else it is said by how forces have grown before.
+bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool is_found) const {
+    const double giving = reached.compliance * reached.force;
+    if (!is_found) return reached.is_steady && giving > kLostForce * compliance;
+    const double force = largest_force();
+    return force > kRunawayForce && force * compliance >= kSteadyGiving * giving;
 }
 
 /// Contacts that have given way already, by as much as their forces make them, give way no more: proximal points. Weak
@@ -164,16 +218,28 @@ void CoulombProblem::cut_to_bounds() {
     }
 }
 
-bool CoulombProblem::solve_at(const Compliance& compliance, Effort effort) {
-    const Unknowns given = force_;
-    if (newton(compliance, kEnoughOnTheWay)) return true;
-    for (const Start& start : std::span(kStarts).first(effort == Effort::all ? kStarts.size() : 1)) {
+/// What Newton's method has not found from the forces given.
+bool CoulombProblem::solve_at(const Compliance& compliance, const Unknowns& given, Effort effort) {
+    const std::size_t most = std::exchange(may_try_long_, false) ? kStarts.size() : kShortStarts;
+    const std::size_t starts = effort == Effort::some ? 1 : most;
+    for (const Start& start : std::span(kStarts).first(starts)) {
         force_ = start.anew ? Unknowns{} : given;
-        const bool runs_away = relax(compliance, start.sweeps);
+        const bool diverges = relax(compliance, start.sweeps);
         if (newton(compliance, kEnoughOnTheWay)) return true;
-        if (runs_away && start.anew) break;  // more sweeps from there lead on
+        if (diverges && start.anew) break;  // more sweeps from there lead on
     }
-    return effort == Effort::all && grow_friction(compliance);
+    return effort != Effort::some && grow_friction(compliance);
+}
+
+/// Begins without forces.
+bool CoulombProblem::find_other(const Compliance& compliance) {
+    const auto is_other = [&](bool is_found) { return is_found && largest_force() <= kRunawayForce; };
+    for (const int sweeps : kSweepsToOther) {
+        force_ = {};
+        static_cast<void>(relax(compliance, sweeps));
+        if (is_other(newton(compliance, kEnoughOnTheWay))) return true;
+    }
+    return is_other(grow_friction(compliance));
 }
 
 /// Without friction there is one answer; from there on.
@@ -224,6 +290,7 @@ bool CoulombProblem::relax(const Compliance& compliance, int sweeps) {
     Unknowns before;
     double change_at_look = 0.0;
     bool runs_away = false;
+    sweeps_ += static_cast<std::size_t>(sweeps);
     for (int sweep = 1; sweep <= sweeps; ++sweep) {
         if (sweep == look) before = force_;
         for (std::size_t k = 0; k < contact_count_; ++k) {
@@ -246,116 +313,16 @@ bool CoulombProblem::relax(const Compliance& compliance, int sweeps) {
     return runs_away;
 }
 
+double CoulombProblem::largest_force() const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i]));
+    return largest;
+}
+
 double CoulombProblem::largest_change_from(const Unknowns& before) const {
     double largest = 0.0;
     for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i] - before[i]));
     return largest;
-}
-
-double CoulombProblem::gain_of(std::size_t contact, const Compliance& compliance) const {
-    return 1.0 / (delassus_[contact][contact] + compliance.value);
-}
-
-/// The force that would take the rate away. One that is moving wants more against its heading than it may have.
-CoulombProblem::Wish CoulombProblem::wish_of(std::size_t resistance, const Compliance& compliance) const {
-    const CoulombResistance& r = resistances_[resistance];
-    const std::size_t i = first_[resistance];
-    Wish wish;
-    wish.most = friction_ * r.bound * std::max(0.0, force_[r.contact]);
-    if (r.is_moving) {
-        wish.size = 1.0;
-        wish.force = {-r.heading[0], -r.heading[1]};
-        wish.is_cut = true;
-        return wish;
-    }
-    double diagonal = delassus_[i][i];
-    if (r.size == 2) diagonal = std::max(diagonal, delassus_[i + 1][i + 1]);
-    wish.gain = 1.0 / (diagonal + compliance.value);
-    for (std::size_t d = 0; d < r.size; ++d) wish.force[d] = force_[i + d] - wish.gain * rate_[i + d];
-    wish.size = std::sqrt(wish.force[0] * wish.force[0] + wish.force[1] * wish.force[1]);
-    wish.is_cut = wish.size > wish.most;
-    return wish;
-}
-
-/// Alart and Curnier's equations: N = max(0, N - gain rate), T = the wish, cut to the bound. The largest defect.
-double CoulombProblem::find_defects(const Compliance& compliance) {
-    const MotionVector all = change();
-    for (std::size_t i = 0; i < unknowns_; ++i) {
-        rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
-    }
-    for (std::size_t k = 0; k < contact_count_; ++k) {
-        defect_[k] = force_[k] - std::max(0.0, force_[k] - gain_of(k, compliance) * rate_[k]);
-    }
-    for (std::size_t k = 0; k < resistance_count_; ++k) {
-        const Wish wish = wish_of(k, compliance);
-        const double part = wish.is_cut ? wish.most / wish.size : 1.0;
-        for (std::size_t d = 0; d < resistances_[k].size; ++d) {
-            defect_[first_[k] + d] = force_[first_[k] + d] - part * wish.force[d];
-        }
-    }
-    double largest = 0.0;
-    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(defect_[i]));
-    return largest;
-}
-
-/// Their derivatives by the forces.
-void CoulombProblem::find_matrix(const Compliance& compliance) {
-    for (std::size_t k = 0; k < contact_count_; ++k) {
-        const double gain = gain_of(k, compliance);
-        const bool is_closed = force_[k] > gain * rate_[k];
-        for (std::size_t j = 0; j < unknowns_; ++j) matrix_[k][j] = is_closed ? gain * delassus_[k][j] : 0.0;
-        matrix_[k][k] = 1.0;
-    }
-    for (std::size_t k = 0; k < resistance_count_; ++k) find_rows_of(k, compliance);
-}
-
-void CoulombProblem::find_rows_of(std::size_t resistance, const Compliance& compliance) {
-    const CoulombResistance& r = resistances_[resistance];
-    const std::size_t i = first_[resistance];
-    const Wish wish = wish_of(resistance, compliance);
-    const bool cut = wish.is_cut;
-    const double part = cut ? wish.most / wish.size : 1.0;
-    const std::array unit{cut ? wish.force[0] / wish.size : 0.0, cut ? wish.force[1] / wish.size : 0.0};
-    for (std::size_t d = 0; d < r.size; ++d) {
-        for (std::size_t j = 0; j < unknowns_; ++j) {
-            double of_wish = 0.0;  // derivative of what the bound leaves of the wish
-            for (std::size_t e = 0; e < r.size && !r.is_moving; ++e) {
-                const double own = i + e == j ? 1.0 - wish.gain * compliance.value : 0.0;
-                const double turned = (d == e ? 1.0 : 0.0) - unit[d] * unit[e];
-                of_wish += part * turned * (own - wish.gain * delassus_[i + e][j]);
-            }
-            matrix_[i + d][j] = (i + d == j ? 1.0 : 0.0) - of_wish;
-        }
-        if (cut && force_[r.contact] > 0.0) matrix_[i + d][r.contact] -= friction_ * r.bound * unit[d];
-    }
-}
-
-/// Gaussian elimination with partial pivoting.
-bool CoulombProblem::eliminate() {
-    for (std::size_t c = 0; c < unknowns_; ++c) {
-        std::size_t pivot = c;
-        for (std::size_t i = c + 1; i < unknowns_; ++i) {
-            if (std::fabs(matrix_[i][c]) > std::fabs(matrix_[pivot][c])) pivot = i;
-        }
-        if (!(std::fabs(matrix_[pivot][c]) > 0.0)) return false;
-        if (pivot != c) {
-            for (std::size_t j = c; j < unknowns_; ++j) std::swap(matrix_[pivot][j], matrix_[c][j]);
-            std::swap(defect_[pivot], defect_[c]);
-        }
-        const double inverse = 1.0 / matrix_[c][c];
-        for (std::size_t i = c + 1; i < unknowns_; ++i) {
-            const double factor = matrix_[i][c] * inverse;
-            if (factor == 0.0) continue;
-            for (std::size_t j = c + 1; j < unknowns_; ++j) matrix_[i][j] -= factor * matrix_[c][j];
-            defect_[i] -= factor * defect_[c];
-        }
-    }
-    for (std::size_t c = unknowns_; c-- > 0;) {
-        double sum = defect_[c];
-        for (std::size_t j = c + 1; j < unknowns_; ++j) sum -= matrix_[c][j] * defect_[j];
-        defect_[c] = sum / matrix_[c][c];
-    }
-    return true;
 }
 
 }  // namespace ricochet

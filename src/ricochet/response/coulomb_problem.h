@@ -60,11 +60,12 @@ public:
     static constexpr std::size_t kMostContacts = 8;
     static constexpr std::size_t kMostResistances = 3 * kMostContacts;
 
-    /// How long an answer is looked for: `some` finds all but a few in a hundred of those that there are.
-    enum class Effort { some, all };
+    /// How long an answer is looked for: `some` finds all but a few in a hundred of those that there are, `most` all
+    /// but one in a thousand.
+    enum class Effort { some, most, all };
 
     /// Forgets all contacts and resistances.
-    void clear() { contact_count_ = resistance_count_ = 0; }
+    void clear() { contact_count_ = resistance_count_ = sweeps_ = 0; }
     /// At most kMostContacts.
     void add(const CoulombContact& contact) { contacts_[contact_count_++] = contact; }
     /// At most kMostResistances, of contacts that were added.
@@ -78,11 +79,14 @@ public:
 
     /// Solves with as much of the friction as there is an answer for: all of it, also where rounding leaves the
     /// conditions met to kNearlySolved only, as between surfaces that press against each other; else less, down to
-    /// none. Returns the part of the friction that it was solved with.
+    /// none; the parts with `most` at most. Returns the part of the friction that it was solved with.
     double solve_with_most(Effort effort, double friction = 1.0);
 
     /// False where the last answer meets the conditions to kNearlySolved only, or not at all.
     [[nodiscard]] bool is_solved() const { return residual_ <= kCoulombResidual; }
+
+    /// Sweeps over the contacts since clear(): what an answer has cost, or finding that there is none.
+    [[nodiscard]] std::size_t sweeps() const { return sweeps_; }
 
     /// Force of a contact.
     [[nodiscard]] double push(std::size_t contact) const { return force_[contact]; }
@@ -109,16 +113,29 @@ private:
         bool is_cut = false;  ///< to `most`
     };
 
+    /// How far the way to stiff contacts has come.
+    struct Reached {
+        double compliance = 1.0;
+        double force = 0.0;      ///< the largest
+        bool is_steady = false;  ///< contacts gave way by as much as before, though stiffer
+        [[nodiscard]] Reached next(double value, double largest) const;
+    };
+
     void set_up();
     [[nodiscard]] bool is_apart() const;
     void solve_apart();
-    [[nodiscard]] bool make_stiff(Effort effort);
+    void follow(const Reached& reached, Effort effort);
+    [[nodiscard]] bool make_stiff(Reached reached, Effort effort);
+    void look_elsewhere();
     void make_rigid();
     void cut_to_bounds();
-    [[nodiscard]] bool solve_at(const Compliance& compliance, Effort effort);
+    [[nodiscard]] bool runs_away(const Reached& reached, double compliance, bool is_found) const;
+    [[nodiscard]] bool solve_at(const Compliance& compliance, const Unknowns& given, Effort effort);
+    [[nodiscard]] bool find_other(const Compliance& compliance);
     [[nodiscard]] bool grow_friction(const Compliance& compliance);
     [[nodiscard]] bool newton(const Compliance& compliance, double enough);
     [[nodiscard]] bool relax(const Compliance& compliance, int sweeps);
+    [[nodiscard]] double largest_force() const;
     [[nodiscard]] double largest_change_from(const Unknowns& before) const;
     double find_defects(const Compliance& compliance);
     void find_matrix(const Compliance& compliance);
@@ -131,8 +148,11 @@ private:
     std::array<CoulombResistance, kMostResistances> resistances_;
     std::size_t contact_count_ = 0;
     std::size_t resistance_count_ = 0;
+    std::size_t sweeps_ = 0;
     double friction_ = 1.0;
-    double residual_ = 0.0;  // of the last answer, as a part of the largest rate
+    bool may_try_long_ = false;  // of this answer
+    bool runs_away_ = false;     // on the last way to stiff contacts
+    double residual_ = 0.0;      // of the last answer, as a part of the largest rate
 
     // The unknown forces: of the contacts, then of the resistances.
     std::size_t unknowns_ = 0;

@@ -1209,8 +1209,9 @@ class SimulationOptions(Thing):
         16.
     most_particles: Most particles alive at a time; births beyond are refused and counted. A fixed number, so that a
         run is the same on every machine; it must fit the memory all the same. Default: 100000000.
-    bounce_budget: Most impacts of one particle in one step. A particle that spends it stays where it is for the
-        rest of the step, and the time left out is counted. Default: 1000.
+    bounce_budget: Most impacts of one particle in one step; beyond 64 intervals of contact every four count as one.
+        A particle that spends it stays where it is for the rest of the step, and the time left out is counted.
+        Default: 1000.
     rollback: Of the rollback response.
     project: Of the project response.
     penalty: Of the penalty response.

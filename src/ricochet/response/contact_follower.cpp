@@ -79,6 +79,7 @@ ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
       held_(step, manifold) {}
 
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
+    step_.note_interval();
     manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
     if (goes_nowhere(pull, duration)) {

@@ -191,7 +191,7 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
 
 /// Slides, rolls or rests. A kicked particle has had its force already.
 std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
-    for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
+    for (int count = 0; count < kMostIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
         if (!support_.is_pressed(forces)) return std::nullopt;
         const Stop stop = follower_.advance({forces, !kicked, 1.0}, step_.remaining());

@@ -56,9 +56,6 @@ private:
     [[nodiscard]] double planned_duration(bool is_first) const;
     std::optional<Contact> answer(const Flight& flight, const Contact& contact);
     std::optional<Contact> answer_without_kick(const Flight& flight, const Contact& contact);
-    [[nodiscard]] bool has_budget() {
-        return particle_.bounces_before + step_.outcome().bounces < rules_.settings.bounce_budget;
-    }
     [[nodiscard]] bool has_room();
     bool goes_along(std::optional<Contact>& contact);
     [[nodiscard]] bool has_moving(const Contact& contact) const {
@@ -103,7 +100,7 @@ MoveOutcome ParticleMover::run() {
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
-        while (contact && !outcome.is_absorbed() && has_budget() && has_room()) {
+        while (contact && !outcome.is_absorbed() && step_.has_budget() && has_room()) {
             contact = answer(flight, *contact);
         }
         if (outcome.is_absorbed()) break;
@@ -140,7 +137,7 @@ bool ParticleMover::has_room() {
 /// with it for a while, until they have come apart. contact: replaced by what comes to it meanwhile. False where it is
 /// no such touch.
 bool ParticleMover::goes_along(std::optional<Contact>& contact) {
-    if (rides_ == nullptr || !has_budget() || !(step_.remaining() > 0.0)) return false;
+    if (rides_ == nullptr || !step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     const auto touched = contact->all();
     const bool yields = std::any_of(touched.begin(), touched.end(), [&](const ContactSurface& surface) {
         return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));

@@ -103,12 +103,28 @@ public:
     /// m/s, of the slowest rebound that is one: the scene's, or what a body that yields makes of it.
     [[nodiscard]] double resting_speed() const { return resting_speed_; }
     void set_resting_speed(double speed) { resting_speed_ = speed; }
+    /// Of an interval of contact, each of which is a problem or more to solve.
+    void note_interval() { ++intervals_; }
+    /// False where impacts have spent the budget of bounces. Beyond the intervals that may follow one impact each few
+    /// of them spend as much as an impact: they take longer. What slides fast in a round shape that it hardly fits
+    /// into, or under forces beyond measure, would spend as many again after each of its impacts.
+    [[nodiscard]] bool has_budget() const {
+        const std::uint32_t intervals = std::max(intervals_, kFreeIntervals) - kFreeIntervals;
+        const std::uint32_t spent = particle_.bounces_before + outcome_.bounces + intervals / kIntervalsOfBounce;
+        return spent < rules_->settings.bounce_budget;
+    }
+    /// True while contact may have another interval.
+    [[nodiscard]] bool has_intervals() const { return intervals_ < kFreeIntervals || has_budget(); }
     [[nodiscard]] double duration() const { return duration_; }    ///< s, of the whole step
     [[nodiscard]] double remaining() const { return remaining_; }  ///< s, that are left of it
     /// Where the step began: off the surface that the particle was put on, if it was.
     [[nodiscard]] const Vec3& start() const { return start_; }
 
 private:
+    /// Intervals of contact in one step that cost nothing, and those that cost as much as a bounce from there on.
+    static constexpr std::uint32_t kFreeIntervals = 64;
+    static constexpr std::uint32_t kIntervalsOfBounce = 4;
+
     /// How far a particle has come along a path among bodies.
     struct Travel {
         std::optional<Contact> contact{};  ///< what it has come to
@@ -172,6 +188,7 @@ private:
     double duration_;
     double remaining_;
     double resting_speed_;
+    std::uint32_t intervals_ = 0;  // of contact, so far
 };
 
 template <class Shorter>

@@ -197,7 +197,8 @@ bool SharedContact::rests() const {
 std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
     bool has_jumped = false;
-    for (int count = 0; count < kMostIntervals && step_.remaining() > 0.0; ++count) {
+    for (int count = 0; count < kMostIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
+        step_.note_interval();
         step_.impact().note_driven();
         gather();
         if (count_ == 0) return std::nullopt;

@@ -139,8 +139,8 @@ Fields<SimulationKeys> rule_fields() {
          "same "
          "on every machine; it must fit the memory all the same."},
         {"bounce_budget", &S::bounce_budget, between(1.0, 4294967295.0), "",
-         "Most impacts of one particle in one step. A particle that spends it stays where it is for the rest of the "
-         "step, and the time left out is counted."},
+         "Most impacts of one particle in one step; beyond 64 intervals of contact every four count as one. A particle "
+         "that spends it stays where it is for the rest of the step, and the time left out is counted."},
         {"rollback", &S::rollback, "Of the rollback response.", &rollback_spec(), Without{"its defaults"}},
         {"project", &S::project, "Of the project response.", &project_spec(), Without{"its defaults"}},
         {"penalty", &S::penalty, "Of the penalty response.", &penalty_spec(), Without{"its defaults"}}};

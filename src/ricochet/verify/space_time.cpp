@@ -23,6 +23,14 @@ Real error_of() {
     return 1024 * std::numeric_limits<Real>::epsilon();
 }
 
+/// What is certain of the signs of some values. What the others are more digits may tell.
+struct Signs {
+    bool all_positive = false;
+    bool all_negative = false;
+    bool any_positive = false;
+    bool any_negative = false;
+};
+
 /// Values of a polynomial in time that is bounded by them (its Bernstein coefficients), each with the sum of magnitudes
 /// that it was made from.
 template <class Real>
@@ -30,17 +38,19 @@ struct Bounded {
     std::vector<Real> values;
     std::vector<Real> sizes;
 
-    /// +1 or -1 where all of the polynomial certainly has that sign, else 0.
-    [[nodiscard]] int sign() const {
-        int common = 0;
+    [[nodiscard]] Signs signs() const {
+        Signs found{true, true, false, false};
         for (std::size_t k = 0; k < values.size(); ++k) {
             const Real bound = error_of<Real>() * sizes[k];
-            if (!(bound > Real(1e-280))) return 0;
-            const int sign = values[k] > bound ? 1 : (values[k] < -bound ? -1 : 0);
-            if (sign == 0 || (common != 0 && sign != common)) return 0;
-            common = sign;
+            const bool is_known = bound > Real(1e-280);
+            const bool is_positive = is_known && values[k] > bound;
+            const bool is_negative = is_known && values[k] < -bound;
+            found.all_positive = found.all_positive && is_positive;
+            found.all_negative = found.all_negative && is_negative;
+            found.any_positive = found.any_positive || is_positive;
+            found.any_negative = found.any_negative || is_negative;
         }
-        return common;
+        return found;
     }
 };
 
@@ -55,15 +65,39 @@ double choose(std::size_t n, std::size_t k) {
     return value;
 }
 
+/// Of the products of values of two polynomials of degrees m and n, up to kMostDegree, in that of theirs.
+constexpr std::size_t kMostDegree = 3;
+template <class Real>
+class Weights {
+public:
+    Weights() {
+        for (std::size_t k = 0; k < weights_.size(); ++k) {
+            const std::size_t m = k / (kSize * kSize * kSize);
+            const std::size_t n = k / (kSize * kSize) % kSize;
+            const std::size_t i = k / kSize % kSize;
+            const std::size_t j = k % kSize;
+            if (i <= m && j <= n) weights_[k] = Real(choose(m, i) * choose(n, j)) / Real(choose(m + n, i + j));
+        }
+    }
+    [[nodiscard]] const Real& of(std::size_t m, std::size_t n, std::size_t i, std::size_t j) const {
+        return weights_[((m * kSize + n) * kSize + i) * kSize + j];
+    }
+
+private:
+    static constexpr std::size_t kSize = kMostDegree + 1;
+    std::array<Real, kSize * kSize * kSize * kSize> weights_{};
+};
+
 /// The product: each value is the mean, with weights, of all products of two that it may come from.
 template <class Real>
 Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
     const std::size_t m = a.values.size() - 1;
     const std::size_t n = b.values.size() - 1;
+    static const Weights<Real> weights;
     Bounded<Real> product{std::vector<Real>(m + n + 1, Real(0)), std::vector<Real>(m + n + 1, Real(0))};
     for (std::size_t i = 0; i <= m; ++i) {
         for (std::size_t j = 0; j <= n; ++j) {
-            const Real weight = Real(choose(m, i) * choose(n, j)) / Real(choose(m + n, i + j));
+            const Real& weight = weights.of(m, n, i, j);
             product.values[i + j] += weight * a.values[i] * b.values[j];
             product.sizes[i + j] += weight * a.sizes[i] * b.sizes[j];
         }
@@ -121,33 +155,41 @@ public:
                    Way{triangle.from.c, triangle.to.c}} {}
 
     bool is_apart(double begin, double end, int depth) {
-        if (is_apart_in<double>(begin, end) || is_apart_in<Digits>(begin, end)) return true;
+        bool is_in_doubt = false;
+        if (is_apart_in<double>(begin, end, is_in_doubt)) return true;
+        if (is_in_doubt && is_apart_in<Digits>(begin, end, is_in_doubt)) return true;
         if (depth == 0 || ++pieces_ > kMostPieces) return false;
         const double middle = 0.5 * (begin + end);
         return is_apart(begin, middle, depth - 1) && is_apart(middle, end, depth - 1);
     }
 
 private:
-    /// On one side of the plane all the time, beyond one of the edges, or apart along a direction.
+    /// On one side of the plane all the time, beyond one of the edges, or apart along a direction. Where it is none of
+    /// these `is_in_doubt` is set if more digits could tell otherwise.
     template <class Real>
-    [[nodiscard]] bool is_apart_in(double begin, double end) const {
+    [[nodiscard]] bool is_apart_in(double begin, double end, bool& is_in_doubt) const {
         std::array<Offset<Real>, 3> to_point;
         std::array<Offset<Real>, 3> edges;
         for (std::size_t k = 0; k < 3; ++k) {
             to_point[k] = offset_of<Real>(corners_[k], point_, begin, end);
             edges[k] = offset_of<Real>(corners_[k], corners_[(k + 1) % 3], begin, end);
         }
-        if (is_separated(to_point, begin, end)) return true;
+        if (is_separated(to_point, begin, end, is_in_doubt)) return true;
         const Offset<Real> normal = cross_of(edges[0], edges[1]);
-        if (dot_of(normal, to_point[0]).sign() != 0) return true;
+        const Signs side = dot_of(normal, to_point[0]).signs();
+        if (side.all_positive || side.all_negative) return true;
+        is_in_doubt = is_in_doubt || !(side.any_positive && side.any_negative);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (dot_of(cross_of(edges[k], normal), to_point[k]).sign() > 0) return true;
+            const Signs beyond = dot_of(cross_of(edges[k], normal), to_point[k]).signs();
+            if (beyond.all_positive) return true;
+            is_in_doubt = is_in_doubt || !beyond.any_negative;
         }
         return false;
     }
 
     template <class Real>
-    [[nodiscard]] bool is_separated(const std::array<Offset<Real>, 3>& to_point, double begin, double end) const {
+    [[nodiscard]] bool is_separated(const std::array<Offset<Real>, 3>& to_point, double begin, double end,
+                                    bool& is_in_doubt) const {
         const double middle = 0.5 * (begin + end);
         const Vec3 p = at(point_, middle);
         const std::array<Vec3, 3> c{at(corners_[0], middle), at(corners_[1], middle), at(corners_[2], middle)};
@@ -160,8 +202,14 @@ private:
             for (int axis = 0; axis < 3; ++axis) {
                 direction[static_cast<std::size_t>(axis)] = {{Real(n[axis])}, {Real(std::fabs(n[axis]))}};
             }
-            return std::all_of(to_point.begin(), to_point.end(),
-                               [&](const Offset<Real>& offset) { return dot_of(offset, direction).sign() > 0; });
+            bool is_beyond = true;
+            for (const Offset<Real>& offset : to_point) {
+                const Signs signs = dot_of(offset, direction).signs();
+                if (signs.any_negative) return false;
+                is_beyond = is_beyond && signs.all_positive;
+            }
+            is_in_doubt = is_in_doubt || !is_beyond;
+            return is_beyond;
         });
     }
 

@@ -768,6 +768,17 @@ class BuoyancyForce(Thing):
     _fixed = {"type": "buoyancy"}
 
 
+class ThermalBuoyancyForce(Thing):
+    """Lift of parcels of gas by their attribute `temperature`: a = -g T / Ta, with gravity as a force of its own g (1 - T / Ta) in all. None for particles of 0 K.
+
+    particles: Ids of the particles that feel it.
+    ambient_temperature: The Ta of the gas around. Unit: K. Default: 293.15.
+    gravity: The g. Unit: m/s^2. Required.
+    """
+
+    _fixed = {"type": "thermal_buoyancy"}
+
+
 class PointGravityForce(Thing):
     """Gravity of point masses, a = -G M d / (|d|^2 + softening^2)^(3/2).
 

@@ -641,6 +641,15 @@ class BuoyancyForce(Thing):
         gravity: Vector,
     ) -> None: ...
 
+class ThermalBuoyancyForce(Thing):
+    def __init__(
+        self,
+        *,
+        particles: Optional[Vector] = ...,
+        ambient_temperature: Optional[float] = ...,
+        gravity: Vector,
+    ) -> None: ...
+
 class PointGravityForce(Thing):
     def __init__(
         self,

@@ -75,6 +75,8 @@ constexpr ShippedScene kShippedScenes[] = {
     {"billiard_break", "1"},
     {"granular_gas", "0.3"},
     {"grinder", "0.8"},
+    {"fire", "0.3"},
+    {"explosion", "0.3"},
     {"newtons_cradle", "1.5"},
     {"sandpile", "0.6"},
     {"hopper", "0.7"},

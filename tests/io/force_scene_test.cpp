@@ -152,7 +152,9 @@ TEST(ForceScene, TheExamplesOfTheDocumentAreRead) {
         ++examples;
     }
     EXPECT_GE(examples, 20);
-    const std::string scene = fmt::format("{{\"ricochet\": 1, \"flows\": {{{}}}, \"forces\": [{}]}}", flows, forces);
+    const std::string scene = fmt::format(
+        "{{\"ricochet\": 1, \"attributes\": {{\"temperature\": {{}}}}, \"flows\": {{{}}}, \"forces\": [{}]}}", flows,
+        forces);
     try {
         (void)parse_scene(scene, folder.path("s.json"));
     } catch (const SceneError& error) {

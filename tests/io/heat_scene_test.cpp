@@ -96,5 +96,21 @@ TEST(HeatScene, IsRefusedWhereNobodyKnowsWhatSurfacesTake) {
               std::string::npos);
 }
 
+TEST(HeatScene, LiftsByTemperatureWhereTheAttributeIsDeclared) {
+    const std::string forces =
+        R"("forces": [{"type": "thermal_buoyancy", "ambient_temperature": 250, "gravity": [0, 0, -10]}], )";
+    const auto scene = [&](const std::string& attributes, const std::string& more = "") {
+        return R"({"ricochet": 1, )" + forces + attributes + more + R"("particles": [{"position": [0, 0, 1]}]})";
+    };
+    const std::string declared = R"("attributes": {"temperature": {"default": 500}}, )";
+    const SimulationSetup setup = parse_scene(scene(declared), "s.json").setup;
+    ForceInput input{{}, {}, 1.0, 0.0, 0.0};
+    input.temperature = 500.0;
+    EXPECT_EQ(setup.forces.at(0)->acceleration(input), Vec3(0, 0, 20));
+    EXPECT_EQ(errors_of(scene("")), (Lines{"forces: thermal buoyancy: attributes: found none that is named "
+                                           "\"temperature\", expected it to be declared: the lift goes by it, in K"}));
+    EXPECT_EQ(errors_of(scene(declared, R"("particle_contacts": {}, )")).size(), 1U);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -211,6 +211,33 @@ private:
 
 }  // namespace
 
+namespace {
+
+class ThermalBuoyancy final : public Force {
+public:
+    ThermalBuoyancy(double ambient, const Vec3& gravity) : ambient_(ambient), gravity_(gravity) {}
+    [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
+        return gravity_ * (-input.temperature / ambient_);
+    }
+    // The lift at a place changes with the temperature, so no energy is stored there.
+    [[nodiscard]] std::optional<double> potential_energy(const ForceInput& /*input*/) const override {
+        return std::nullopt;
+    }
+    [[nodiscard]] bool needs_temperature() const override { return true; }
+
+private:
+    double ambient_;
+    Vec3 gravity_;
+};
+
+}  // namespace
+
+std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity) {
+    detail::require_positive(ambient_temperature, "thermal buoyancy: the ambient temperature", "K");
+    detail::require_finite(gravity, "thermal buoyancy: the gravity", "m/s^2");
+    return std::make_unique<ThermalBuoyancy>(ambient_temperature, gravity);
+}
+
 std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity) {
     detail::require_not_negative(fluid_density, "buoyancy: the fluid's density", "kg/m^3");
     detail::require_finite(gravity, "buoyancy: the gravity", "m/s^2");

@@ -65,6 +65,7 @@ public:
     }
     [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
     [[nodiscard]] bool is_conservative() const override { return force_->is_conservative(); }
+    [[nodiscard]] bool needs_temperature() const override { return force_->needs_temperature(); }
 
 private:
     [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
@@ -117,7 +118,9 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_cou
       uniform_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_uniform(); })),
       steady_(std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_steady(); })),
       conservative_(
-          std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_conservative(); })) {
+          std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_conservative(); })),
+      needs_temperature_(
+          std::any_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->needs_temperature(); })) {
     for (const auto& force : forces_) {
         const std::optional<Vec3> acceleration = force->common_acceleration();
         common_ = common_ && acceleration ? std::optional(*common_ + *acceleration) : std::nullopt;

@@ -29,6 +29,8 @@ struct ForceInput {
     /// m: of a sphere that collides as a part of itself, whose radius then stands in `radius`; 0 otherwise. ForceField
     /// shows forces the whole.
     double whole_radius = 0.0;
+    /// K: the particle's attribute `temperature`, as it is at the begin of the step; 0 where there is none.
+    double temperature = 0.0;
 };
 
 /// What other particles do to one that has left the plan of a step by a bounce. Pure like a force.
@@ -58,6 +60,8 @@ public:
     [[nodiscard]] virtual bool is_steady() const { return is_uniform(); }
     /// True when all its work is what its potential energy falls by: lasting contact keeps the sum then.
     [[nodiscard]] virtual bool is_conservative() const { return false; }
+    /// True when it asks for ForceInput::temperature.
+    [[nodiscard]] virtual bool needs_temperature() const { return false; }
 };
 
 /// Uniform gravity: the given acceleration, m/s^2.
@@ -106,6 +110,8 @@ public:
     [[nodiscard]] bool is_conservative_for(const ForceInput& input) const {
         return conservative_ && input.coupling == nullptr;
     }
+    /// True when one force asks for the particles' temperature.
+    [[nodiscard]] bool needs_temperature() const { return needs_temperature_; }
 
 private:
     std::vector<std::unique_ptr<Force>> forces_;
@@ -113,6 +119,7 @@ private:
     bool uniform_ = true;
     bool steady_ = true;
     bool conservative_ = true;
+    bool needs_temperature_ = false;
     std::optional<Vec3> common_ = Vec3{};
 };
 
@@ -208,6 +215,13 @@ struct LorentzSettings {
 /// Archimedes's F = -fluid_density (4/3) pi radius^3 gravity for the particle's own radius: none for points. The
 /// particle's own weight is a force of its own (make_gravity). fluid_density in kg/m^3, >= 0; gravity in m/s^2.
 [[nodiscard]] std::unique_ptr<Force> make_buoyancy(double fluid_density, const Vec3& gravity);
+
+/// Lift of parcels of gas that are hotter or colder than the gas around, which is at rest and of the same kind and
+/// pressure: a = -gravity T / ambient_temperature, the parcel's weight being a force of its own (make_gravity), so that
+/// both together are gravity (1 - T / ambient_temperature). Particles of the temperature 0 have none: bodies whose
+/// density is far above the gas's. gravity in m/s^2; ambient_temperature in K, > 0.
+/// Source: J. S. Turner, "Buoyancy Effects in Fluids", Cambridge 1973, section 1.2, with the density of an ideal gas.
+[[nodiscard]] std::unique_ptr<Force> make_thermal_buoyancy(double ambient_temperature, const Vec3& gravity);
 
 // Vector fields that act as forces by themselves.
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/algorithms.h"
+#include "ricochet/dynamics/heat.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -22,6 +23,7 @@ ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool 
     : keeps_rides_(keeps_rides), colliders_(colliders), may_sleep_(may_sleep) {
     particles_.attributes = AttributeTable(std::move(attributes));
     particles_.keeps_origin = keeps_origin;
+    temperature_column_ = particles_.attributes.find(kTemperatureAttribute);
 }
 
 ParticleStore ParticleStore::empty_copy() const {

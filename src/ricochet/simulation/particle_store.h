@@ -61,8 +61,10 @@ public:
     void wake(std::size_t i) { particles_.held[i] = 0; }
     /// What forces see of it at a time, s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
-        return {particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
-                particles_.id[i]};
+        ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
+                         particles_.id[i]};
+        if (temperature_column_) input.temperature = particles_.attributes.value(*temperature_column_, i).x;
+        return input;
     }
 
     /// Particle i as the response moves it from `start`, s. in_contact: the arrays may hold a contact of it; where they
@@ -114,6 +116,7 @@ private:
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
     bool may_sleep_;
+    std::optional<std::size_t> temperature_column_;  // among the attributes, where there is one
 };
 
 /// Begins to fetch a vector from memory; it may lie across two cache lines.

@@ -280,6 +280,10 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
             fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));
     }
     ForceField field(std::move(forces));  // refuses null pointers before anything has changed
+    if (field.needs_temperature() && !particles().attributes.find(kTemperatureAttribute)) {
+        throw InputError(
+            "set_forces: found thermal buoyancy, expected the attribute \"temperature\" to be declared for it");
+    }
     impl().free_flights.end_deferring();
     SimulationStatistics& statistics = impl().recorder.statistics();
     for (std::size_t i = 0; i < impl().store.size(); ++i) {

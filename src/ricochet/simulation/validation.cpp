@@ -252,6 +252,7 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_emitters(setup);
     validate_springs(setup);
     validate_heat(setup);
+    validate_thermal_forces(setup);
     if (setup.bounds) validate(*setup.bounds);
     if (setup.reference_camera) validate(*setup.reference_camera);
     require_memory(setup);

@@ -20,6 +20,8 @@ void validate_together(const SimulationSetup& setup);
 
 /// What changes temperatures: its values, and what it needs of particles and of what moves them.
 void validate_heat(const SimulationSetup& setup);
+/// What forces that ask for temperatures need of the rest.
+void validate_thermal_forces(const SimulationSetup& setup);
 
 /// What spheres do when they meet, their materials, and what else there is.
 void validate_particle_contacts(const SimulationSetup& setup);

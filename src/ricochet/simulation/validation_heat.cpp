@@ -41,14 +41,14 @@ void validate_numbers(const HeatSettings& heat, const Subject& subject) {
 }
 
 /// Returns its column.
-std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject) {
+std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject, const char* why) {
     const auto& all = setup.attributes;
     const auto found = std::find_if(all.begin(), all.end(), [](const AttributeDescription& column) {
         return column.name == kTemperatureAttribute;
     });
     if (found == all.end()) {
         subject.refuse("attributes", "none that is named \"temperature\"",
-                       "it to be declared: it is what heat changes, in K");
+                       fmt::format("it to be declared: {}, in K", why));
     }
     if (found->components != 1) subject.refuse("attribute \"temperature\"", "a vector", "one component (K)");
     require_temperature(subject, found->fallback.x, "default of the attribute \"temperature\"");
@@ -113,9 +113,23 @@ void validate_heat(const SimulationSetup& setup) {
     if (!setup.heat) return;
     const Subject subject("heat");
     validate_numbers(*setup.heat, subject);
-    const std::size_t column = validate_attribute(setup, subject);
+    const std::size_t column = validate_attribute(setup, subject, "it is what heat changes");
     validate_particles(setup, column);
     if (setup.heat->is_heated_by_surfaces()) validate_friction(setup, subject);
+}
+
+void validate_thermal_forces(const SimulationSetup& setup) {
+    const bool needs = std::any_of(setup.forces.begin(), setup.forces.end(),
+                                   [](const auto& force) { return force && force->needs_temperature(); });
+    if (!needs) return;
+    const Subject subject("thermal buoyancy");
+    (void)validate_attribute(setup, subject, "the lift goes by it");
+    const bool act_on_each_other =
+        !setup.springs.empty() || !setup.particles_forces.empty() || setup.solver || setup.options.particle_contacts;
+    if (act_on_each_other) {
+        subject.refuse("particles", "some that act on each other",
+                       "none of springs, particle_forces and particle_contacts: parcels of gas move by themselves");
+    }
 }
 
 }  // namespace ricochet

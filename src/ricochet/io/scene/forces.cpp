@@ -114,6 +114,20 @@ ForceLaw buoyancy() {
         [](const Lift& l) { return make_buoyancy(l.fluid_density, l.gravity); });
 }
 
+ForceLaw thermal_buoyancy() {
+    struct Lift {
+        double ambient_temperature = 293.15;
+        Vec3 gravity;
+    };
+    return force_law<Lift>(
+        "thermal_buoyancy",
+        "Lift of parcels of gas by their attribute `temperature`: a = -g T / Ta, with gravity as a force of its own "
+        "g (1 - T / Ta) in all. None for particles of 0 K.",
+        {{"ambient_temperature", &Lift::ambient_temperature, kPositive, "K", "The Ta of the gas around."},
+         {"gravity", &Lift::gravity, kCoordinate, "m/s^2", "The g.", kRequired}},
+        [](const Lift& l) { return make_thermal_buoyancy(l.ambient_temperature, l.gravity); });
+}
+
 // Fields of force.
 
 ForceLaw gravity() {
@@ -216,8 +230,9 @@ ForceLaw anchor_force() {
 
 const std::vector<ForceLaw>& force_laws() {
     static const std::vector<ForceLaw> laws = {
-        gravity(),       linear_drag(),  quadratic_drag(), stokes_drag(), schiller_naumann_drag(), buoyancy(),
-        point_gravity(), radial_force(), swirl(),          field_force(), lorentz_force(),         anchor_force()};
+        gravity(),     linear_drag(),      quadratic_drag(), stokes_drag(),  schiller_naumann_drag(),
+        buoyancy(),    thermal_buoyancy(), point_gravity(),  radial_force(), swirl(),
+        field_force(), lorentz_force(),    anchor_force()};
     return laws;
 }
 

@@ -68,6 +68,13 @@ FlowPointer flow_of(const SceneContext& context, const ForceBuilder& forces, con
 }  // namespace
 
 void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup) {
+    if (!context.failed()) {
+        try {
+            validate_thermal_forces(setup);
+        } catch (const InputError& problem) {
+            context.error(context.root(), "forces", problem.what());
+        }
+    }
     if (!context.root().has("heat")) return;
     const ObjectView view = context.root().object("heat");
     setup.heat = view.read<HeatSettings>();

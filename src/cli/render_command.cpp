@@ -72,12 +72,12 @@ Image labelled(RunPictures& pictures, double time, const PictureOptions& options
 // The times of a film's pictures: film time is simulation time over --speed.
 std::vector<double> film_times(RunTimeline& timeline, const RenderArguments& arguments) {
     constexpr double kMostPictures = 1e6;
-    const double step = arguments.speed / arguments.frames_per_second;
+    const double step = film_speed(arguments) / film_rate(arguments);
     const double first = timeline.first_time();
     const double length = timeline.last_time() - first;
     if (length / step > kMostPictures) {
-        refuse(fmt::format("--speed {}: a film of {:.4g} s would have more than {:.0f} pictures", arguments.speed,
-                           length / arguments.speed, kMostPictures));
+        refuse(fmt::format("--speed {}: a film of {:.4g} s would have more than {:.0f} pictures", film_speed(arguments),
+                           length / film_speed(arguments), kMostPictures));
     }
     std::vector<double> times;
     for (double k = 0.0; k * step <= length * (1.0 + 1e-12); k += 1.0) times.push_back(first + k * step);
@@ -87,7 +87,7 @@ std::vector<double> film_times(RunTimeline& timeline, const RenderArguments& arg
 
 void write_film(RunPictures& pictures, const std::vector<double>& times, PictureOptions options,
                 const RenderArguments& arguments) {
-    Film film(arguments.output, options.width, options.height, arguments.frames_per_second);
+    Film film(arguments.output, options.width, options.height, film_rate(arguments));
     Watch watch(times.size(), arguments);
     for (std::size_t i = 0; i < times.size(); ++i) {
         options.progress = watch.callback(i);
@@ -113,10 +113,10 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
 
 // What lies between frames, and what is known of it.
 std::string film_report(RunPictures& pictures, const RenderArguments& arguments) {
-    const double step = arguments.speed / arguments.frames_per_second;
+    const double step = film_speed(arguments) / film_rate(arguments);
     const double spacing = pictures.timeline().spacing();
     const double ratio = spacing > 0.0 ? step / spacing : 1.0;
-    const std::string text = fmt::format("{:.4g} s of the run a second", arguments.speed);
+    const std::string text = fmt::format("{:.4g} s of the run a second", film_speed(arguments));
     if (ratio >= 0.999999 && std::fabs(ratio - std::round(ratio)) < 1e-6) return text;
     return fmt::format("{}, interpolated between frames {:.4g} s apart{}", text, spacing,
                        pictures.timeline().knows_impacts()
@@ -140,6 +140,7 @@ void render(const RenderArguments& arguments) {
     (void)parse_progress(arguments.progress);  // wrong words are told before the work
     const PictureSize size = parse_picture_size(arguments.size);
     const bool film = extension == ".mp4";
+    check_film_options(arguments, film);
     if (film && (size.width % 2 != 0 || size.height % 2 != 0)) {
         refuse(fmt::format("--size {}: a film needs an even width and height", arguments.size));
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <algorithm>
 
 #include <optional>
 
@@ -130,6 +131,10 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
     style.collider_quantity = parse_collider_color(arguments.collider_color);
     style.collider_range = parse_range("--collider-range", arguments.collider_range);
+    for (const std::string& name : arguments.hidden) {
+        if (std::find(arguments.glass.begin(), arguments.glass.end(), name) != arguments.glass.end())
+            refuse(fmt::format("--glass {0}: found beside --hide {0}, expected one of them", name));
+    }
     style.hidden = arguments.hidden;
     style.glass = arguments.glass;
     style.camera = parse_camera(arguments.camera);
@@ -148,12 +153,23 @@ void check_numbers(const RenderArguments& arguments) {
         if (!(value >= low && value <= high)) refuse(fmt::format("{} {}: expected {} to {}", option, value, low, high));
     };
     in_range("--samples", arguments.samples, 1, 4096);
-    in_range("--fps", arguments.frames_per_second, 1, 240);
+    in_range("--fps", film_rate(arguments), 1, 240);
     in_range("--exposure", arguments.exposure, 0.01, 100);
-    in_range("--speed", arguments.speed, 1e-6, 1e6);
+    in_range("--speed", film_speed(arguments), 1e-6, 1e6);
     if (arguments.shutter != RenderArguments{}.shutter) in_range("--shutter", arguments.shutter, 0, 1e6);
     if (arguments.black_body != 0.0) in_range("--black-body", arguments.black_body, 500, 20000);
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
+}
+
+int film_rate(const RenderArguments& arguments) { return arguments.frames_per_second.value_or(30); }
+
+double film_speed(const RenderArguments& arguments) { return arguments.speed.value_or(1.0); }
+
+void check_film_options(const RenderArguments& arguments, bool film) {
+    const char* const given = arguments.frames_per_second ? "--fps" : arguments.speed ? "--speed" : nullptr;
+    if (film || given == nullptr) return;
+    refuse(fmt::format("{}: found with the picture {}, expected a film (--output with a .mp4 name)", given,
+                       arguments.output));
 }
 
 void add_render_options(cli::Command command, RenderArguments& a) {
@@ -194,8 +210,8 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_flag("--no-filter", a.no_filter, "Leave the noise of few samples in");
     command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
     command.add_option("--shutter", a.shutter, "Seconds of the run that a picture shows: what moves blurs");
-    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film").show_default();
-    command.add_option("--speed", a.speed, "Seconds of the run in a second of a film").show_default();
+    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film (default: 30)");
+    command.add_option("--speed", a.speed, "Seconds of the run in a second of a film (default: 1)");
     command.add_option("--threads", a.threads, "Worker threads (default: all)");
     add_progress_options(command, a.progress, a.quiet);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,9 @@ struct RenderArguments {
     std::vector<std::string> glass;
     double particle_radius = 0.0;
     int samples = 16;
-    int frames_per_second = 30;
+    std::optional<int> frames_per_second;  // 30
     double exposure = 1.0;
-    double speed = 1.0;
+    std::optional<double> speed;                             // 1
     double shutter = std::numeric_limits<double>::lowest();  // that: the scene's
     std::string light;
     bool night = false;
@@ -52,5 +53,9 @@ void add_render_options(cli::Command command, RenderArguments& arguments);
 /// How the run is shown. Throws InputError on arguments that make no sense, as the others do.
 [[nodiscard]] PictureStyle picture_style(const RenderArguments& arguments);
 void check_numbers(const RenderArguments& arguments);
+/// What has a meaning for films alone is refused for pictures.
+void check_film_options(const RenderArguments& arguments, bool film);
+[[nodiscard]] int film_rate(const RenderArguments& arguments);
+[[nodiscard]] double film_speed(const RenderArguments& arguments);
 
 }  // namespace ricochet::cli

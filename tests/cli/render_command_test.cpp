@@ -182,6 +182,8 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
         {{"--particle-radius", "-1"}, "expected 0 to"},
         {{"--threads", "0"}, "expected a whole number"},
         {{"--fps", "0"}, "expected 1 to 240"},
+        {{"--fps", "24"}, "expected a film"},
+        {{"--speed", "2"}, "expected a film"},
         {{"--unknown"}, "--unknown"},
     };
     for (const Wrong& wrong : wrongs) {

@@ -62,6 +62,7 @@ const std::vector<BadGltf>& bad_documents() {
     static const std::vector<BadGltf> all = {
         {"NoAsset", [](Json& d) { d.erase("asset"); }, "\"asset\" is missing"},
         {"OldVersion", [](Json& d) { d["asset"]["version"] = "1.0"; }, "expected 2.0"},
+        {"NewerReaderWanted", [](Json& d) { d["asset"]["minVersion"] = "2.1"; }, "asks for a reader of glTF '2.1'"},
         {"FourBillionPoints", [](Json& d) { d["accessors"][0]["count"] = 4000000000U; }, "accessors[0]: 4000000000"},
         {"MorePointsThanNumbersHave", [](Json& d) { d["accessors"][0]["count"] = 1e15; }, "expected at most"},
         {"NegativeCount", [](Json& d) { d["accessors"][0]["count"] = -3; }, "expected a whole number"},

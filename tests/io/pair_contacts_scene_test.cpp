@@ -64,8 +64,14 @@ TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
     EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {}}, "pairs": [{"first": "a", "second": "b"}])")),
               (Lines{"particle_contacts.pairs[0].second: there is no material among particle_contacts.materials \"b\"; "
                      "did you mean \"a\"?"}));
-    EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {"friction": 1}}, "pairs": [{"first": "a", "second": "a"}])")),
-              (Lines{"particle_contacts.pairs[0].second: \"a\" and \"a\" are there already, expected each pair once"}));
+    EXPECT_EQ(
+        errors_of(scene_with(R"("materials": {"a": {"friction": 1}}, "pairs": [{"first": "a", "second": "a"}])")),
+        (Lines{"particle_contacts.pairs[0].second: found \"a\" twice, expected two materials: what one does to itself "
+               "is said at it in `materials`"}));
+    EXPECT_EQ(
+        errors_of(scene_with(kMaterials, R"(, "material": "steel", "attributes": {"material": 1})")),
+        (Lines{"particles[0].material: found beside the attribute \"material\", which is its number: expected one "
+               "of them"}));
     EXPECT_EQ(errors_of(scene_with(kMaterials, "", R"("attributes": {"material": {}},)")),
               (Lines{"attributes: declares \"material\", which is the number of one of particle_contacts' materials "
                      "here, expected another name"}));

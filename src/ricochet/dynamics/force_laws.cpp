@@ -209,10 +209,6 @@ private:
     Vec3 gravity_;
 };
 
-}  // namespace
-
-namespace {
-
 class ThermalBuoyancy final : public Force {
 public:
     ThermalBuoyancy(double ambient, const Vec3& gravity) : ambient_(ambient), gravity_(gravity) {}

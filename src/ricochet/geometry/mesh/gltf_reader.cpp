@@ -44,8 +44,9 @@ GltfParts parts_of_glb(const MeshSource& source) {
         source.fail_at_byte(4, fmt::format("GLB file of version {}, expected 2: export as glTF 2.0", version));
     }
     if (const std::uint32_t length = number_at(source, 8); length != source.bytes.size()) {
-        source.fail_at_byte(8, fmt::format("GLB file that should have {} bytes, but has {}; is it cut off?", length,
-                                           source.bytes.size()));
+        source.fail_at_byte(8,
+                            fmt::format("GLB file that should have {} bytes, but has {}{}", length, source.bytes.size(),
+                                        length > source.bytes.size() ? "; is it cut off?" : ""));
     }
     GltfParts parts{{}, std::nullopt, "glTF 2.0, binary"};
     for (std::size_t at = kHeader; at < source.bytes.size();) {
@@ -265,9 +266,14 @@ ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesyst
     GltfParts parts = parts_of(source);
     const GltfValue root = parse_gltf_json(source, parts.json);
     const GltfPlace document(source, root, "");
-    const std::string& version = document.at("asset").at("version").text();
+    const GltfPlace asset = document.at("asset");
+    const std::string& version = asset.at("version").text();
     if (!version.starts_with("2.")) {
         source.fail(fmt::format("found glTF {}, expected 2.0: export as glTF 2.0", in_quotes(version)));
+    }
+    if (asset.has("minVersion") && asset.at("minVersion").text() != "2.0") {
+        source.fail(fmt::format("asks for a reader of glTF {}, this one is of 2.0: export as glTF 2.0",
+                                in_quotes(asset.at("minVersion").text())));
     }
     return GltfReader(source, document, {parts.chunk, folder}, free_corners).read(std::move(parts.format));
 }

@@ -68,6 +68,14 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
         if (!is_known) continue;
+        if (read.first == read.second) {
+            context.error(
+                pair, "second",
+                fmt::format("found \"{}\" twice, expected two materials: what one does to itself is said at it in "
+                            "`materials`",
+                            read.first));
+            continue;
+        }
         if (taken.insert(std::minmax(read.first, read.second)).second) {
             settings.pairs.push_back(std::move(read));
         } else {
@@ -132,6 +140,13 @@ std::optional<AttributeValue> material_of(const SceneContext& context, const Sim
         context.error(view, "material",
                       "only goes together with particle_contacts.materials, which declares what it names; what walls "
                       "are made of is said at the walls");
+        return std::nullopt;
+    }
+    const JsonNode::Object* const given = view.has("attributes") ? view.node("attributes").object() : nullptr;
+    const auto is_it = [](const auto& member) { return member.key == kMaterialAttribute; };
+    if (given != nullptr && std::any_of(given->begin(), given->end(), is_it)) {
+        context.error(view, "material",
+                      "found beside the attribute \"material\", which is its number: expected one of them");
         return std::nullopt;
     }
     const std::vector<std::string>& materials = setup.options.particle_contacts->materials;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/network/wall_contacts.h"
 #include "ricochet/response/particle_step.h"
 
@@ -16,6 +17,10 @@ constexpr int kCorrections = 3;
 
 /// Parts of a radius by which a line may come nearer to a surface that it goes along than at its ends.
 constexpr double kSagitta = 1e-4;
+
+/// Parts of a radius beside a surface that has been met in which it is still touched: what lines along another one come
+/// off it by rounding, again and again.
+constexpr double kStillTouched = 1e-9;
 
 /// One particle on its way.
 class PlannedMove {
@@ -35,6 +40,9 @@ private:
     void fly(const Path& path);
     void follow_among_bodies();
     void divert(const Contact& contact);
+    [[nodiscard]] bool touches(SurfaceId surface) const;
+    [[nodiscard]] Vec3 along_those_met(const Vec3& velocity) const;
+    [[nodiscard]] const ContactSurface* most_approached(const Vec3& velocity) const;
     void cut_across();
     void find_walls(const Vec3& center, std::vector<WallContact>& found) const;
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
@@ -50,7 +58,8 @@ private:
     const PlannedMotion& plan_;
     MoveScratch& scratch_;
     mutable ParticleStep step_;
-    std::vector<SurfaceId> held_;  // ascending: surfaces that move and push, or are in its way
+    std::vector<ContactSurface> met_;  // in the step, and touched still
+    std::vector<SurfaceId> held_;      // ascending: surfaces that move and push, or are in its way
 };
 
 MoveOutcome PlannedMove::run() {
@@ -223,22 +232,51 @@ void PlannedMove::come_off(const Contact& contact) {
     if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
 }
 
-/// Takes away what leads into the surfaces of a contact: each is looked at twice, so that a corner leaves the line
-/// along it, or nothing.
+/// Takes away what leads into the surfaces of a contact, and of others that have been met and are still touched: a
+/// groove leaves the line along it, a corner nothing.
 void PlannedMove::divert(const Contact& contact) {
+    std::erase_if(met_, [&](const ContactSurface& surface) { return !touches(surface.surface); });
+    for (const ContactSurface& surface : contact.all()) met_.push_back(surface);
     const Vec3 before = particle_.state.velocity;
-    Vec3& velocity = particle_.state.velocity;
-    for (int pass = 0; pass < 2; ++pass) {
-        for (const ContactSurface& surface : contact.all()) {
-            const double into = dot(velocity - velocity_of(surface), surface.normal);
-            if (into < 0.0) velocity -= into * surface.normal;
-        }
+    particle_.state.velocity = along_those_met(before);
+    step_.impact().push(contact.first().surface, particle_.state.velocity - before, false, Vec3{});
+}
+
+bool PlannedMove::touches(SurfaceId surface) const {
+    const ForceInput& state = particle_.state;
+    const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
+    const double distance = rules_.bodies == nullptr
+                                ? geometry.nearest(surface, state.position).distance
+                                : nearest_at(*rules_.bodies, surface, state.position, state.time).distance;
+    return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
+}
+
+/// What of a velocity leads into none of the surfaces that have been met; a surface's own where they leave none.
+Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
+    std::vector<Vec3> normals;
+    std::vector<double> missing;
+    Vec3 left = velocity;
+    while (const ContactSurface* const surface = most_approached(left)) {
+        if (normals.size() == kMostHolding) return velocity_of(*surface);
+        normals.push_back(surface->normal);
+        missing.push_back(-dot(velocity - velocity_of(*surface), surface->normal));
+        left = velocity + shift_by(normals, missing);
     }
-    for (const ContactSurface& surface : contact.all()) {
+    return left;
+}
+
+/// That of those met into which a velocity leads fastest, beyond rounding; null where it leads into none.
+const ContactSurface* PlannedMove::most_approached(const Vec3& velocity) const {
+    const ContactSurface* most = nullptr;
+    double fastest = 0.0;
+    for (const ContactSurface& surface : met_) {
         const Vec3 relative = velocity - velocity_of(surface);
-        if (dot(relative, surface.normal) < -kMinApproach * length(relative)) velocity = velocity_of(surface);
+        const double into = dot(relative, surface.normal);
+        if (into >= fastest || into >= -kMinApproach * length(relative)) continue;
+        fastest = into;
+        most = &surface;
     }
-    step_.impact().push(contact.first().surface, velocity - before, false, Vec3{});
+    return most;
 }
 
 }  // namespace

@@ -176,6 +176,7 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
         {{"--speed", "0"}, "expected 1e-06 to"},
         {{"--hide", "nothing"}, "no such collider"},
         {{"--glass", "nothing"}, "--glass nothing: no such collider"},
+        {{"--hide", "nothing", "--glass", "nothing"}, "expected one of them"},
         {{"--up", "w"}, "expected x, y or z"},
         {{"--samples", "0"}, "expected 1 to 4096"},
         {{"--exposure", "0"}, "expected 0.01 to 100"},

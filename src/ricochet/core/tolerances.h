@@ -407,9 +407,9 @@ inline constexpr double kNetworkPushOut = 0.5;
 inline constexpr double kNetworkOverRelaxation = 1.2;
 
 /// Overlap, as a part of the smallest radius, that a step may leave when sweeps end early (the speed by which contacts
-/// still close, times the step). Reason: half of what may show while grains are poured (5e-3), since
-/// a part of an overlap lasts for some steps. With 1e-3 pouring takes 1.7 times the sweeps. Smaller: hard
-/// impacts of many spheres take more sweeps. Larger: they overlap.
+/// still close, times the step). Reason: two fifths of what may show while grains are poured (5e-3), since a part of an
+/// overlap lasts for some steps. Smaller: more sweeps (1.7 times as many with 1e-3). Larger: hard impacts of many
+/// spheres overlap.
 inline constexpr double kNetworkOverlap = 2e-3;
 
 /// Speed by which the conditions of a contact network may be violated, as a part of its fastest sphere's, so that what

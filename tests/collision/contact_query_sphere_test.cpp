@@ -83,6 +83,44 @@ TEST(SphereAmongTriangles, HitsFirstWhatATestOfEveryTriangleHitsFirst) {
     EXPECT_GT(contacts, test::scaled(2000) / 2);
 }
 
+// A path of six million kilometres, beside which certified positions may lie by more than the boxes leave: they do not
+// hold it, and every triangle is a candidate.
+TEST(SphereAmongTriangles, HitsAMeshWithWhateverMayLieBesideItsPath) {
+    CollisionWorld world = testing::world_of(testing::mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
+    ContactScratch scratch;
+    constexpr double kSphere = 0.135;
+    world.prepare_radius(kSphere);
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    for (const double radius : {0.0, kSphere}) {
+        for (const double beside : {0.0, 1e-9, 1e-3, 16.0, 1e6}) {
+            for (const double reach : {10.0, 1e6, 6e9, 1e14}) {
+                SCOPED_TRACE("radius " + std::to_string(radius) + ", beside " + std::to_string(beside) + ", reach " +
+                             std::to_string(reach));
+                const Path path = line_path({0.3, 0.2, 2.5}, {0.1, 0.05, -reach}, 1.0);
+                const auto found = find_first_contact(geometry, {path, radius, nullptr, {}, {}, beside}, scratch);
+                ASSERT_TRUE(found.contact);
+                EXPECT_NEAR(found.contact->time * reach, 1.5 - radius, 1e-14 * reach);
+                EXPECT_FALSE(found.near.is_free({0.3, 0.2, 2.5}, {0.3, 0.2, -2.5}));
+                EXPECT_TRUE(found.near.covers_chord(path, 0.0, found.contact->time));
+            }
+        }
+    }
+}
+
+// What is certified may lie beside the path: a triangle that the path itself clears by less is not left out.
+TEST(SphereAmongTriangles, BlocksPositionsThatLieBesideThePath) {
+    CollisionWorld world = testing::world_of(testing::mesh_collider(testing::floor_mesh(1.0, 4)));
+    ContactScratch scratch;
+    world.prepare_radius(kRadius);
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    constexpr double kBeside = 1e-7;
+    const Path path = line_path({-0.5, 0.1, kRadius + 0.5 * kBeside}, {1, 0, 0}, 1.0);
+    const auto found = find_first_contact(geometry, {path, kRadius, nullptr, {}, {}, kBeside}, scratch);
+    EXPECT_FALSE(found.contact);
+    EXPECT_TRUE(found.near.is_free(path.c[0], path.end));
+    EXPECT_FALSE(found.near.is_free(path.c[0], path.end - Vec3{0, 0, kBeside}));
+}
+
 // Flat inner edges and vertices must not be felt: no kick out of the plane of incidence, no second impact.
 TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneEvenOverSeamsAndVertices) {
     const TiltedFloor floor;

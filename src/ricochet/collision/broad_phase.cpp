@@ -111,7 +111,7 @@ struct ClearQuery {
 double time_clear_of_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                double until) {
     if (world.triangles().empty() || !may_reach_triangles(world, margins, path, 0.0, until)) return until;
-    if (kPathRounding * margins.largest > margins.bvh->slack()) return 0.0;
+    if (!margins.boxes_hold) return 0.0;
     ClearQuery query{world, margins, path, until};
     query.test_piece(0.0, until, kPieceDepth);
     return query.until;
@@ -130,15 +130,17 @@ bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, cons
            !may_reach_triangles(world, margins, path, from, to);
 }
 
-// Paths so long that their rounding exceeds what the boxes leave for it are tested against every triangle.
+// Paths of which the boxes do not hold what lies beside them are tested against every triangle.
 CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                  NarrowPhase& narrow_phase) {
     PieceQuery query{world, margins, path, narrow_phase};
-    if (world.culls() && kPathRounding * margins.largest <= margins.bvh->slack()) {
+    if (world.culls() && margins.boxes_hold) {
         query.test_piece(0.0, path.duration, kPieceDepth);
     } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
         query.test_all();
     }
+    // Which chords a particle goes along does not depend on whether anything is culled.
+    if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
     return query.candidates;
 }
 

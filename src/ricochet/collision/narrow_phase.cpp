@@ -45,13 +45,15 @@ Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, con
     return facing_normal(world.unit_normal_of(surface, p), side, v);
 }
 
-QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside)
+QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in)
     : bvh(&world.bvh_for(radius_in)),
       radius(radius_in),
+      beside(beside_in),
       tolerance(0.0),
       largest(largest_coordinate(path)),
       slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset + beside),
-      curvature(bvh->margin() - radius - 2.0 * beside) {
+      curvature(std::max(0.0, bvh->margin() - radius - 2.0 * beside)),
+      boxes_hold(bvh->margin() - radius >= 2.0 * beside && kPathRounding * largest <= bvh->slack()) {
     if (radius > 0.0) tolerance = sphere_tolerance(radius, largest);
 }
 
@@ -59,7 +61,7 @@ NarrowPhase::NarrowPhase(const SurfaceGeometry& geometry, const Path& path, cons
                          std::span<const SurfaceId> held, ContactScratch& scratch)
     : geometry_(geometry), world_(geometry.world()), path_(path), margins_(margins), held_(held), scratch_(scratch) {
     if (margins.radius == 0.0) return;
-    sphere_.emplace(path, margins.radius);
+    sphere_.emplace(path, margins.radius, margins.beside);
     scratch_.overlapped.assign(held.begin(), held.end());
 }
 

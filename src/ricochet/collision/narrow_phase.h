@@ -18,15 +18,17 @@ namespace ricochet {
 
 /// How far beside a path a query takes surfaces into account.
 struct QueryMargins {
-    /// beside: ContactQuery::beside.
-    QueryMargins(const CollisionWorld& world, const Path& path, double radius, double beside = 0.0);
+    QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in = 0.0);
 
     const TriangleBvh* bvh;  ///< the broad phase for the radius
     double radius;           ///< m, 0 for points
+    double beside;           ///< m, ContactQuery::beside
     double tolerance;        ///< m, sphere_tolerance() of the path; 0 for points
     double largest;          ///< m, largest coordinate that the path reaches
     double slack;            ///< m: positions that are certified lie at most that far beside the path
-    double curvature;        ///< m, what the boxes leave for the path's curvature
+    double curvature;        ///< m, what the boxes leave for the path's curvature; 0 where they do not hold
+    bool boxes_hold;         ///< false: the boxes leave less than the path's rounding and `beside` need, so that every
+                             ///< triangle near the path's own box is a candidate
 };
 
 /// Tests a point's (radius 0) or a sphere's path against surfaces and keeps the first hits. What it gathers goes into

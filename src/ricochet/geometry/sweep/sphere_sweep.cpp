@@ -31,7 +31,7 @@ int side_ahead(const std::array<DoubleDouble, 4>& height) {
 
 }  // namespace
 
-SphereSweep::SphereSweep(const Path& path, double radius)
+SphereSweep::SphereSweep(const Path& path, double radius, double beside)
     : path_(path),
       radius_(radius),
       latest_(path.duration),
@@ -41,7 +41,7 @@ SphereSweep::SphereSweep(const Path& path, double radius)
     hull_count_ = path.degree + 1;
     update_bounds();
     scale_ = std::max(max_abs(lower_), max_abs(upper_)) + radius;
-    slack_ = kCandidateSlack * scale_;
+    slack_ = kCandidateSlack * scale_ + beside;
     max_distance_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
 }
 

@@ -38,8 +38,8 @@ struct SphereContact {
 /// and so is any motion of a centre on the surface itself until it returns.
 class SphereSweep {
 public:
-    /// radius > 0, m.
-    SphereSweep(const Path& path, double radius);
+    /// radius > 0, m. beside >= 0, m, by which what is certified may lie beside the path: nothing nearer is culled.
+    SphereSweep(const Path& path, double radius, double beside = 0.0);
 
     /// First contact with the closed triangle (a, b, c), from either side: culling, then the narrow phase. A degenerate
     /// triangle is its edges and vertices. Where features tie to rounding (kSeamSlack) the face is reported, with the
@@ -94,7 +94,7 @@ private:
     Vec3 upper_;
     double max_distance_ = 0.0;  ///< bound of the distance from the start, m
     double scale_ = 0.0;         ///< largest coordinate of the whole path's hull plus radius, m
-    double slack_ = 0.0;         ///< kCandidateSlack of that, m
+    double slack_ = 0.0;         ///< kCandidateSlack of that and what may lie beside the path, m
     Coefficients<double> squared_displacement_{};
     Coefficients<DoubleDouble> precise_squared_displacement_{};
 };

@@ -52,6 +52,8 @@ ContactArc::State ContactArc::at(double t) const {
     state.turned = std::max(turned_at(state.position), turned_at(straight_on));
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
+    // Where the surface is narrower than the sphere, being put on it leads to its other side.
+    state.turned = std::max(state.turned, turned_at(state.position));
     if (is_driven_) return state;
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
     const double offset = length(forces(state, t)) * geometry_.contact_offset(state.position);

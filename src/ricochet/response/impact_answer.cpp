@@ -296,11 +296,11 @@ void ImpactAnswer::bounce_off_body(const ContactSurface& surface, const Material
 Vec3 ImpactAnswer::velocity_beside_path(BodyId body, const Vec3& where) const {
     const double time = particle_.state.time;
     const Vec3 turning = home_.bodies().turning_beside_path(body, time);
+    const Mobility mobility = home_.bodies().mobility(body, time);
     Vec3 velocity;
-    if (turning != Vec3{}) velocity = cross(turning, where - home_.bodies().mobility(body, time).center);
+    if (turning != Vec3{}) velocity = cross(turning, where - mobility.center);
     for (const Given& given : given_) {
-        if (given.body != body) continue;
-        velocity += home_.bodies().mobility(body, time).change_at(where, given.wrench);
+        if (given.body == body) velocity += mobility.change_at(where, given.wrench);
     }
     return velocity;
 }

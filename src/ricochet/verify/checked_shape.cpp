@@ -64,6 +64,7 @@ struct CheckedShape::Impl {
     [[nodiscard]] int exact_side(const VectorOf<Digits>& y) const;
     [[nodiscard]] Digits round_value(const VectorOf<Digits>& y) const;
     [[nodiscard]] bool box_misses(const Vec3& p, const Vec3& q) const;
+    [[nodiscard]] bool is_roughly_apart(const Vec3& p, const Vec3& q) const;
     [[nodiscard]] bool is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const;
     [[nodiscard]] bool is_certainly_clear(const Vec3& p, double least) const;
     [[nodiscard]] Digits square_distance_from_round(const VectorOf<Digits>& y) const;
@@ -154,6 +155,32 @@ bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
     const Vec3 lower = min(p, q), upper = max(p, q);
     return lower.x > box.upper.x || upper.x < box.lower.x || lower.y > box.upper.y || upper.y < box.lower.y ||
            lower.z > box.upper.z || upper.z < box.lower.z;
+}
+
+/// False when doubles leave doubt that the whole segment is outside. The value along it is a parabola of t: its terms
+/// err by a few roundings of theirs, and by what the coordinates err by.
+bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
+    const VectorOf<double> from = rough_local(p);
+    const VectorOf<double> to = rough_local(q);
+    const double error = kRoughError * std::max(length(p - center), length(q - center));
+    if (round_axes == 2) {
+        const double above = half[2] + 2.0 * (error + kRoughError * half[2]);
+        if (std::min(from[2], to[2]) > above || std::max(from[2], to[2]) < -above) return true;
+    }
+    double value = -1.0;
+    double slope = 0.0;
+    double curvature = 0.0;
+    double bound = kRoughError;
+    for (std::size_t i = 0; i < round_axes; ++i) {
+        const double step = to[i] - from[i];
+        const double reach = std::fabs(from[i]) + std::fabs(to[i]);
+        value += square(from[i] / half[i]);
+        slope += from[i] * step / square(half[i]);
+        curvature += square(step / half[i]);
+        bound += (kRoughError * square(reach) + (reach + error) * error) / square(half[i]);
+    }
+    const double lowest = curvature == 0.0 ? 0.0 : std::clamp(-slope / curvature, 0.0, 1.0);
+    return value + lowest * (2.0 * slope + lowest * curvature) > 8.0 * bound;
 }
 
 /// Is the whole segment outside? Its ends are. Between the planes of the caps the value has its least at one point.
@@ -255,7 +282,8 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
     if (impl_->box_misses(p, q)) return false;
     const int of_p = side(p);
     if (of_p == 0 || side(q) != of_p) return true;
-    return of_p > 0 && !impl_->is_apart(impl_->local(p), impl_->local(q));
+    if (of_p < 0 || impl_->is_roughly_apart(p, q)) return false;
+    return !impl_->is_apart(impl_->local(p), impl_->local(q));
 }
 
 /// The body is convex: a segment from its surface to an inner point is inside; one to an outer point is outside unless

@@ -486,8 +486,8 @@ inline constexpr double kMaxArcAngle = 0.1;
 /// wider than a shape goes on through the side that it has jumped to.
 inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
 
-/// Turn, rad, between two times 2^-40 of an arc apart that is a jump: the surface is narrower than the sphere, which
-/// jams. Smaller: what turns fast jams. Larger: small jumps are passed.
+/// Turn, rad, between two times 2^-40 of an arc apart, or way in radii (also where an arc begins), that is a jump: the
+/// surface is narrower than the sphere, which jams. Smaller: what turns fast jams. Larger: small jumps are passed.
 inline constexpr double kJump = 1e-3;
 
 /// Largest part by which an arc's end is corrected to have its energy. Reason: the method's own error is far below it;

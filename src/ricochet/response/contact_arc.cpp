@@ -32,6 +32,7 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
         is_on_rim_[k] = !manifold[k].flat && geometry.nearest(surfaces_[k], particle.position).rim;
     }
     const State begin{particle.position, {particle.velocity, start.spin}};
+    for (std::size_t k = 0; k < materials_.count; ++k) overlaps_[k] = overlap_with(k);
     forces_at_start_ = this->forces(begin, 0.0);
     plan_ = plan_at(begin, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
@@ -299,6 +300,15 @@ ContactArc::Rate ContactArc::rate(const State& state, double t) const {
             dot(pull - forces_at_start_, v) + spin_power(state, change)};
 }
 
+/// m, of a sphere with a curved surface at the start, where it was born so deep in it that being put on it were a jump:
+/// it goes along as deep. Less is taken back.
+double ContactArc::overlap_with(std::size_t k) const {
+    const double radius = particle_.radius;
+    if (radius == 0.0 || is_flat_[k]) return 0.0;
+    const double overlap = radius - nearest(k, particle_.position).distance;
+    return overlap > kJump * radius ? overlap : 0.0;
+}
+
 /// At the contact offset from what holds it, along the normals, and moving along them.
 void ContactArc::put_on_surfaces(State& state) const {
     for (int k = 0; k < kCorrections; ++k) {
@@ -309,7 +319,8 @@ void ContactArc::put_on_surfaces(State& state) const {
             if (!holds_[i]) continue;
             const CollisionWorld::Nearest touched = nearest(i, state.position);
             normals[count] = touched.normal;
-            gaps[count++] = particle_.radius + geometry_.contact_offset(state.position) - touched.distance;
+            const double offset = geometry_.contact_offset(state.position);
+            gaps[count++] = particle_.radius + offset - overlaps_[i] - touched.distance;
         }
         state.position += shift_by({normals.data(), count}, {gaps.data(), count});
     }

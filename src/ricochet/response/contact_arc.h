@@ -85,6 +85,7 @@ private:
     [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
                                           const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
+    [[nodiscard]] double overlap_with(std::size_t k) const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] bool is_within_tolerance(double t) const;
@@ -105,6 +106,7 @@ private:
     std::array<SurfaceId, kMostHolding> surfaces_{};
     std::array<bool, kMostHolding> is_flat_{};
     std::array<bool, kMostHolding> is_on_rim_{};
+    std::array<double, kMostHolding> overlaps_{};  // m, in which it was born, with each
     Vec3 forces_at_start_;
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start

@@ -11,10 +11,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 12;
-
-/// Half the largest extent of a cluster in its units, at most.
-constexpr float kExtent = 0x1p15F;
+constexpr float kExtent = TriangleCluster::kExtent;
 
 /// Units by which a corner may differ from its quantised position: half of one along each axis, and one at the largest
 /// number, which is not a power of two.
@@ -35,10 +32,6 @@ constexpr float kFractionRounding = 0x1p-20F;
 
 /// 1/m: the square of a shorter segment's length would leave the range of doubles. It is not cut.
 constexpr double kMaxPerLength = 1e140;
-
-/// Cost of a cluster in memory and time besides its box's surface, in surfaces of the mean triangle's box. Neighbours
-/// along the curve need not be neighbours in space, so full clusters are not the best ones.
-constexpr double kCostOfCluster = 2.0;
 
 // Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
 using Quad = float __attribute__((vector_size(16)));
@@ -252,109 +245,6 @@ unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& s
     return bits;
 }
 
-Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {
-    Box3 box;
-    for (const std::uint32_t v : triangle) box.include(vertices[v]);
-    return box;
-}
-
-std::vector<std::uint32_t> in_spatial_order(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-    Box3 box;
-    for (const Triangle& t : triangles) {
-        for (const std::uint32_t v : t) box.include(vertices[v]);
-    }
-    const auto bits = static_cast<unsigned>(std::bit_width(triangles.size()));
-    std::vector<std::uint64_t> keys(triangles.size());
-    parallel_for_blocks(keys.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const Vec3 center = box_of(vertices, triangles[t]).center();
-            keys[t] = morton_key(center, box, static_cast<std::uint32_t>(t), bits);
-        }
-    });
-    parallel_sort(keys);
-    std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(), [&](std::uint64_t key) { return index_of_key(key, bits); });
-    return order;
-}
-
-std::int16_t nearest_number(double x) { return static_cast<std::int16_t>(std::min(std::lrint(x), 32767L)); }
-
-TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                           std::span<const std::uint32_t> members) {
-    Box3 box;
-    for (const std::uint32_t triangle : members) box.include(box_of(vertices, triangles[triangle]));
-    TriangleCluster cluster;
-    cluster.center = box.center();
-    const double extent = max_abs(box.size());
-    if (extent > 0.0) cluster.per_unit = 2.0 * kExtent * std::ldexp(1.0, -std::ilogb(extent) - 1);
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        const bool is_there = lane < members.size();
-        const std::uint32_t triangle = members[is_there ? lane : 0];
-        cluster.triangle[lane] = is_there ? triangle : kNoTriangle;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner = cluster.per_unit * (vertices[triangles[triangle][k]] - cluster.center);
-            cluster.x[k][lane] = nearest_number(corner.x);
-            cluster.y[k][lane] = nearest_number(corner.y);
-            cluster.z[k][lane] = nearest_number(corner.z);
-        }
-    }
-    return cluster;
-}
-
-/// Half the surface of a box, m^2: the share of random lines that meet it goes by the surface.
-double half_area(const Box3& box) {
-    const Vec3 size = box.size();
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
-/// Where clusters end along a block of the order, given the triangles' boxes, such that the sum of their costs is
-/// least: dynamic programming over the size of the last cluster.
-std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
-    double area = 0.0;
-    for (const Box3& box : boxes) area += half_area(box);
-    const double each = kCostOfCluster * area / static_cast<double>(boxes.size());
-    std::vector<double> least(boxes.size() + 1, 0.0);
-    std::vector<std::uint32_t> members(boxes.size() + 1, 1);
-    for (std::uint32_t end = 1; end <= boxes.size(); ++end) {
-        least[end] = std::numeric_limits<double>::infinity();
-        Box3 box;
-        for (std::uint32_t count = 1; count <= std::min(4U, end); ++count) {
-            box.include(boxes[end - count]);
-            const double cost = least[end - count] + half_area(box) + each;
-            if (cost > least[end]) continue;
-            least[end] = cost;
-            members[end] = count;
-        }
-    }
-    std::vector<std::uint32_t> ends;
-    for (auto end = static_cast<std::uint32_t>(boxes.size()); end > 0; end -= members[end]) ends.push_back(end);
-    std::reverse(ends.begin(), ends.end());
-    return ends;
-}
-
-/// A block of the order and where its clusters end in it.
-struct Block {
-    std::span<const std::uint32_t> triangles;
-    std::vector<std::uint32_t> ends;
-    std::size_t first = 0;  ///< index of its first cluster
-};
-
-std::vector<Block> divide(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                          std::span<const std::uint32_t> order) {
-    std::vector<Block> blocks((order.size() + kBlock - 1) / kBlock);
-    parallel_for_blocks(order.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        const auto members = order.subspan(begin, end - begin);
-        std::vector<Box3> boxes;
-        boxes.reserve(members.size());
-        for (const std::uint32_t triangle : members) boxes.push_back(box_of(vertices, triangles[triangle]));
-        blocks[block] = {members, cluster_ends(boxes)};
-    });
-    for (std::size_t k = 1; k < blocks.size(); ++k) {
-        blocks[k].first = blocks[k - 1].first + blocks[k - 1].ends.size();
-    }
-    return blocks;
-}
-
 }  // namespace
 
 Shear::Shear(const Vec3& direction) {
@@ -395,36 +285,6 @@ Box3 TriangleCluster::box() const {
     const double rounding = kCornerRounding * unit;
     const Vec3 by{rounding, rounding, rounding};
     return {result.lower - by, result.upper + by};
-}
-
-std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-    const std::vector<std::uint32_t> order = in_spatial_order(vertices, triangles);
-    const std::vector<Block> blocks = divide(vertices, triangles, order);
-    if (blocks.empty()) return {};
-    std::vector<TriangleCluster> clusters(blocks.back().first + blocks.back().ends.size());
-    parallel_for_blocks(blocks.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-        const auto& [members, ends, first] = blocks[k];
-        std::size_t begin = 0;
-        for (std::size_t c = 0; c < ends.size(); ++c) {
-            clusters[first + c] = cluster_of(vertices, triangles, members.subspan(begin, ends[c] - begin));
-            begin = ends[c];
-        }
-    });
-    return clusters;
-}
-
-std::vector<TriangleCluster> refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
-                                      std::span<const Triangle> triangles) {
-    std::vector<TriangleCluster> moved(clusters.size());
-    parallel_for_blocks(clusters.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const auto& lanes = clusters[k].triangle;
-            const auto count =
-                static_cast<std::size_t>(std::find(lanes.begin(), lanes.end(), kNoTriangle) - lanes.begin());
-            moved[k] = cluster_of(vertices, triangles, std::span(lanes).first(count));
-        }
-    });
-    return moved;
 }
 
 }  // namespace ricochet

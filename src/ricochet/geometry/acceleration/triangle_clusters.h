@@ -69,6 +69,8 @@ struct TubeIntervals {
 /// since clusters only propose candidates. Two cache lines.
 struct alignas(64) TriangleCluster {
     using Lanes = std::array<std::int16_t, 4>;
+    /// Half the largest extent of a cluster in its units, at most.
+    static constexpr float kExtent = 0x1p15F;
 
     std::array<Lanes, 3> x;  ///< of the corners, in units from the centre, rounded to the nearest
     std::array<Lanes, 3> y;

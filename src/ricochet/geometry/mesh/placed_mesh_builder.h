@@ -11,7 +11,7 @@
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/geometry/mesh/mesh_source.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/vertex_welder.h"
 
 namespace ricochet {
 

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/vertex_welder.h"
 
 namespace ricochet {
 namespace {

@@ -15,6 +15,8 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "ricochet/core/memory_limit.h"
+#include "ricochet/core/printable.h"
+#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene_warnings.h"
@@ -31,6 +33,10 @@ struct InfoOptions {
 };
 
 Json json_of(const Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+
+std::string_view key_of(FaceNameKind kind) {
+    return kind == FaceNameKind::material ? "material" : kind == FaceNameKind::group ? "group" : "object";
+}
 
 Json json_of(const MeshReport& report, const std::string& file) {
     const TopologyReport& topology = report.topology;
@@ -56,6 +62,10 @@ Json json_of(const MeshReport& report, const std::string& file) {
     out["consistently_oriented"] = topology.consistently_oriented;
     out["inconsistent_edges"] = topology.inconsistent_edges;
     out["y_up"] = report.y_up;
+    out["names"] = Json::array();
+    for (const NamedTriangles& named : report.names) {
+        out["names"].push_back({{"kind", key_of(named.kind)}, {"name", named.name}, {"triangles", named.triangles}});
+    }
     out["notes"] = report.notes;
     out["welded_corners"] = report.weld ? Json(report.weld->corners) : Json(nullptr);
     out["warnings"] = report.warnings;
@@ -102,6 +112,36 @@ void print_topology(const MeshReport& report) {
     print_line("consistently oriented", yes_or_no(topology.consistently_oriented));
 }
 
+std::string counted(std::size_t count, std::string_view singular) {
+    return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
+}
+
+// A name as a scene file writes it, in the characters that a terminal shows as they are.
+std::string as_in_scene(const std::string& name) {
+    const auto dump = [&](bool only_ascii) {
+        return Json(name).dump(-1, ' ', only_ascii, Json::error_handler_t::replace);
+    };
+    const std::string text = dump(false);
+    return printable(text) == text ? text : dump(true);
+}
+
+void print_names(const MeshReport& report, FaceNameKind kind) {
+    constexpr std::size_t kMostNames = 20;
+    constexpr std::size_t kLongestName = 200;
+    std::size_t count = 0;
+    for (const NamedTriangles& named : report.names) count += named.kind == kind ? 1 : 0;
+    if (count == 0) return;
+    print_line(fmt::format("{} names", key_of(kind)), count);
+    std::size_t shown = 0;
+    for (const NamedTriangles& named : report.names) {
+        if (named.kind != kind || shown == kMostNames) continue;
+        ++shown;
+        print_line("", fmt::format("{}: {}", printable(as_in_scene(named.name), kLongestName),
+                                   counted(named.triangles, "triangle")));
+    }
+    if (count > shown) print_line("", fmt::format("and {} more (--json has all)", count - shown));
+}
+
 void run_info(const InfoOptions& options) {
     const MeshReport report = report_on(read_mesh(options.mesh));
     if (options.json) {
@@ -112,6 +152,9 @@ void run_info(const InfoOptions& options) {
     print_line("file", options.mesh);
     print_sizes(report);
     print_topology(report);
+    for (const auto kind : {FaceNameKind::material, FaceNameKind::group, FaceNameKind::object}) {
+        print_names(report, kind);
+    }
     for (const std::string& note : report.notes) cli::print("note: {}\n", note);
     for (const std::string& warning : report.warnings) cli::print("warning: {}\n", warning);
 }
@@ -130,10 +173,6 @@ void add_info_command(cli::Command program, int& exit_code) {
 }
 
 namespace {
-
-std::string counted(std::size_t count, std::string_view singular) {
-    return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
-}
 
 std::size_t triangle_count(const SimulationSetup& setup) {
     std::size_t triangles = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
@@ -36,6 +38,7 @@ TEST(InfoCommand, PrintsOneJsonObjectWithEveryFieldOfTheContract) {
         EXPECT_EQ(info.at(name), 0) << name;
     }
     EXPECT_EQ(info.at("consistently_oriented"), true);
+    EXPECT_EQ(info.at("names"), Json::array());
     EXPECT_EQ(info.at("warnings"), Json::array());
 }
 
@@ -61,6 +64,62 @@ TEST(InfoCommand, SaysOfAGltfFileWhichWayIsUpAndWhatWasLeftOut) {
     EXPECT_EQ(checked.exit_code, 0);
     EXPECT_EQ(checked.errors, "");
     EXPECT_NE(checked.output.find("cube.glb has y up, as glTF says"), std::string::npos) << checked.output;
+}
+
+/// Of names by kind, as "material steel 12".
+std::vector<std::string> names_in(const Json& info) {
+    std::vector<std::string> names;
+    for (const Json& entry : info.at("names")) {
+        names.push_back(entry.at("kind").get<std::string>() + " " + entry.at("name").get<std::string>() + " " +
+                        std::to_string(entry.at("triangles").get<int>()));
+    }
+    return names;
+}
+
+// A square is two triangles; the first face has no name, "left" is a word of two lines, "lid" of none.
+TEST(InfoCommand, ListsNamesOfFacesWithTheTrianglesThatHaveThem) {
+    const test::TemporaryFolder folder;
+    const std::string path =
+        folder
+            .write("t.obj",
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\ng left side left\no crate\nf 1 2 3 4\n"
+                   "usemtl rubber \"part\"\ng left\nf 1 2 3\ng lid\ng\nf 1 2 3\nusemtl \xc3\xa4\x1b[31m\nf 1 2 3\n")
+            .string();
+    const Json info = Json::parse(test::run_ricochet({"info", path, "--json"}).output);
+    EXPECT_EQ(names_in(info),
+              (std::vector<std::string>{"material rubber \"part\" 2", "material \xc3\xa4\x1b[31m 1",
+                                        "group left side left 2", "group left 3", "group side 2", "object crate 5"}));
+    const std::string text = test::run_ricochet({"info", path}).output;
+    // As a scene writes them, and a terminal shows them.
+    EXPECT_NE(text.find("\nmaterial names        2\n"
+                        "                      \"rubber \\\"part\\\"\": 2 triangles\n"
+                        "                      \"\xc3\xa4\\u001b[31m\": 1 triangle\n"
+                        "group names           3\n"
+                        "                      \"left side left\": 2 triangles\n"),
+              std::string::npos)
+        << text;
+}
+
+TEST(InfoCommand, ListsNamesOfAGltfFile) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.write("cube.glb", test::glb_of(test::gltf_cube())).string();
+    EXPECT_EQ(names_in(Json::parse(test::run_ricochet({"info", path, "--json"}).output)),
+              (std::vector<std::string>{"material steel 12", "group cube mesh 12", "group cube 12", "group mesh 12",
+                                        "object crate 12"}));
+}
+
+TEST(InfoCommand, ListsTheFirstNamesOfManyAndHowManyMoreThereAre) {
+    const test::TemporaryFolder folder;
+    std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 33; ++i) mesh += "o part" + std::to_string(i) + "\nf 1 2 3\n";
+    const std::string path = folder.write("t.obj", mesh).string();
+    const std::string text = test::run_ricochet({"info", path}).output;
+    EXPECT_NE(text.find("\nobject names          33\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\"part19\": 1 triangle\n                      and 13 more (--json has all)\n"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find("part20"), std::string::npos) << text;
+    EXPECT_EQ(names_in(Json::parse(test::run_ricochet({"info", path, "--json"}).output)).size(), 33U);
 }
 
 TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {

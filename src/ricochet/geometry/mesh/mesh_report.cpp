@@ -313,6 +313,7 @@ MeshReport report_on(const ImportedMesh& imported) {
     report.crossing_faces = imported.crossing_faces;
     report.weld = imported.weld;
     report.y_up = imported.y_up;
+    report.names = named_triangles(imported);
     report.notes = imported.notes;
     report.warnings = warnings_for(report);
     return report;

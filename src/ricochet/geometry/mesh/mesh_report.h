@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -32,6 +33,7 @@ struct MeshReport {
     std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, see self_intersection.h
     std::optional<WeldReport> weld;      ///< STL and glTF only
     bool y_up = false;                   ///< the file has y up; the bounds have z up
+    std::vector<NamedTriangles> names;   ///< by which faces can be meant
     std::vector<std::string> notes;      ///< what the file holds and was not read
     std::vector<std::string> warnings;   ///< one sentence per kind of defect: what it is, what it means for leaks
 };

@@ -14,6 +14,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
+#include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/scene/diagnostics.h"
 
@@ -131,17 +132,6 @@ const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path)
 // Groups of a mesh.
 
 namespace {
-
-std::vector<std::string_view> words_of(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t";
-    std::vector<std::string_view> words;
-    for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
-        const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
-        words.push_back(text.substr(at, end - at));
-        at = text.find_first_not_of(kBlanks, end);
-    }
-    return words;
-}
 
 // The names of one group, the one that counts most first.
 std::vector<std::string_view> names_of(const MeshGroups& mesh, const FaceGroup& group) {

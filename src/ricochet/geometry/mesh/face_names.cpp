@@ -1,0 +1,78 @@
+#include "ricochet/geometry/mesh/face_names.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ricochet {
+namespace {
+
+/// Adds up the triangles of names of one kind.
+class NameCounts {
+public:
+    explicit NameCounts(FaceNameKind kind) : kind_(kind) {}
+
+    void add(std::string_view name, std::size_t triangles) {
+        const auto [place, is_new] = places_.try_emplace(name, names_.size());
+        if (is_new) names_.push_back({kind_, std::string(name), 0});
+        names_[place->second].triangles += triangles;
+    }
+    [[nodiscard]] const std::vector<NamedTriangles>& names() const { return names_; }
+
+private:
+    FaceNameKind kind_;
+    std::vector<NamedTriangles> names_;
+    std::map<std::string_view, std::size_t> places_;  // in names_; of texts that outlive this
+};
+
+// A line of `g` and its words; one that occurs twice in it counts once.
+void add_group(NameCounts& counts, std::string_view line, std::size_t triangles) {
+    counts.add(line, triangles);
+    std::set<std::string_view> seen = {line};
+    for (const std::string_view word : words_of(line)) {
+        if (seen.insert(word).second) counts.add(word, triangles);
+    }
+}
+
+}  // namespace
+
+std::vector<std::string_view> words_of(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t";
+    std::vector<std::string_view> words;
+    for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+        words.push_back(text.substr(at, end - at));
+        at = text.find_first_not_of(kBlanks, end);
+    }
+    return words;
+}
+
+std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported) {
+    const PolygonMesh& mesh = imported.polygons;
+    if (mesh.face_groups.empty()) return {};
+    std::vector<std::size_t> of_group(mesh.groups.size(), 0);
+    for (const std::uint32_t face : imported.triangle_face) ++of_group[mesh.face_groups[face]];
+
+    std::vector<NamedTriangles> all;
+    const auto add_kind = [&](FaceNameKind kind, std::uint32_t FaceGroup::*number) {
+        // By number first: a long line of words may be part of many combinations.
+        std::vector<std::size_t> of_name(mesh.group_names.size(), 0);
+        for (std::size_t i = 0; i < mesh.groups.size(); ++i) of_name[mesh.groups[i].*number] += of_group[i];
+        NameCounts counts(kind);
+        for (std::size_t i = 1; i < of_name.size(); ++i) {
+            if (of_name[i] == 0) continue;
+            if (kind == FaceNameKind::group) {
+                add_group(counts, mesh.group_names[i], of_name[i]);
+            } else {
+                counts.add(mesh.group_names[i], of_name[i]);
+            }
+        }
+        all.insert(all.end(), counts.names().begin(), counts.names().end());
+    };
+    add_kind(FaceNameKind::material, &FaceGroup::material);
+    add_kind(FaceNameKind::group, &FaceGroup::group);
+    add_kind(FaceNameKind::object, &FaceGroup::object);
+    return all;
+}
+
+}  // namespace ricochet

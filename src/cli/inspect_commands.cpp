@@ -61,6 +61,7 @@ Json json_of(const MeshReport& report, const std::string& file) {
     out["unused_vertices"] = topology.unused_vertices;
     out["consistently_oriented"] = topology.consistently_oriented;
     out["inconsistent_edges"] = topology.inconsistent_edges;
+    out["wound_inward"] = report.wound_inward;
     out["y_up"] = report.y_up;
     out["names"] = Json::array();
     for (const NamedTriangles& named : report.names) {

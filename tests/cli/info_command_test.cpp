@@ -4,10 +4,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
+#include "ricochet/io/scene.h"
+#include "ricochet/simulation.h"
 #include "support/gltf_files.h"
 #include "support/temporary_folder.h"
 
@@ -120,6 +123,40 @@ TEST(InfoCommand, ListsTheFirstNamesOfManyAndHowManyMoreThereAre) {
         << text;
     EXPECT_EQ(text.find("part20"), std::string::npos) << text;
     EXPECT_EQ(names_in(Json::parse(test::run_ricochet({"info", path, "--json"}).output)).size(), 33U);
+}
+
+const std::string kInsideOut = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n";
+
+TEST(InfoCommand, SaysOfAMeshThatIsWoundInsideOutThatAnEmitterOnItLaunchesInward) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.write("t.obj", kInsideOut).string();
+    const Json info = Json::parse(test::run_ricochet({"info", path, "--json"}).output);
+    EXPECT_EQ(info.at("wound_inward"), true);
+    EXPECT_DOUBLE_EQ(info.at("volume"), 1.0 / 6.0);
+    EXPECT_EQ(info.at("warnings").size(), 1U);
+    const std::string text = test::run_ricochet({"info", path}).output;
+    EXPECT_NE(text.find("\nwarning: wound inside out, the faces' normals point inward: faces stop particles from both "
+                        "sides, so nothing leaks, but a mesh emitter on them (without volume) gives birth on the "
+                        "inside and launches inward\n"),
+              std::string::npos)
+        << text;
+}
+
+TEST(InfoCommand, IsRightThatAMeshEmitterGivesBirthOnTheInsideOfSuchAMesh) {
+    const test::TemporaryFolder folder;
+    (void)folder.write("t.obj", kInsideOut);
+    SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 1e-9, "duration": 1e-9},
+        "emitters": [{"type": "mesh", "file": "t.obj", "burst": 100, "speed": 1}]})",
+                                         folder.path("s.json"));
+    Simulation simulation(std::move(scene.setup));
+    simulation.step();
+    const Particles& born = simulation.particles();
+    ASSERT_EQ(born.position.size(), 100U);
+    for (std::size_t i = 0; i < born.position.size(); ++i) {
+        const Vec3& p = born.position[i];
+        EXPECT_GT(std::min({p.x, p.y, p.z, 1.0 - (p.x + p.y + p.z)}), 0.0) << "particle " << i;
+        EXPECT_LT(dot(born.velocity[i], p - Vec3{0.25, 0.25, 0.25}), 0.0) << "particle " << i;
+    }
 }
 
 TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {

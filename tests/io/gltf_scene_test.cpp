@@ -80,11 +80,13 @@ TEST(GltfScene, StandsUprightUnlessTheSceneSaysWhichAxisIsUp) {
     const SceneDescription plain = read(folder, scene_of("cube.glb"));
     ASSERT_EQ(plain.notes.size(), 1U);
     EXPECT_NE(plain.notes[0].find("colliders[0].file: "), std::string::npos) << plain.notes[0];
-    EXPECT_NE(plain.notes[0].find("has y up"), std::string::npos) << plain.notes[0];
+    EXPECT_NE(plain.notes[0].find("cube.glb has y up, as glTF says"), std::string::npos) << plain.notes[0];
     const SceneDescription y_up = read(folder, scene_of("cube.glb", R"(, "up": "y")"));
     EXPECT_EQ(mesh_of(y_up).vertices, mesh_of(plain).vertices);
-    EXPECT_TRUE(y_up.notes.empty());
+    ASSERT_EQ(y_up.notes.size(), 1U);
+    EXPECT_NE(y_up.notes[0].find("cube.glb has y up, as \"up\" says"), std::string::npos) << y_up.notes[0];
     const SceneDescription z_up = read(folder, scene_of("cube.glb", R"(, "up": "z")"));
+    EXPECT_TRUE(z_up.notes.empty());
     ASSERT_EQ(mesh_of(z_up).vertices.size(), mesh_of(plain).vertices.size());
     for (std::size_t v = 0; v < mesh_of(z_up).vertices.size(); ++v) {
         const Vec3 p = mesh_of(plain).vertices[v];
@@ -98,7 +100,12 @@ TEST(GltfScene, TurnsMeshesOfOtherFormatsOnlyWhereItIsAsked) {
     EXPECT_EQ(mesh_of(read(folder, scene_of("t.obj"))).vertices[0], Vec3(1, 2, 3));
     const SceneDescription y_up = read(folder, scene_of("t.obj", R"(, "up": "y")"));
     EXPECT_EQ(mesh_of(y_up).vertices[0], Vec3(1, -3, 2));
-    EXPECT_TRUE(y_up.notes.empty());
+    ASSERT_EQ(y_up.notes.size(), 1U);
+    EXPECT_TRUE(y_up.notes[0].ends_with("colliders[0].file: " + folder.path("t.obj").string() +
+                                        " has y up, as \"up\" says: read as (x, -z, y), so that z points up"))
+        << y_up.notes[0];
+    EXPECT_TRUE(read(folder, scene_of("t.obj")).notes.empty());
+    EXPECT_TRUE(read(folder, scene_of("t.obj", R"(, "up": "z")")).notes.empty());
     const test::Lines errors = test::errors_of(scene_of("t.obj", R"(, "up": "x")"));
     EXPECT_TRUE(std::any_of(errors.begin(), errors.end(), [](const std::string& line) {
         return line.starts_with("colliders[0].up: found \"x\", expected one of \"z\", \"y\"");

@@ -43,10 +43,11 @@ std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& vi
         const std::filesystem::path path = file_of(view);
         auto mesh = meshes_.load(path, up_of(view));
         for (const std::filesystem::path& file : meshes_.files(path)) note(file);
-        if (meshes_.is_y_up(path) && !view.has("up")) {
-            diagnostics_.note(
-                view.location_of("file"), view.path_of("file"),
-                fmt::format("{} has y up, as glTF says: read as (x, -z, y), so that z points up", path.string()));
+        const MeshUp up = up_of(view);
+        if (up == MeshUp::y || (up == MeshUp::by_format && meshes_.is_y_up(path))) {
+            diagnostics_.note(view.location_of("file"), view.path_of("file"),
+                              fmt::format("{} has y up, as {} says: read as (x, -z, y), so that z points up",
+                                          path.string(), up == MeshUp::y ? "\"up\"" : "glTF"));
         }
         for (const std::string& what : meshes_.notes(path)) {
             diagnostics_.note(view.location_of("file"), view.path_of("file"), path.string() + ": " + what);

@@ -55,6 +55,15 @@ SceneDescription read(const test::TemporaryFolder& folder, const std::string& sc
     return parse_scene(scene, folder.path("s.json"));
 }
 
+test::Lines errors_in(const test::TemporaryFolder& folder, const std::string& scene) {
+    try {
+        (void)read(folder, scene);
+    } catch (const SceneError& error) {
+        return error.messages();
+    }
+    return {};
+}
+
 const TriangleMesh& mesh_of(const SceneDescription& scene) {
     return *std::get<MeshShape>(scene.setup.colliders[0].shape).mesh;
 }
@@ -138,6 +147,28 @@ TEST(GltfScene, GivesMaterialsToTheNamesOfMaterialsMeshesAndNodes) {
         const auto of_name = std::count(materials.begin(), materials.end(), 1U);
         EXPECT_EQ(of_name, name == "steel" ? 12 : 24) << name;
     }
+}
+
+// JSON says them in both files by the same escapes.
+TEST(GltfScene, GivesMaterialsToNamesWithControlCharacters) {
+    const test::TemporaryFolder folder;
+    test::GltfFile file = test::gltf_cube();
+    const std::string name = R"("steel\u0007\u0000\u007f\n\"\u00e9\"")";
+    file.document["materials"][0]["name"] = test::Json::parse(name);
+    (void)folder.write("cube.gltf", test::gltf_text(file, "cube.bin"));
+    (void)folder.write("cube.bin", file.binary);
+    const std::string ice = R"(, "ice": {"friction": 0})";
+    const SceneDescription scene =
+        read(folder, scene_of("cube.gltf", R"(, "group_materials": {)" + name + R"(: "ice"})", ice));
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+    const auto& materials = std::get<MeshShape>(scene.setup.colliders[0].shape).triangle_materials;
+    EXPECT_EQ(std::count(materials.begin(), materials.end(), 1U), 12);
+    // One that is not there is told without obeying it, and the material's own name stays plain.
+    const test::Lines errors = errors_in(
+        folder, scene_of("cube.gltf", R"(, "group_materials": {"\u0007": "ice", "crate": "i\u0007ce"})", ice));
+    ASSERT_EQ(errors.size(), 2U);
+    EXPECT_NE(errors[0].find("the mesh has no group \"\\x07\""), std::string::npos) << errors[0];
+    EXPECT_NE(errors[1].find("\"i\\x07ce\" contains a control character"), std::string::npos) << errors[1];
 }
 
 TEST(GltfScene, CountsTheFilesOfItsBuffersAmongItsOwn) {

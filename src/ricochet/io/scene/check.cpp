@@ -302,7 +302,8 @@ private:
         for (JsonMember& member : *members) {
             if (member.key.empty())
                 diagnostics_.error(member.key_location, path, "found an empty name, expected a name");
-            if (has_control_character(member.key)) {
+            // Names of a file are its own; those of a scene become columns and lines of reports.
+            if (key.type != ValueType::text_table && has_control_character(member.key)) {
                 diagnostics_.error(member.key_location, path,
                                    fmt::format("the name \"{}\" contains a control character, expected plain text",
                                                printable(member.key, 60)));

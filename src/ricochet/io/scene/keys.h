@@ -36,7 +36,8 @@ enum class ValueType {
     quantity,        ///< a number or [x, y, z]
     vector_pair,     ///< [x, y, z], or [[x, y, z], [spread, spread, spread]]
     quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
-    text_table,      ///< an object whose keys are names and whose values are texts that are not empty
+    text_table,      ///< an object whose keys are names in a file, of any characters, and whose values are texts that
+                     ///< are not empty
 };
 
 /// Allowed numbers (or vector components).

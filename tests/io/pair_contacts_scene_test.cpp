@@ -77,5 +77,41 @@ TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
                      "here, expected another name"}));
 }
 
+// Forty materials whose order is not that of their names, all pairs of them in an order of their own.
+TEST(PairContactsScene, EachOfManyPairsStaysWhereItStandsAndCountsOnce) {
+    constexpr std::size_t kMany = 40;
+    std::vector<std::string> names;
+    std::string materials;
+    for (std::size_t k = 0; k < kMany; ++k) {
+        names.push_back("m" + std::to_string(7 * k % kMany));
+        materials += (k == 0 ? "\"" : ", \"") + names[k] + "\": {}";
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> order;
+    std::string pairs;
+    for (std::size_t a = 0; a < kMany; ++a) {
+        for (std::size_t b = kMany; b-- > a + 1;) {
+            order.push_back((a + b) % 2 == 0 ? std::pair(a, b) : std::pair(b, a));
+            const std::string number = std::to_string(order.size());
+            pairs += (pairs.empty() ? "" : ", ") + (R"({"first": ")" + names[order.back().first]) +
+                     R"(", "second": ")" + names[order.back().second] + R"(", "friction": )" + number + "}";
+        }
+    }
+    const std::string all = R"("materials": {)" + materials + R"(}, "pairs": [)" + pairs;
+    const SimulationSetup setup = parse_scene(scene_with(all + "]", R"(, "material": "m0")"), "s.json").setup;
+    const PairContactSettings& contacts = setup.options.particle_contacts.value();
+    ASSERT_EQ(contacts.pairs.size(), kMany + order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const MaterialPair& pair = contacts.pairs[kMany + k];
+        EXPECT_EQ(pair.first, names[order[k].first]);
+        EXPECT_EQ(pair.second, names[order[k].second]);
+        EXPECT_EQ(pair.material.friction, static_cast<double>(k + 1));
+    }
+    EXPECT_EQ(
+        errors_of(scene_with(all + R"(, {"first": "m11", "second": "m3"}, {"first": "m3", "second": "m11"}])")),
+        (Lines{"particle_contacts.pairs[780].second: \"m11\" and \"m3\" are there already, expected each pair once",
+               "particle_contacts.pairs[781].second: \"m3\" and \"m11\" are there already, expected each pair "
+               "once"}));
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -10,10 +10,10 @@
 namespace ricochet {
 namespace {
 
-std::size_t number_of(const std::vector<std::string>& materials, const std::string& name) {
-    const auto found = std::find(materials.begin(), materials.end(), name);
-    if (found == materials.end()) throw InputError(fmt::format("particle_contacts: no material is named '{}'", name));
-    return static_cast<std::size_t>(found - materials.begin());
+std::size_t number_of(const MaterialNumbers& numbers, const std::string& name) {
+    const auto found = numbers.of(name);
+    if (!found) throw InputError(fmt::format("particle_contacts: no material is named '{}'", name));
+    return *found;
 }
 
 }  // namespace
@@ -21,9 +21,10 @@ std::size_t number_of(const std::vector<std::string>& materials, const std::stri
 PairMaterials::PairMaterials(const PairContactSettings& settings)
     : count_(std::max<std::size_t>(1, settings.materials.size())),
       table_(count_ * count_, PairMaterial{settings.restitution, settings.friction, settings.rolling_friction}) {
+    const MaterialNumbers numbers(settings.materials);
     for (const MaterialPair& pair : settings.pairs) {
-        const std::size_t a = number_of(settings.materials, pair.first);
-        const std::size_t b = number_of(settings.materials, pair.second);
+        const std::size_t a = number_of(numbers, pair.first);
+        const std::size_t b = number_of(numbers, pair.second);
         table_[a * count_ + b] = table_[b * count_ + a] = pair.material;
     }
     loses_energy_ =

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "ricochet/dynamics/particles.h"
@@ -16,6 +20,24 @@ namespace ricochet {
 [[nodiscard]] inline bool is_material(const AttributeValue& value, std::size_t materials) {
     return value.x >= 0.0 && value.x < static_cast<double>(materials) && value.x == std::floor(value.x);
 }
+
+/// The numbers of materials by their names; pairs of a thousand of them look up a million.
+class MaterialNumbers {
+public:
+    /// The names must outlive it. Of equal ones the first counts.
+    explicit MaterialNumbers(const std::vector<std::string>& names) {
+        for (std::size_t k = 0; k < names.size(); ++k) numbers_.try_emplace(names[k], k);
+    }
+
+    /// Nothing for a name that is none of them.
+    [[nodiscard]] std::optional<std::size_t> of(std::string_view name) const {
+        const auto found = numbers_.find(name);
+        return found == numbers_.end() ? std::nullopt : std::optional(found->second);
+    }
+
+private:
+    std::map<std::string_view, std::size_t> numbers_;
+};
 
 /// A table for all pairs; of one entry where there are no materials.
 class PairMaterials {

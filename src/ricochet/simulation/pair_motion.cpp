@@ -1,7 +1,9 @@
 #include "ricochet/simulation/pair_motion.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <string_view>
 
 #include "ricochet/core/parallel.h"
 
@@ -21,12 +23,11 @@ verify::PairBooks books_of(const PairParts& parts) {
     books.materials = names.size();
     books.by_materials.assign(names.size() * names.size(),
                               {settings.restitution, settings.friction, settings.rolling_friction});
+    std::map<std::string_view, std::size_t> numbers;
+    for (std::size_t k = 0; k < names.size(); ++k) numbers.emplace(names[k], k);
     for (const MaterialPair& pair : settings.pairs) {
-        const auto number = [&](const std::string& name) {
-            return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-        };
-        const std::size_t a = number(pair.first);
-        const std::size_t b = number(pair.second);
+        const std::size_t a = numbers.at(pair.first);
+        const std::size_t b = numbers.at(pair.second);
         const verify::PairBooks::Pair own{pair.material.restitution, pair.material.friction,
                                           pair.material.rolling_friction};
         books.by_materials[a * names.size() + b] = books.by_materials[b * names.size() + a] = own;

@@ -40,13 +40,16 @@ void validate_names(const PairContactSettings& contacts, const Subject& subject)
             subject.refuse("materials", "\"" + name + "\"", "names, each once");
         }
     }
-    std::set<std::pair<std::string, std::string>> pairs;
+    const MaterialNumbers numbers(contacts.materials);
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
     for (const MaterialPair& pair : contacts.pairs) {
         for (const std::string& name : {pair.first, pair.second}) {
-            if (!taken.contains(name)) subject.refuse("pairs", "\"" + name + "\"", "names of `materials`");
+            if (!numbers.of(name)) subject.refuse("pairs", "\"" + name + "\"", "names of `materials`");
         }
         require_material(subject, pair.material);
-        if (pairs.insert(std::minmax(pair.first, pair.second)).second) continue;
+        const std::size_t first = *numbers.of(pair.first);
+        const std::size_t second = *numbers.of(pair.second);
+        if (pairs.insert(std::minmax(first, second)).second) continue;
         subject.refuse("pairs", fmt::format("\"{}\" and \"{}\" twice", pair.first, pair.second), "each pair once");
     }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/io/scene/context.h"
+#include "ricochet/response/pair_materials.h"
 
 namespace ricochet::detail {
 namespace {
@@ -56,14 +57,14 @@ PairMaterial material_at(const ObjectView& view, const PairContactSettings& all)
 
 void read_pairs(const SceneContext& context, const ObjectView& view, PairContactSettings& settings) {
     const std::vector<std::string_view> known(settings.materials.begin(), settings.materials.end());
-    std::set<std::pair<std::string, std::string>> taken;
-    for (const MaterialPair& pair : settings.pairs) taken.insert({pair.first, pair.second});
+    const MaterialNumbers numbers(settings.materials);
+    std::set<std::pair<std::size_t, std::size_t>> taken;
     for (const ObjectView& pair : view.objects("pairs")) {
         MaterialPair read{pair.text("first"), pair.text("second"), material_at(pair, settings)};
         bool is_known = true;
         for (const char* key : {"first", "second"}) {
             const std::string name = pair.text(key);
-            if (!pair.has(key) || std::find(known.begin(), known.end(), name) != known.end()) continue;
+            if (!pair.has(key) || numbers.of(name)) continue;
             is_known = false;
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
@@ -76,7 +77,10 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
                             read.first));
             continue;
         }
-        if (taken.insert(std::minmax(read.first, read.second)).second) {
+        // A name that is missing is refused already.
+        const std::size_t first = numbers.of(read.first).value_or(known.size());
+        const std::size_t second = numbers.of(read.second).value_or(known.size());
+        if (taken.insert(std::minmax(first, second)).second) {
             settings.pairs.push_back(std::move(read));
         } else {
             context.error(

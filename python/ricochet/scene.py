@@ -281,8 +281,7 @@ class SeriesDeformation(Thing):
     """A numbered series of meshes.
 
     ends: What holds before the first and after the last key. Default: "hold".
-    files: OBJ, PLY or OFF files with the faces of the collider's `file`, such as `"flag_*.obj"`: the name with a *
-        in place of the number. The numbers are consecutive. Required.
+    files: OBJ, PLY or OFF files with the faces of the collider's `file`; their numbers are consecutive. Required.
     frame_rate: Frames a second. Unit: 1/s. Default: 25.
     start: When the first file holds; of a cache, when frame 0 does. Unit: s. Default: 0.
     """

@@ -55,7 +55,7 @@ TEST(PointCache, SaysWhatIsWrong) {
     EXPECT_EQ(refusal(std::string(40, 'x')).substr(0, 25), "a.pc2: not a point cache,");
     EXPECT_EQ(refusal(cache_of(2, 0, 1, 3, 2)), "a.pc2: the point cache has the version 2, expected 1");
     EXPECT_EQ(refusal(cache_of(0, 0, 1, 3)), "a.pc2: found 0 points, expected at least 1");
-    EXPECT_EQ(refusal(cache_of(1, 0, 1, 1)), "a.pc2: found 1 samples, expected at least 2");
+    EXPECT_EQ(refusal(cache_of(1, 0, 1, 1)), "a.pc2: found 1 sample, expected at least 2");
     EXPECT_EQ(refusal(cache_of(1, 0, 0, 2)),
               "a.pc2: the first frame is 0 and samples are 0 frames apart, expected a number, and one above 0");
     std::string cut = cache_of(2, 0, 1, 3);

@@ -113,11 +113,16 @@ TEST_F(DeformationScene, NamesAllFilesAmongThoseOfTheScene) {
 }
 
 TEST_F(DeformationScene, SaysWhatIsWrongWithASeries) {
-    const std::string at = "colliders[0].deformation: ";
+    const std::string at = "colliders[0].deformation.files: ";
     EXPECT_EQ(errors_of(R"({"type": "series", "files": "flug_*.obj"})"),
               (Lines{at + "flug_*.obj: found 0 numbered files, expected at least 2"}));
-    EXPECT_EQ(errors_of(R"({"type": "series", "files": "flag.obj"})"),
-              (Lines{at + "found \"flag.obj\", expected a file name with one * for the number"}));
+    EXPECT_EQ(errors_of(R"({"type": "series", "files": "flag_1*.obj"})"),
+              (Lines{at + "flag_1*.obj: found 1 numbered file, expected at least 2"}));
+    const std::string expected = "expected a file name with one * for the number, such as \"flag_*.obj\"";
+    EXPECT_EQ(errors_of(R"({"type": "series", "files": "flag.obj"})"), (Lines{at + "found \"flag.obj\", " + expected}));
+    EXPECT_EQ(errors_of(R"({"type": "series", "files": ["flag_08.obj", "flag_09.obj"]})"),
+              (Lines{at + "found a list of 2, " + expected}));
+    EXPECT_EQ(errors_of(R"({"type": "series"})"), (Lines{at + "missing, " + expected}));
     static_cast<void>(folder_.write("flag_12.obj", triangle_at(0)));
     EXPECT_EQ(errors_of(R"({"type": "series", "files": "flag_*.obj"})"),
               (Lines{at + "flag_*.obj: number 12 follows 10, expected consecutive numbers"}));
@@ -127,24 +132,65 @@ TEST_F(DeformationScene, SaysWhatIsWrongWithASeries) {
                           "order"}));
     static_cast<void>(folder_.write("flag_11.obj", triangle_at(0, "v 1 1 1\nf 1 2 3\n")));
     EXPECT_EQ(errors_of(R"({"type": "series", "files": "flag_*.obj"})"),
-              (Lines{at + "flag_11.obj: found 4 vertices, expected the 3 of flag_08.obj"}));
+              (Lines{at + "flag_11.obj: found 4 vertices, expected the 3 vertices of flag_08.obj"}));
 }
 
-TEST_F(DeformationScene, SaysWhatIsWrongWithKeysAndCaches) {
-    const std::string at = "colliders[0].deformation: ";
-    EXPECT_EQ(
-        errors_of(
-            R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, {"time": 1, "file": "flag_09.obj"}]})"),
-        (Lines{at + "mesh that deforms: the time of key 1 is not after the one before, expected ascending times"}));
-    EXPECT_EQ(
-        errors_of(R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}]})"),
-        (Lines{"colliders[0].deformation.keys: found a list of 1, expected a list [...] of objects, at least 2"}));
+TEST_F(DeformationScene, SaysWhichOfTheKeysIsWrong) {
+    const std::string at = "colliders[0].deformation.keys";
+    const auto keys = [&](const std::string& second, const std::string& scene = "") {
+        const std::string first = R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, )";
+        return errors_of(first + second + "]}", "", scene);
+    };
+    EXPECT_EQ(keys(R"({"time": 1, "file": "flag_09.obj"})"),
+              (Lines{at + "[1].time: found 1, expected a time after that of the key before, 1 s"}));
+    EXPECT_EQ(keys(R"({"time": 2, "file": "flog_09.obj"})"),
+              (Lines{at + "[1].file: there is no file flog_09.obj, did you mean \"flag_09.obj\"?"}));
+    static_cast<void>(folder_.write("one.obj", "v 0 0 0\nf 1 1 1\n"));
+    EXPECT_EQ(keys(R"({"time": 2, "file": "one.obj"})"),
+              (Lines{at + "[1].file: one.obj: found 1 vertex, expected the 3 vertices of flag_08.obj"}));
+    static_cast<void>(folder_.write("bad.obj", "v 0 0 0\nv 1 x 0\n"));
+    const Lines unreadable = keys(R"({"time": 2, "file": "bad.obj"})");
+    ASSERT_EQ(unreadable.size(), 1U);
+    EXPECT_TRUE(unreadable[0].starts_with(at + "[1].file: bad.obj:2: vertex coordinate is 'x'")) << unreadable[0];
+    // What is wrong elsewhere hides nothing, and what is missing is told once.
+    EXPECT_EQ(keys(R"({"time": 0, "file": "flag_09.obj"})", R"(, "simulation": {"duration": -1})").size(), 2U);
+    EXPECT_EQ(keys(R"({"file": "flag_09.obj"})").size(), 1U);
+    EXPECT_EQ(keys(R"({"time": 2})").size(), 1U);
+    EXPECT_EQ(errors_of(R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}]})"),
+              (Lines{at + ": found a list of 1, expected a list [...] of objects, at least 2"}));
+}
+
+TEST_F(DeformationScene, SaysWhereInTheFileThatIs) {
+    const std::string text = R"({"ricochet": 1, "colliders": [{"type": "mesh", "file": "flag_08.obj",
+      "deformation": {"type": "keys", "keys": [
+        {"time": 1, "file": "flag_08.obj"},
+        {"time": 0.5, "file": "flag_09.obj"}]}}]})";
+    try {
+        static_cast<void>(read_scene(folder_.write("s.json", text)));
+        FAIL() << "the scene is refused";
+    } catch (const SceneError& error) {
+        ASSERT_EQ(error.messages().size(), 1U);
+        EXPECT_NE(error.messages()[0].find("s.json:4:18: colliders[0].deformation.keys[1].time: "), std::string::npos)
+            << error.messages()[0];
+    }
+}
+
+TEST_F(DeformationScene, SaysWhatIsWrongWithCachesAndWithTheMeshThatDeforms) {
+    const std::string at = "colliders[0].deformation.file: ";
     static_cast<void>(folder_.write("flag.pc2", cache_of(4, 3)));
     EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
               (Lines{at + "flag.pc2: found 4 points, expected the 3 vertices of flag_08.obj"}));
     static_cast<void>(folder_.write("flag.pc2", cache_of(3, 3).substr(0, 50)));
     EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
               (Lines{at + "flag.pc2: 3 samples of 3 points are 140 bytes, found 50"}));
+    static_cast<void>(folder_.write("flag.pc2", cache_of(3, 1)));
+    EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
+              (Lines{at + "flag.pc2: found 1 sample, expected at least 2"}));
+    // Without the collider's own mesh nothing is to be said of the others.
+    static_cast<void>(folder_.write("flag_08.obj", "v 0 0\n"));
+    const Lines errors = errors_of(R"({"type": "series", "files": "flag_*.obj"})");
+    ASSERT_EQ(errors.size(), 1U);
+    EXPECT_TRUE(errors[0].starts_with("colliders[0].file: flag_08.obj:1: ")) << errors[0];
 }
 
 TEST_F(DeformationScene, RefusesWhatDoesNotGoTogether) {

@@ -40,7 +40,8 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
     const auto step = value_at<float>(bytes, 24);
     const auto samples = value_at<std::int32_t>(bytes, 28);
     require(points > 0, fmt::format("found {} points, expected at least 1", points));
-    require(samples > 1, fmt::format("found {} samples, expected at least 2", samples));
+    require(samples > 1, fmt::format("found {}, expected at least 2",
+                                     samples == 1 ? "1 sample" : fmt::format("{} samples", samples)));
     require(std::isfinite(first) && std::isfinite(step) && step > 0.0F,
             fmt::format("the first frame is {} and samples are {} frames apart, expected a number, and one above 0",
                         first, step));

@@ -55,12 +55,22 @@ struct NumberedFile {
     fs::path path;
 };
 
+/// Thrown where what is wrong has been reported, with its place.
+struct Reported {};
+
+constexpr std::string_view kSeriesName = "a file name with one * for the number, such as \"flag_*.obj\"";
+
+// "1 vertex", "2 vertices".
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
 class DeformationBuilder {
 public:
-    DeformationBuilder(SceneContext& context, const ObjectView& view, const fs::path& base, MeshUp up)
-        : context_(context), view_(view), base_(base), up_(up) {}
+    DeformationBuilder(SceneContext& context, const ObjectView& collider, const ObjectView& view)
+        : context_(context), collider_(collider), view_(view), base_(context.file_of(collider)), up_(up_of(collider)) {}
 
-    /// Throws InputError with what is wrong as a whole.
+    /// Throws InputError with what is wrong as a whole, Reported after telling what is wrong with a key.
     [[nodiscard]] MeshMotion build() {
         Series series = view_.type() == "series" ? of_series() : view_.type() == "keys" ? of_keys() : of_cache();
         if (up_ == MeshUp::y) {
@@ -83,12 +93,26 @@ private:
         return times.start + frame / times.frame_rate;
     }
 
+    /// What read() gives of a key's value. What it refuses is told with the key's place; that a value is missing or was
+    /// refused is told already.
+    template <class Read>
+    auto from(const ObjectView& view, std::string_view key, const Read& read) const {
+        if (!view.has(key)) throw Reported();
+        try {
+            return read();
+        } catch (const InputError& problem) {
+            context_.error(view, key, problem.what());
+            throw Reported();
+        }
+    }
+
     [[nodiscard]] Series of_series() {
-        const std::vector<NumberedFile> files = numbered_files();
+        const std::vector<NumberedFile> files = from(view_, "files", [&] { return numbered_files(); });
+        read_base();
         Series series;
         for (const NumberedFile& file : files) {
             series.times.push_back(time_of(static_cast<double>(file.number - files.front().number)));
-            series.positions.push_back(vertices_of(file.path, files.size()));
+            series.positions.push_back(from(view_, "files", [&] { return vertices_of(file.path, files.size()); }));
         }
         return series;
     }
@@ -96,23 +120,34 @@ private:
     [[nodiscard]] Series of_keys() {
         Series series;
         const std::vector<ObjectView> keys = view_.objects("keys");
+        for (const ObjectView& key : keys) series.times.push_back(time_of(key, series.times));
+        read_base();
         for (const ObjectView& key : keys) {
-            series.times.push_back(key.read<MeshKey>().time);
-            series.positions.push_back(vertices_of(context_.file_of(key), keys.size()));
+            series.positions.push_back(
+                from(key, "file", [&] { return vertices_of(context_.file_of(key), keys.size()); }));
         }
         return series;
     }
 
+    /// Of the key that follows those with these times.
+    [[nodiscard]] double time_of(const ObjectView& key, const std::vector<double>& before) const {
+        return from(key, "time", [&] {
+            const double time = key.read<MeshKey>().time;
+            if (before.empty() || time > before.back()) return time;
+            throw InputError(
+                fmt::format("found {}, expected a time after that of the key before, {} s", time, before.back()));
+        });
+    }
+
     [[nodiscard]] Series of_cache() {
-        constexpr std::uint64_t kLargest = std::uint64_t{1} << 40;
-        const fs::path path = context_.file_of(view_);
-        PointCache cache = read_point_cache(path, read_bytes(path, kLargest));
-        require_numbers(base(), base_);
-        const std::size_t expected = base().mesh.vertices.size();
-        if (cache.positions.front().size() != expected) {
-            throw InputError(fmt::format("{}: found {} points, expected the {} vertices of {}", path.string(),
-                                         cache.positions.front().size(), expected, base_.string()));
-        }
+        PointCache cache = from(view_, "file", [&] {
+            constexpr std::uint64_t kLargest = std::uint64_t{1} << 40;
+            const fs::path path = context_.file_of(view_);
+            return read_point_cache(path, read_bytes(path, kLargest));
+        });
+        read_base();
+        from(view_, "file",
+             [&] { require_as_many(cache.positions.front().size(), "point", "points", context_.file_of(view_)); });
         Series series{{}, std::move(cache.positions)};
         for (const double frame : cache.frames) series.times.push_back(time_of(frame));
         return series;
@@ -124,7 +159,7 @@ private:
         const std::string name = pattern.filename().string();
         const std::size_t star = name.find('*');
         if (star == std::string::npos || name.find('*', star + 1) != std::string::npos) {
-            throw InputError(fmt::format("found \"{}\", expected a file name with one * for the number", name));
+            throw InputError(fmt::format("found \"{}\", expected {}", name, kSeriesName));
         }
         const std::string before = name.substr(0, star);
         const std::string after = name.substr(star + 1);
@@ -159,8 +194,8 @@ private:
 
     static void require_series(const std::vector<NumberedFile>& files, const fs::path& pattern) {
         if (files.size() < 2) {
-            throw InputError(
-                fmt::format("{}: found {} numbered files, expected at least 2", pattern.string(), files.size()));
+            throw InputError(fmt::format("{}: found {}, expected at least 2", pattern.string(),
+                                         counted(files.size(), "numbered file", "numbered files")));
         }
         for (std::size_t k = 1; k < files.size(); ++k) {
             if (files[k].number == files[k - 1].number + 1) continue;
@@ -169,35 +204,42 @@ private:
         }
     }
 
-    /// The mesh that says the faces.
-    [[nodiscard]] const ImportedMesh& base() {
-        if (!mesh_) mesh_ = read_mesh(base_);
-        return *mesh_;
+    /// The mesh that says the faces. A collider's mesh that cannot be read is told already.
+    void read_base() {
+        if (context_.load_groups(collider_) == nullptr) throw Reported();
+        from(collider_, "file", [&] {
+            mesh_ = read_mesh(base_);
+            require_numbers(mesh_, base_);
+        });
     }
 
     /// Of a mesh with the same faces; one of so many.
     [[nodiscard]] std::vector<Vec3> vertices_of(const fs::path& path, std::size_t count) {
         if (const auto problem = file_problem(path)) throw InputError(*problem);
         if (!asked_for_memory_) {
-            const double bytes = static_cast<double>(base().mesh.vertices.size() * sizeof(Vec3) * count);
+            const double bytes = static_cast<double>(mesh_.mesh.vertices.size() * sizeof(Vec3) * count);
             require_memory(2.0 * bytes, path.string());
         }
         asked_for_memory_ = true;
         ImportedMesh mesh = read_mesh(path);
         require_numbers(mesh, path);
-        require_numbers(base(), base_);
-        if (mesh.mesh.vertices.size() != base().mesh.vertices.size()) {
-            throw InputError(fmt::format("{}: found {} vertices, expected the {} of {}", path.string(),
-                                         mesh.mesh.vertices.size(), base().mesh.vertices.size(), base_.string()));
-        }
-        if (mesh.polygons.face_offsets != base().polygons.face_offsets ||
-            mesh.polygons.corners != base().polygons.corners) {
+        require_as_many(mesh.mesh.vertices.size(), "vertex", "vertices", path);
+        if (mesh.polygons.face_offsets != mesh_.polygons.face_offsets ||
+            mesh.polygons.corners != mesh_.polygons.corners) {
             throw InputError(
                 fmt::format("{}: its faces are not those of {}, expected the same corners in the same "
                             "order",
                             path.string(), base_.string()));
         }
         return std::move(mesh.mesh.vertices);
+    }
+
+    /// As many as the mesh that says the faces has.
+    void require_as_many(std::size_t found, std::string_view one, std::string_view many, const fs::path& path) const {
+        const std::size_t expected = mesh_.mesh.vertices.size();
+        if (found == expected) return;
+        throw InputError(fmt::format("{}: found {}, expected the {} of {}", path.string(), counted(found, one, many),
+                                     counted(expected, "vertex", "vertices"), base_.string()));
     }
 
     // Vertices that were joined by where they are have no numbers of their own.
@@ -210,10 +252,11 @@ private:
     }
 
     SceneContext& context_;
+    const ObjectView& collider_;
     const ObjectView& view_;
     fs::path base_;
     MeshUp up_;
-    std::optional<ImportedMesh> mesh_;
+    ImportedMesh mesh_;
     bool asked_for_memory_ = false;
 };
 
@@ -279,9 +322,8 @@ const ObjectSpec& deformation_spec() {
                      "unless both have the same vertices to the last bit")}}},
         {timed("series", "A numbered series of meshes.",
                {{"files", ValueType::text,
-                 "OBJ, PLY or OFF files with the faces of the collider's `file`, such as `\"flag_*.obj\"`: the name "
-                 "with a * in place of the number. The numbers are consecutive.",
-                 kRequired}}),
+                 "OBJ, PLY or OFF files with the faces of the collider's `file`; their numbers are consecutive.",
+                 kRequired, Expected{kSeriesName}}}),
          variant<Unbound>(
              "keys", "Meshes at times of their own.",
              {{"keys", ValueType::list, "In the order of time.", &mesh_key_spec(), kRequired, kTwoOrMore}}),
@@ -297,8 +339,9 @@ std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const Ob
     const ObjectView view = collider.object("deformation");
     if (view.is_absent() || view.type().empty() || !collider.has("file")) return nullptr;
     try {
-        return std::make_shared<const MeshMotion>(
-            DeformationBuilder(context, view, context.file_of(collider), up_of(collider)).build());
+        return std::make_shared<const MeshMotion>(DeformationBuilder(context, collider, view).build());
+    } catch (const Reported&) {
+        return nullptr;
     } catch (const InputError& problem) {
         if (!context.failed()) context.error(view, problem.what());
         return nullptr;

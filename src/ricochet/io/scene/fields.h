@@ -121,6 +121,10 @@ struct Without {
 struct Unit {
     std::string_view name;
 };
+/// What is expected of a text, for messages and the reference.
+struct Expected {
+    std::string_view words;
+};
 /// Key that must stand beside it.
 struct Needs {
     std::string_view key;
@@ -138,6 +142,7 @@ using Choices = std::vector<Choice>;
 void set_option(KeySpec& key, Rule rule);
 inline void set_option(KeySpec& key, Without without) { key.without = without.words; }
 inline void set_option(KeySpec& key, Unit unit) { key.unit = unit.name; }
+inline void set_option(KeySpec& key, Expected expected) { key.expected = expected.words; }
 inline void set_option(KeySpec& key, Needs needs) { key.needs = needs.key; }
 inline void set_option(KeySpec& key, LowEnd low_end) { key.low_end = low_end.range; }
 inline void set_option(KeySpec& key, NamedIn named_in) { key.table = named_in.table; }

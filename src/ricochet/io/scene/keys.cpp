@@ -99,7 +99,7 @@ std::string expectation(const KeySpec& key) {
         case ValueType::boolean:
             return "true or false";
         case ValueType::text:
-            return "a text that is not empty";
+            return key.expected.empty() ? "a text that is not empty" : std::string(key.expected);
         case ValueType::file:
             return "the path of a file";
         case ValueType::choice:

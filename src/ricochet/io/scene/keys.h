@@ -92,9 +92,10 @@ struct KeySpec {
     std::string default_value = {};  ///< as JSON; empty when there is none
     std::string_view without = {};   ///< what its absence means, where no JSON value says it
     bool required = false;
-    bool not_zero = false;        ///< vectors: not all components zero
-    std::size_t least = 0;        ///< lists: objects
-    std::string_view needs = {};  ///< key that must stand beside it
+    bool not_zero = false;           ///< vectors: not all components zero
+    std::size_t least = 0;           ///< lists: objects
+    std::string_view needs = {};     ///< key that must stand beside it
+    std::string_view expected = {};  ///< texts: what is expected, in words of its own
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;
     std::string_view table = {};  ///< of ValueType::named_object: the scene's key with the named objects

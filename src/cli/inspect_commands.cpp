@@ -164,7 +164,7 @@ void run_info(const InfoOptions& options) {
 
 void add_info_command(cli::Command program, int& exit_code) {
     const auto options = std::make_shared<InfoOptions>();
-    cli::Command command = program.add_command("info", "Counts, topology and defects of a mesh file");
+    cli::Command command = program.add_command("info", "Counts, names of parts, topology and defects of a mesh file");
     command.add_option("mesh", options->mesh, "OBJ, PLY, STL, OFF or glTF file").required();
     command.add_flag("--json", options->json, "Print one JSON object");
     command.on_call([options, &exit_code] {

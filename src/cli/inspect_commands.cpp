@@ -119,16 +119,17 @@ std::string counted(std::size_t count, std::string_view singular) {
 
 // A name as a scene file writes it, in the characters that a terminal shows as they are.
 std::string as_in_scene(const std::string& name) {
-    const auto dump = [&](bool only_ascii) {
-        return Json(name).dump(-1, ' ', only_ascii, Json::error_handler_t::replace);
-    };
-    const std::string text = dump(false);
-    return printable(text) == text ? text : dump(true);
+    constexpr std::size_t kLongest = 200;
+    try {
+        const std::string text = Json(name).dump();
+        return printable(printable(text) == text ? text : Json(name).dump(-1, ' ', true), kLongest);
+    } catch (const Json::type_error&) {
+        return printable(name, kLongest) + " (not UTF-8, so that no scene can name it)";
+    }
 }
 
 void print_names(const MeshReport& report, FaceNameKind kind) {
     constexpr std::size_t kMostNames = 20;
-    constexpr std::size_t kLongestName = 200;
     std::size_t count = 0;
     for (const NamedTriangles& named : report.names) count += named.kind == kind ? 1 : 0;
     if (count == 0) return;
@@ -137,8 +138,7 @@ void print_names(const MeshReport& report, FaceNameKind kind) {
     for (const NamedTriangles& named : report.names) {
         if (named.kind != kind || shown == kMostNames) continue;
         ++shown;
-        print_line("", fmt::format("{}: {}", printable(as_in_scene(named.name), kLongestName),
-                                   counted(named.triangles, "triangle")));
+        print_line("", fmt::format("{}: {}", as_in_scene(named.name), counted(named.triangles, "triangle")));
     }
     if (count > shown) print_line("", fmt::format("and {} more (--json has all)", count - shown));
 }

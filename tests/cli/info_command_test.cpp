@@ -103,6 +103,22 @@ TEST(InfoCommand, ListsNamesOfFacesWithTheTrianglesThatHaveThem) {
         << text;
 }
 
+TEST(InfoCommand, SaysWhichNamesNoSceneCanWrite) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder
+                                 .write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\no " +
+                                                     std::string(300, 'a') + "\nf 1 2 3\n")
+                                 .string();
+    const std::string text = test::run_ricochet({"info", path}).output;
+    EXPECT_NE(text.find("\n                      gr\\xfcn (not UTF-8, so that no scene can name it): 2 triangles\n"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("\n                      \"" + std::string(199, 'a') + "...: 1 triangle\n"), std::string::npos)
+        << text;
+    EXPECT_EQ(names_in(Json::parse(test::run_ricochet({"info", path, "--json"}).output))[0],
+              "material gr\xef\xbf\xbdn 2");
+}
+
 TEST(InfoCommand, ListsNamesOfAGltfFile) {
     const test::TemporaryFolder folder;
     const std::string path = folder.write("cube.glb", test::glb_of(test::gltf_cube())).string();

@@ -56,7 +56,8 @@ std::string version_text() {
 
 int report_error(std::string message, int exit_code) {
     std::replace(message.begin(), message.end(), '\n', ' ');
-    cli::print(stderr, "ricochet: {}\n", message);
+    const std::string who = cli::speaker().empty() ? "" : cli::speaker() + ": ";
+    cli::print(stderr, "ricochet: {}{}\n", who, message);
     return exit_code;
 }
 

@@ -26,6 +26,7 @@
 #include "cli/terminal.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/checkpoint.h"
 #include "ricochet/io/run_folder.h"
@@ -246,11 +247,24 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
                                             prepared.plan.fingerprint, simulation);
     if (prepared.folder) prepared.folder->remove_after(simulation.step_index());
     prepared.plan.earlier_seconds = checkpoint.wall_seconds;
-    if (!arguments.quiet) {
-        cli::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
-                   simulation.time());
-    }
     return checkpoint;
+}
+
+// What must be the same on all ranks before one of them touches a file.
+std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const PreparedRun& prepared) {
+    StateHash names;
+    for (const std::string& name : {arguments.output, arguments.output_state}) {
+        names.add(name.size());
+        names.add(std::as_bytes(std::span(name)));
+    }
+    const RunPlan& plan = prepared.plan;
+    return {plan.fingerprint,
+            plan.output.every,
+            plan.output.checkpoint_every,
+            std::uint64_t{prepared.simulation->options().record_contacts},
+            prepared.simulation->step_count(),
+            std::uint64_t{arguments.resume},
+            names.value()};
 }
 
 // Once the folder is this run's: no other one changes its checkpoint. Returns what must be the same on all ranks.
@@ -260,24 +274,24 @@ std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& pre
     if (prepared.folder) {
         prepared.writer.emplace(prepared.folder->path(), prepared.info, simulation, prepared.region, resumed);
     }
-    const RunPlan& plan = prepared.plan;
-    return {plan.fingerprint,
-            plan.output.every,
-            plan.output.checkpoint_every,
-            std::uint64_t{simulation.options().record_contacts},
-            simulation.step_count(),
-            simulation.step_index(),
-            std::bit_cast<std::uint64_t>(resumed ? resumed->wall_seconds : 0.0),
+    return {simulation.step_index(), std::bit_cast<std::uint64_t>(resumed ? resumed->wall_seconds : 0.0),
             std::bit_cast<std::uint64_t>(resumed ? resumed->output_seconds : 0.0)};
 }
 
 // All of it; the exit code where another process could not do its part.
 std::optional<int> prepare_together(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (const auto failed = run.together([&] { prepare(arguments, run, prepared); })) return failed;
+    if (const auto failed = run.require_alike(what_is_asked(arguments, prepared))) return failed;
     if (const auto failed = run.together([&] { open_folder(arguments, prepared); })) return failed;
     std::vector<std::uint64_t> alike;
     if (const auto failed = run.together([&] { alike = begin(arguments, prepared); })) return failed;
-    return run.require_alike(alike);
+    if (const auto failed = run.require_alike(alike)) return failed;
+    const Simulation& simulation = *prepared.simulation;
+    if (arguments.resume && !arguments.quiet) {
+        cli::print("resumed at step {} of {}, t = {:.6g} s\n", simulation.step_index(), simulation.step_count(),
+                   simulation.time());
+    }
+    return std::nullopt;
 }
 
 // The last files, of the whole run.

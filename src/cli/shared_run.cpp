@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "cli/interrupts.h"
@@ -35,6 +37,13 @@ int exit_code_of(const std::exception_ptr& error) {
     }
 }
 
+/// Of this machine; `an unknown machine` where it has none.
+std::string machine_name() {
+    std::array<char, 256> name{};
+    const bool is_known = ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0';
+    return is_known ? name.data() : "an unknown machine";
+}
+
 }  // namespace
 
 RunResources RunResources::of_this_process() {
@@ -52,6 +61,7 @@ SharedRun::SharedRun(With with) {
     if (ranks_ && ranks_->size() < 2) ranks_.reset(), mpi::agree_to_end();
     if (ranks_) neighbours_ = mpi::ranks_on_these_processors();
     be_silent(!talks());
+    if (!talks()) speak_as(fmt::format("rank {} on {}", ranks_->rank(), machine_name()));
 }
 
 SharedRun::~SharedRun() { be_silent(false); }
@@ -77,6 +87,9 @@ std::optional<int> SharedRun::together(const std::function<void()>& work) const 
     std::array<std::uint64_t, 1> first{mine};
     ranks_->least(first);
     if (first[0] == kNobody) return std::nullopt;
+    std::array<std::uint64_t, 1> failed{error ? 1U : 0U};
+    ranks_->sum(failed);
+    if (failed[0] == ranks_->size()) speak_as({});  // it is nobody's own
     end();
     if (error && mine == first[0]) std::rethrow_exception(error);
     return static_cast<int>(first[0] % 256);

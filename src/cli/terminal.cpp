@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 #include "ricochet/core/error.h"
 
@@ -15,11 +17,15 @@ namespace ricochet::cli {
 namespace {
 
 bool silent = false;
+std::string speaker_name;
 
 }  // namespace
 
 void be_silent(bool is_to_be) { silent = is_to_be; }
 bool is_silent() { return silent; }
+
+void speak_as(std::string name) { speaker_name = std::move(name); }
+const std::string& speaker() { return speaker_name; }
 
 void reserve_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

@@ -26,6 +26,10 @@ namespace ricochet::cli {
 void be_silent(bool silent);
 [[nodiscard]] bool is_silent();
 
+/// Who an error is of, where not everybody has it: `rank 3 on node17`; empty, as at first, for one process alone.
+void speak_as(std::string name);
+[[nodiscard]] const std::string& speaker();
+
 /// What print() shows of an argument.
 template <class T>
 using Printed = std::conditional_t<std::is_convertible_v<const T&, std::string_view>, std::string, std::decay_t<T>>;

@@ -148,6 +148,28 @@ refuse() {
 refuse missing 'there is no file' "$folder/missing.json"
 refuse option 'not expected: --bogus' "$scene" --bogus
 refuse springs 'springs: ranks: found 3, expected 1' "$scenes/rope_and_cloth.json"
+
+# Ranks that were asked for different things touch no file: what an earlier run has left stays, its checkpoint too.
+# unlike NAME ARGUMENTS...: a second rank with these arguments besides.
+unlike() {
+    local before
+    before="$(ls -A "$folder/signal")"
+    code=0
+    "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/signal" --quiet : \
+        -n 1 "$ricochet" run "$scene" --quiet "${@:2}" >"$folder/$1.out" 2>&1 || code=$?
+    expect_end "$1" 2 'have found different scenes, options or checkpoints'
+    [[ "$(ls -A "$folder/signal")" == "$before" ]] || fail "$1: files of an earlier run are gone"
+}
+unlike other-seed --output "$folder/signal" --set simulation.seed=9
+unlike other-resume --output "$folder/signal" --resume
+unlike other-folder --output "$folder/other"
+unlike other-state --output "$folder/signal" --output-state "$folder/other.csv"
+
+# What one of them alone comes to is told with its number.
+code=0
+"$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/alone-wrong" --quiet : \
+    -n 1 "$ricochet" run "$folder/missing.json" --output "$folder/alone-wrong" --quiet >"$folder/wrong.out" 2>&1 || code=$?
+expect_end wrong 2 'rank 1 on .*: .*there is no file'
 refuse spheres 'particle_contacts: ranks: found 3, expected 1' "$scenes/granular_gas.json"
 refuse forces 'particle_forces: ranks: found 3, expected 1' "$scenes/galaxy.json"
 refuse bodies 'bodies: ranks: found 3, expected 1' "$scenes/turbine.json"

@@ -62,6 +62,33 @@ void add_near_impacts(const VtkPolyData& log, double time, double reach,
     }
 }
 
+/// Copied before they are in a variant: where memory runs out in the copy of one, it goes wrong as list_of() says.
+std::vector<VtkArray> copies_of(const std::vector<VtkArray>& arrays) {
+    std::vector<VtkArray> copies;
+    copies.reserve(arrays.size());
+    for (const VtkArray& array : arrays) {
+        copies.push_back(std::visit(
+            [&](auto values) {
+                return VtkArray{array.name, std::move(values)};
+            },
+            array.values));
+    }
+    return copies;
+}
+
+VtkPolyData copy_of(const VtkPolyData& frame) {
+    VtkPolyData copy;
+    copy.time = frame.time;
+    copy.fields = frame.fields;
+    copy.points = frame.points;
+    copy.point_arrays = copies_of(frame.point_arrays);
+    copy.lines = frame.lines;
+    copy.triangles = frame.triangles;
+    copy.has_vertices = frame.has_vertices;
+    copy.cell_arrays = copies_of(frame.cell_arrays);
+    return copy;
+}
+
 }  // namespace
 
 // The particles of a moment: where each stands in the frame before and in the one after, and by its id.
@@ -283,7 +310,7 @@ Moment RunTimeline::at(double time, double shutter) {
     moment.paths.open = time - shutter;
     moment.paths.close = time;
     if (exact && !(shutter > 0.0)) {
-        moment.frame = frame(k);
+        moment.frame = copy_of(frame(k));
     } else {
         Rows rows = rows_at(k, exact, time);
         moment.paths.nodes.resize(rows.size());
@@ -291,7 +318,7 @@ Moment RunTimeline::at(double time, double shutter) {
         add_impact_nodes(first, last, rows, moment.paths);
         set_births(last, rows, moment.paths);
         if (!exact && frame(k).lines.empty() && frame(k).triangles.empty()) drop_ended(time, rows, moment.paths);
-        moment.frame = exact ? frame(k) : mixed_frame(k, time, rows, moment.paths);
+        moment.frame = exact ? copy_of(frame(k)) : mixed_frame(k, time, rows, moment.paths);
         if (!(shutter > 0.0)) moment.paths.nodes.clear();
     }
     add_moving(k, exact, time, moment);

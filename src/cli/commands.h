@@ -17,6 +17,9 @@ void add_check_command(cli::Command program, int& exit_code);
 /// wrong. docs/compare.md describes what it writes.
 void add_compare_command(cli::Command program, int& exit_code);
 
+/// `export DIR --format ply|pc2|gltf --output PATH`: a run as files for other programs.
+void add_export_command(cli::Command program, int& exit_code);
+
 /// `info MESH [--json]`: what a mesh file holds and what its defects mean.
 void add_info_command(cli::Command program, int& exit_code);
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
+#include "cli/chosen_frames.h"
 #include "cli/film.h"
 #include "cli/render_options.h"
 #include "cli/run_pictures.h"
@@ -25,21 +25,6 @@ namespace {
 using namespace cli;
 
 [[noreturn]] void refuse(const std::string& message) { throw InputError(message); }
-
-std::vector<FrameFile> chosen_frames(const RunFolder& folder, const std::string& frame) {
-    if (frame == "all") return folder.frames;
-    if (frame == "last") return {folder.frames.back()};
-    std::uint64_t step = 0;
-    const auto [stop, error] = std::from_chars(frame.data(), frame.data() + frame.size(), step);
-    if (error != std::errc{} || stop != frame.data() + frame.size()) {
-        refuse(fmt::format("--frame {}: expected a step number, last or all", frame));
-    }
-    for (const FrameFile& file : folder.frames) {
-        if (file.step == step) return {file};
-    }
-    refuse(fmt::format("--frame {}: the run has no such frame; it has {} from step {} to {}", frame,
-                       folder.frames.size(), folder.frames.front().step, folder.frames.back().step));
-}
 
 // Shows how far the pictures are.
 class Watch {
@@ -147,7 +132,7 @@ void render(const RenderArguments& arguments) {
     const PictureStyle style = picture_style(arguments);
     const RunFolder folder = open_run_folder(arguments.folder);
     const std::vector<FrameFile> frames =
-        chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame);
+        chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame, true);
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
     require_room(size, pictures.draws_sprites(), film, arguments.size);

@@ -49,10 +49,8 @@ Vec3 vec3_of(const std::vector<double>& values) { return {values.at(0), values.a
 
 // Colliders of one material share a colour.
 std::size_t color_index(const RunInfo& info, const std::filesystem::path& file) {
-    for (const ColliderInfo& collider : info.colliders) {
-        if (collider.file == file.filename().string()) return collider.material % kColliderColors.size();
-    }
-    return 0;
+    const ColliderInfo* const collider = info.find(file.filename().string());
+    return collider == nullptr ? 0 : collider->material % kColliderColors.size();
 }
 
 void check_names(const char* option, const std::vector<std::string>& names, const RunFolder& folder) {
@@ -86,10 +84,8 @@ std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames) {
 }
 
 std::string collider_name(const RunInfo& info, const std::filesystem::path& file) {
-    for (const ColliderInfo& collider : info.colliders) {
-        if (collider.file == file.filename().string()) return collider.name;
-    }
-    return file.stem().string();
+    const ColliderInfo* const collider = info.find(file.filename().string());
+    return collider == nullptr ? file.stem().string() : collider->name;
 }
 
 std::optional<ParticleDrawing> drawing_from_name(std::string_view name) {

@@ -27,13 +27,6 @@ constexpr double kRigidTolerance = 1e-7;
 constexpr std::size_t kProbes = 24;
 constexpr double kInside = 0.75;
 
-const ColliderInfo* info_of(const RunInfo& info, const std::filesystem::path& file) {
-    const auto found = std::find_if(info.colliders.begin(), info.colliders.end(), [&](const ColliderInfo& collider) {
-        return collider.file == file.filename().string();
-    });
-    return found == info.colliders.end() ? nullptr : &*found;
-}
-
 // Totals span orders of magnitude. spread: a value of one part in so many is the smallest that shows.
 PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
     const VtkArray* const totals = find_array(data.cell_arrays, array);
@@ -121,7 +114,7 @@ const TriangleMesh& mesh_of(const std::map<std::uint32_t, TriangleMesh>& meshes,
 ColliderParts::ColliderParts(const RunFolder& folder, const std::vector<FrameFile>& frames) {
     for (const std::filesystem::path& file : folder.colliders) {
         VtkPolyData data = read_vtp(file);
-        const ColliderInfo* const info = info_of(folder.info, file);
+        const ColliderInfo* const info = folder.info.find(file.filename().string());
         ColliderPart part;
         part.name = info == nullptr ? file.stem().string() : info->name;
         part.material = info == nullptr ? 0 : info->material;

@@ -38,6 +38,9 @@ TEST(StrangeNames, AreShownAsEscapesByEveryCommand) {
         {"render", output + "x", "--output", output + ".png"},
         {"view", output, "--output", output + ".html"},
         {"view", output + "x"},
+        {"export", output, "--format", "ply", "--output", output + "p"},
+        {"export", output + "x", "--format", "gltf", "--output", output + ".glb"},
+        {"export", output, "--format", strange, "--output", output + "p"},
         {"compare", scene, "--output", output + "c"},
         {strange}};
     for (const auto& command : commands) {

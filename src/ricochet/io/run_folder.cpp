@@ -91,10 +91,15 @@ std::optional<std::uint64_t> step_of_contact_file(std::string_view name) { retur
 std::string moving_file_name(std::uint64_t step) { return file_of_step(kMovingPrefix, step); }
 std::optional<std::uint64_t> step_of_moving_file(std::string_view name) { return step_of_file(kMovingPrefix, name); }
 
-std::string collider_file_name(std::size_t index, std::string_view name) {
+std::string plain_file_name(std::string_view name) {
     std::string plain(name.substr(0, 80));
     std::replace_if(
         plain.begin(), plain.end(), [](char c) { return !is_plain(c); }, '_');
+    return plain;
+}
+
+std::string collider_file_name(std::size_t index, std::string_view name) {
+    const std::string plain = plain_file_name(name);
     return fmt::format("{}{:02}{}{}{}", kColliderPrefix, index, plain.empty() ? "" : "_", plain, kExtension);
 }
 

@@ -61,7 +61,11 @@ inline constexpr FileSeries kParticleSeries{&frame_file_name, kParticleSeriesFil
 inline constexpr FileSeries kContactSeries{&contact_file_name, kContactSeriesFile};
 inline constexpr FileSeries kMovingSeries{&moving_file_name, kMovingSeriesFile};
 
-/// collider_NN_name.vtp; characters other than letters, digits, '-' and '_' become '_'.
+/// At most 80 characters of a name that a file may have in any program: others than letters, digits, '-' and '_' become
+/// '_'.
+[[nodiscard]] std::string plain_file_name(std::string_view name);
+
+/// collider_NN_name.vtp, the name as plain_file_name() makes it.
 [[nodiscard]] std::string collider_file_name(std::size_t index, std::string_view name);
 /// The index in a collider file's name; nothing when it is not one.
 [[nodiscard]] std::optional<std::size_t> index_of_collider_file(std::string_view name);

@@ -36,6 +36,13 @@ struct RunInfo {
                            [&](const ColliderInfo& collider) { return collider.moves && collider.file == file; });
     }
 
+    /// The collider of that file; nullptr when none has it.
+    [[nodiscard]] const ColliderInfo* find(std::string_view file) const {
+        const auto found = std::find_if(colliders.begin(), colliders.end(),
+                                        [&](const ColliderInfo& collider) { return collider.file == file; });
+        return found == colliders.end() ? nullptr : &*found;
+    }
+
     std::string version;                      ///< of ricochet
     std::string scene;                        ///< the scene file as it was named
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis

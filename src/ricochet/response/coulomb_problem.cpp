@@ -56,7 +56,7 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     if (is_apart()) {
         solve_apart();
         residual_ = find_defects({});
-    } else {
+    } else if (contact_count_ > 1 || !solve_single()) {
         follow({}, effort);
         if (effort == Effort::all && runs_away_ && !(residual_ <= kNearlySolved)) look_elsewhere();
     }
@@ -123,6 +123,18 @@ void CoulombProblem::solve_apart() {
         const double part = wish.is_cut ? wish.most / wish.size : 1.0;
         for (std::size_t d = 0; d < resistances_[k].size; ++d) force_[first_[k] + d] = part * wish.force[d];
     }
+}
+
+/// A single contact shares its load with none, and friction cannot wedge it: it is solved as a rigid one at once. False
+/// where Newton's method does not find the answer from none.
+bool CoulombProblem::solve_single() {
+    if (newton({}, kEnoughOnTheWay)) {
+        make_rigid();
+        residual_ = find_defects({});
+        if (residual_ <= kCoulombResidual) return true;
+    }
+    force_ = {};
+    return false;
 }
 
 /// From where the way has come to, to the end.

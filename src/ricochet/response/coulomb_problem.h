@@ -124,6 +124,7 @@ private:
     void set_up();
     [[nodiscard]] bool is_apart() const;
     void solve_apart();
+    [[nodiscard]] bool solve_single();
     void follow(const Reached& reached, Effort effort);
     [[nodiscard]] bool make_stiff(Reached reached, Effort effort);
     void look_elsewhere();

@@ -15,9 +15,9 @@
 
 namespace ricochet {
 
-/// Most spheres that are nodes of their own. Reason: each is an object in the programs that open the file, which are not
-/// made for hundreds of thousands of them. Larger: files that only few programs open. Smaller: points, where spheres
-/// could be seen.
+/// Most spheres that are nodes of their own. Reason: each is an object in the programs that open the file, which are
+/// not made for hundreds of thousands of them. Larger: files that only few programs open. Smaller: points, where
+/// spheres could be seen.
 inline constexpr std::size_t kMostSphereNodes = 20'000;
 
 struct GlbMesh {

@@ -215,7 +215,8 @@ void warn_of_orientation(const MeshReport& report, std::vector<std::string>& war
     }
     if (report.wound_inward) {
         warnings.push_back(
-            "wound inside out, the faces' normals point inward: faces stop particles from both sides, so nothing leaks, "
+            "wound inside out, the faces' normals point inward: faces stop particles from both sides, so nothing "
+            "leaks, "
             "but a mesh emitter on them (without volume) gives birth on the inside and launches inward");
     }
 }

@@ -47,5 +47,14 @@ TEST(SpaceTime, CountsATouchAsMeeting) {
     EXPECT_FALSE(are_apart({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, rising));  // on the rim
 }
 
+// Two corners are one at all times; the way is far longer than its distance from what is left, a segment.
+TEST(SpaceTime, TellsAPathFromATriangleThatNeverHasAnArea) {
+    const Corners before{{0.34, 0.12, 0.31}, {-1.58, -0.39, -1.06}, {0.34, 0.12, 0.31}};
+    const Corners after{{0.32, 0.11, 0.28}, {-1.59, -0.39, -1.08}, {0.32, 0.11, 0.28}};
+    EXPECT_TRUE(are_apart({{-1.49, -0.46, -0.10}, {-1.34, -0.05, -0.49}}, {before, after}));
+    const Corners edge{{0, 0, 0}, {2, 0, 0}, {0, 0, 0}};
+    EXPECT_FALSE(are_apart({{1, -1, 0}, {1, 1, 0}}, {edge, edge}));
+}
+
 }  // namespace
 }  // namespace ricochet::verify

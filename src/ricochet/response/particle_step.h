@@ -199,8 +199,10 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
     const ContactQuery query{followed, state().radius, nullptr, {}, held};
     const auto takes_shorter = [&](const std::optional<Contact>& contact) {
         const std::optional<Path> next = contact ? shorter(contact->time, followed) : std::nullopt;
-        if (next) followed = *next;
-        return next.has_value();
+        // In next to no time a cubic has coefficients beyond all bounds; the longer path will do.
+        if (!next || !can_be_followed(*next)) return false;
+        followed = *next;
+        return true;
     };
     if (is_among_bodies(followed)) {
         while (takes_shorter(first_contact_among_bodies(query))) {

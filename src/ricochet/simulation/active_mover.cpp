@@ -145,7 +145,8 @@ void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, con
     }
 }
 
-/// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces.
+/// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces, as
+/// they are at the time of its position.
 void ActiveMover::grow_core(std::size_t i, double time) {
     ParticleStore& store = parts_.store;
     if (!store.cores().has(i) || store.is_fixed(i)) return;
@@ -153,8 +154,8 @@ void ActiveMover::grow_core(std::size_t i, double time) {
     if (particles.support[i][0] != kNoSupport) return;
     const Vec3& position = particles.position[i];
     const double radius = particles.radius[i];
-    const std::optional<Overlap> overlap =
-        deepest_overlap(parts_.response.rules().world, parts_.response.rules().bodies, position, radius, time);
+    const std::optional<Overlap> overlap = deepest_overlap(
+        parts_.response.rules().world, parts_.response.rules().bodies, position, radius, store.stored_time(i, time));
     if (overlap) {
         store.set_core(i, std::max(store.cores().radius(i), core_radius(*overlap, position, radius)));
     } else {

@@ -147,6 +147,19 @@ Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end)
 
 Vec3 at(const Way& way, double part) { return (1.0 - part) * way.from + part * way.to; }
 
+/// From the nearest point of the longest edge to p: what has hardly an area is seen as that edge.
+Vec3 away_from_longest_edge(const std::array<Vec3, 3>& corners, const Vec3& p) {
+    Vec3 begin = corners[2];
+    Vec3 edge = corners[0] - corners[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3 other = corners[k + 1] - corners[k];
+        if (dot(other, other) > dot(edge, edge)) begin = corners[k], edge = other;
+    }
+    const double squared = dot(edge, edge);
+    if (!(squared > 0.0)) return p - begin;
+    return p - begin - std::clamp(dot(p - begin, edge) / squared, 0.0, 1.0) * edge;
+}
+
 class Pair {
 public:
     Pair(const Way& point, const MovingCorners& triangle)
@@ -194,9 +207,12 @@ private:
         const Vec3 p = at(point_, middle);
         const std::array<Vec3, 3> c{at(corners_[0], middle), at(corners_[1], middle), at(corners_[2], middle)};
         const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
-        const std::array<Vec3, 5> directions{p - (c[0] + c[1] + c[2]) / 3.0, cross(c[1] - c[0], normal),
-                                             cross(c[2] - c[1], normal), cross(c[0] - c[2], normal),
-                                             dot(normal, p - c[0]) < 0.0 ? -normal : normal};
+        const std::array<Vec3, 6> directions{p - (c[0] + c[1] + c[2]) / 3.0,
+                                             cross(c[1] - c[0], normal),
+                                             cross(c[2] - c[1], normal),
+                                             cross(c[0] - c[2], normal),
+                                             dot(normal, p - c[0]) < 0.0 ? -normal : normal,
+                                             away_from_longest_edge(c, p)};
         return std::any_of(directions.begin(), directions.end(), [&](const Vec3& n) {
             Offset<Real> direction;
             for (int axis = 0; axis < 3; ++axis) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ricochet/core/box_tools.h"
@@ -298,15 +299,16 @@ std::vector<PairContact> PairIsland::contacts_at(double time) const {
 /// The fastest first, and with it what is as fast, so that no order of members matters.
 void PairIsland::keep_fastest(std::vector<PairContact>& contacts, double time) const {
     if (contacts.size() < 2) return;
-    double fastest = 0.0;
+    double fastest = -std::numeric_limits<double>::infinity();
     for (PairContact& contact : contacts) {
         const PhaseState a = state_of(contact.first, time);
         const PhaseState b = state_of(contact.second, time);
         contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
         fastest = std::max(fastest, contact.approach);
     }
-    std::erase_if(contacts,
-                  [&](const PairContact& contact) { return contact.approach < fastest * (1.0 - kSameApproach); });
+    // By rounding all may part: one is left, so that it counts as an impact, and its members go on.
+    const double least = fastest > 0.0 ? fastest * (1.0 - kSameApproach) : fastest;
+    std::erase_if(contacts, [&](const PairContact& contact) { return contact.approach < least; });
 }
 
 /// Moves those that meet to the time, lets them answer, and moves them on.

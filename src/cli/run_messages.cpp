@@ -84,9 +84,9 @@ void print_report(const RunSummary& summary, const std::string& output) {
     const SimulationStatistics& statistics = summary.statistics;
     const std::string end = summary.interrupted ? " (interrupted)" : summary.diverged ? " (diverged)" : "";
     const std::string processes = summary.processes > 1 ? fmt::format(" of {} processes", summary.processes) : "";
-    print("{}: {} steps, {:.6g} s simulated in {:.3g} s on {} {}{}{}\n", summary.scene, statistics.steps,
-          summary.simulated_time, summary.wall_seconds, summary.threads, summary.threads == 1 ? "thread" : "threads",
-          processes, end);
+    print("{}: {} {}, {:.6g} s simulated in {:.3g} s on {} {}{}{}\n", summary.scene, statistics.steps,
+          statistics.steps == 1 ? "step" : "steps", summary.simulated_time, summary.wall_seconds, summary.threads,
+          summary.threads == 1 ? "thread" : "threads", processes, end);
     print("  {} particles emitted, {} alive; {} particle-steps ({}/s), {} contacts, at most {} bounces a step\n",
           statistics.emitted, summary.particles_alive, statistics.particle_steps,
           rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,

@@ -288,6 +288,11 @@ inline constexpr double kMaxSpeed = 299792458.0;
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;
 
+/// Largest coefficient of a path, m/s^k, that is followed. Reason: a cubic between two places that are left in next to
+/// no time has ones of their distance over the cube of that; sums of their squares must not overflow in the narrow
+/// phase. Larger: a sphere's way has no roots among numbers that are none, and is left to the certificate alone.
+inline constexpr double kLargestPathCoefficient = 1e120;
+
 /// Least mass of a particle, kg, fragments included. Reason: inertia (0.4 m r^2), momentum and kinetic energy of what
 /// is slow and small have to stay normal numbers, and a share of a mass is a whole multiple of its last bit, which must
 /// not be 0. Smaller (from 1e-308 on): masses of fragments become 0 or not a number. Larger: nothing that weighs

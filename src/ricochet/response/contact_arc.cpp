@@ -25,14 +25,13 @@ double ContactArc::bend_of(const SurfaceGeometry& geometry, const ForceInput& pa
 ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
                        const ContactManifold& manifold, const ContactManifold::Holding& materials,
                        const ArcStart& start)
-    : geometry_(geometry), forces_(forces), particle_(particle), materials_(materials), start_(start) {
-    for (std::size_t k = 0; k < manifold.size(); ++k) {
-        surfaces_[k] = manifold[k].surface;
-        is_flat_[k] = manifold[k].flat;
-        is_on_rim_[k] = !manifold[k].flat && geometry.nearest(surfaces_[k], particle.position).rim;
-    }
+    : geometry_(geometry),
+      forces_(forces),
+      particle_(particle),
+      materials_(materials),
+      start_(start),
+      surfaces_(geometry, particle, manifold) {
     const State begin{particle.position, {particle.velocity, start.spin}};
-    for (std::size_t k = 0; k < materials_.count; ++k) overlaps_[k] = overlap_with(k);
     forces_at_start_ = this->forces(begin, 0.0);
     plan_ = plan_at(begin, 0.0, start.duration);
     const ContactInterval now = plan_at(this->start(), 0.0, 0.0);
@@ -50,11 +49,11 @@ ContactArc::ContactArc(const SurfaceGeometry& geometry, const ForceField& forces
 ContactArc::State ContactArc::at(double t) const {
     State state = friction_turns_fast_ ? by_midpoint_rule(t) : by_stages(t);
     const Vec3 straight_on = parabola_end(particle_.position, plan_.motion.velocity, plan_.acceleration, t);
-    state.turned = std::max(turned_at(state.position), turned_at(straight_on));
+    state.turned = std::max(surfaces_.turned_at(state.position), surfaces_.turned_at(straight_on));
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
     // Where the surface is narrower than the sphere, being put on it leads to its other side.
-    state.turned = std::max(state.turned, turned_at(state.position));
+    state.turned = std::max(state.turned, surfaces_.turned_at(state.position));
     if (is_driven_) return state;
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
     const double offset = length(forces(state, t)) * geometry_.contact_offset(state.position);
@@ -195,22 +194,6 @@ bool ContactArc::ends_a_slip() const {
     return false;
 }
 
-/// The largest change of a shape's normal that a sphere sees from the start to a position. Of its outward normal: the
-/// way straight on comes out of a large shape behind a small sphere, where the direction to it turns round.
-double ContactArc::turned_at(const Vec3& position) const {
-    double turned = 0.0;
-    for (std::size_t k = 0; k < materials_.count; ++k) {
-        const bool can_be_narrow = particle_.radius > 0.0 && !is_flat_[k] && geometry_.world().is_shape(surfaces_[k]);
-        if (!can_be_narrow) continue;
-        const auto normal_at = [&](const Vec3& p) {
-            return is_on_rim_[k] ? geometry_.nearest(surfaces_[k], p).normal
-                                 : geometry_.unit_normal_of(surfaces_[k], p);
-        };
-        turned = std::max(turned, length(normal_at(position) - normal_at(particle_.position)));
-    }
-    return turned;
-}
-
 double ContactArc::longest() const {
     double duration = plan_.duration;
     const State begin = start();
@@ -225,9 +208,9 @@ double ContactArc::longest() const {
             const double rate = length(motion->angular_velocity);
             if (rate > 0.0) duration = std::min(duration, kMaxArcAngle / rate);
         }
-        const CollisionWorld::Nearest touched = nearest(k, begin.position);
-        turning = std::max(
-            turning, length(normal_rate(geometry_, particle_.radius, surfaces_[k], touched, begin.position, heading)));
+        const CollisionWorld::Nearest touched = surfaces_.nearest(k, begin.position);
+        turning = std::max(turning, length(normal_rate(geometry_, particle_.radius, surfaces_.id(k), touched,
+                                                       begin.position, heading)));
     }
     while (start_.tolerance && !forces_.is_uniform_for(particle_) && !is_within_tolerance(duration)) duration *= 0.5;
     if (turning == 0.0) return duration;
@@ -237,29 +220,16 @@ double ContactArc::longest() const {
     return duration;
 }
 
-/// A surface as it is seen from the side of the start: within an arc a point may come behind it by the arc's own error.
-/// Whatever it is on the face or the side of, goes on beyond its rim.
-CollisionWorld::Nearest ContactArc::nearest(std::size_t k, const Vec3& position) const {
-    CollisionWorld::Nearest nearest{geometry_.unit_normal_of(surfaces_[k], position),
-                                    geometry_.signed_distance_from(surfaces_[k], position), is_flat_[k], false};
-    if (is_on_rim_[k]) nearest = geometry_.nearest(surfaces_[k], position);
-    if (dot(nearest.normal, materials_.surfaces[k].normal) < 0.0) {
-        nearest.normal = -nearest.normal;
-        nearest.distance = -nearest.distance;
-    }
-    return nearest;
-}
-
 /// The surfaces as they are touched there.
 ContactArc::Holding ContactArc::holding(const State& state) const {
     Holding result = materials_;
     for (std::size_t k = 0; k < result.count; ++k) {
         HoldingSurface& surface = result.surfaces[k];
-        const CollisionWorld::Nearest touched = nearest(k, state.position);
+        const CollisionWorld::Nearest touched = surfaces_.nearest(k, state.position);
         const bool is_beside_rim = particle_.radius == 0.0 && touched.rim;
         if (!is_beside_rim) surface.normal = touched.normal;
         const Vec3 turn =
-            normal_rate(geometry_, particle_.radius, surfaces_[k], touched, state.position, state.motion.velocity);
+            normal_rate(geometry_, particle_.radius, surfaces_.id(k), touched, state.position, state.motion.velocity);
         surface.bend = dot(turn, state.motion.velocity);
         const Vec3 turning = particle_.radius * (state.motion.spin - surface.angular_velocity);
         surface.slip_bend = -cross(particle_.radius * state.motion.spin, turn);
@@ -300,15 +270,6 @@ ContactArc::Rate ContactArc::rate(const State& state, double t) const {
             dot(pull - forces_at_start_, v) + spin_power(state, change)};
 }
 
-/// m, of a sphere with a curved surface at the start, where it was born so deep in it that being put on it were a jump:
-/// it goes along as deep. Less is taken back.
-double ContactArc::overlap_with(std::size_t k) const {
-    const double radius = particle_.radius;
-    if (radius == 0.0 || is_flat_[k]) return 0.0;
-    const double overlap = radius - nearest(k, particle_.position).distance;
-    return overlap > kJump * radius ? overlap : 0.0;
-}
-
 /// At the contact offset from what holds it, along the normals, and moving along them.
 void ContactArc::put_on_surfaces(State& state) const {
     for (int k = 0; k < kCorrections; ++k) {
@@ -317,10 +278,10 @@ void ContactArc::put_on_surfaces(State& state) const {
         std::size_t count = 0;
         for (std::size_t i = 0; i < materials_.count; ++i) {
             if (!holds_[i]) continue;
-            const CollisionWorld::Nearest touched = nearest(i, state.position);
+            const CollisionWorld::Nearest touched = surfaces_.nearest(i, state.position);
             normals[count] = touched.normal;
             const double offset = geometry_.contact_offset(state.position);
-            gaps[count++] = particle_.radius + offset - overlaps_[i] - touched.distance;
+            gaps[count++] = particle_.radius + offset - surfaces_.overlap(i) - touched.distance;
         }
         state.position += shift_by({normals.data(), count}, {gaps.data(), count});
     }

@@ -12,6 +12,7 @@
 
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/arc_surfaces.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/held_motion.h"
 #include "ricochet/response/response.h"
@@ -79,20 +80,17 @@ private:
     [[nodiscard]] Holding holding(const State& state, double t) const;
     [[nodiscard]] Vec3 spin_change(const State& state, double t) const;
     [[nodiscard]] double spin_power(const State& state, const Vec3& change) const;
-    [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
     [[nodiscard]] Vec3 forces(const State& state, double t) const;
     [[nodiscard]] Grip grip() const;
     [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
                                           const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
-    [[nodiscard]] double overlap_with(std::size_t k) const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] bool is_within_tolerance(double t) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool may_jam() const;
     [[nodiscard]] bool ends_a_slip() const;
-    [[nodiscard]] double turned_at(const Vec3& position) const;
     [[nodiscard]] bool begins_to_slip(const ContactInterval& now) const;
     [[nodiscard]] double work_until(const State& state) const;
     void restore_energy(State& state, double t) const;
@@ -103,10 +101,7 @@ private:
     ForceInput particle_;  // at the start, wherever it has got to since
     const Holding& materials_;
     ArcStart start_;
-    std::array<SurfaceId, kMostHolding> surfaces_{};
-    std::array<bool, kMostHolding> is_flat_{};
-    std::array<bool, kMostHolding> is_on_rim_{};
-    std::array<double, kMostHolding> overlaps_{};  // m, in which it was born, with each
+    ArcSurfaces surfaces_;
     Vec3 forces_at_start_;
     ContactInterval plan_;
     std::array<bool, kMostHolding> holds_{};  // at the start

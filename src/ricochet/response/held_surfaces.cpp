@@ -84,7 +84,9 @@ void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifol
             geometry.world().is_shape(surface.surface) && !geometry.nearest(surface.surface, path.c[0]).rim;
         if (radius > 0.0 && !is_round) continue;
         const auto normal_at = [&](const Vec3& p) { return geometry.unit_normal_of(surface.surface, p); };
-        const double side = dot(normal_at(path.c[0]), surface.normal) < 0.0 ? -1.0 : 1.0;
+        const double height = radius > 0.0 ? geometry.signed_distance_from(surface.surface, path.c[0])
+                                           : dot(normal_at(path.c[0]), surface.normal);
+        const double side = height < 0.0 ? -1.0 : 1.0;
         double behind = 0.0;
         for (const double part : {0.25, 0.5, 0.75}) {
             const Vec3 p = path.position(part * path.duration);

@@ -29,7 +29,9 @@ bool can_be_followed(const Path& path) {
     double reach = max_abs(path.c[0]);
     double power = path.duration;
     for (int k = 1; k <= path.degree; ++k, power *= path.duration) {
-        reach += power * max_abs(path.c[static_cast<std::size_t>(k)]);
+        const double coefficient = max_abs(path.c[static_cast<std::size_t>(k)]);
+        if (!(coefficient <= kLargestPathCoefficient)) return false;
+        reach += power * coefficient;
     }
     return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
 }

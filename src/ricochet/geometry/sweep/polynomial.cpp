@@ -155,7 +155,7 @@ double bracketed_root(const Polynomial& p, double low, double high, int sign_at_
 std::array<DoubleDouble, 3> quadratic_coefficients(const Polynomial& p) {
     std::array<DoubleDouble, 3> c{p.coefficients[0], p.coefficients[1], p.coefficients[2]};
     const double largest = std::max({std::fabs(c[0].hi), std::fabs(c[1].hi), std::fabs(c[2].hi)});
-    if ((largest < 0x1p240 && largest > 0x1p-240) || largest == 0.0) return c;
+    if ((largest < 0x1p240 && largest > 0x1p-240) || largest == 0.0 || !std::isfinite(largest)) return c;
     const int exponent = -std::ilogb(largest);
     for (DoubleDouble& x : c) x = scaled(x, exponent);
     return c;

@@ -14,6 +14,9 @@ namespace {
 /// Intervals of a step before the particle is set free again.
 constexpr int kMostIntervals = 64;
 
+/// Paths up to a contact that is found on one.
+constexpr int kMostCloserLooks = 12;
+
 /// Corrections of an interval's end; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 
@@ -226,7 +229,17 @@ std::optional<Contact> SharedContact::follow() {
             duration = on;
             path = way(duration);
         }
-        std::optional<Contact> contact = step_.follow(path, held());
+        // Between its ends the path is beside surfaces that turn; up to a contact it ends on them as well.
+        int closer_looks = 0;
+        const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+            if (!(time > 0.0) || ++closer_looks > kMostCloserLooks) return {};
+            Path next = way(time);
+            const double off = length(next.end - tried.position(time));
+            if (!(off > kTouchingOffsets * contact_offset(next.end))) return {};
+            duration = time;
+            return next;
+        };
+        std::optional<Contact> contact = step_.follow(path, held(), closer);
         const double elapsed = before - step_.remaining();
         // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
         if (!contact || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;

@@ -87,7 +87,8 @@ private:
     [[nodiscard]] Rate rate(const State& state, double t) const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
-    [[nodiscard]] bool is_within_tolerance(double t) const;
+    [[nodiscard]] double error_of(double t) const;
+    [[nodiscard]] double longest_within_tolerance(double duration) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool may_jam() const;
     [[nodiscard]] bool ends_a_slip() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "ricochet/core/tolerances.h"
@@ -11,8 +12,11 @@
 namespace ricochet {
 namespace {
 
-/// Of the contact offset: as far beyond a rim, by rounding, a point is over the triangle still.
+/// Of the contact offset: as far further beyond a rim, by rounding, a point goes along it still.
 constexpr double kOverRim = 0.125;
+
+/// Slip, as a part of the resting speed, with which a point stands still on a rim: less is the rounding of an impact.
+constexpr double kStandingSlip = 1e-10;
 
 /// Contact offsets along its way, in which a point on a rim shows where it goes.
 constexpr double kLookOffsets = 1024.0;
@@ -40,19 +44,19 @@ double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const 
     return length(offset - dot(offset, normal) * normal);
 }
 
-/// True where a point has the triangle below it, or stands on its rim and does not go beyond.
+/// True where a point that touches a triangle has it below, or stands on its rim and goes no further beyond: above a
+/// convex edge it is over neither face, by its height.
 bool is_point_over(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
-                   const Vec3& velocity, const Vec3& normal) {
+                   const Vec3& velocity, const Vec3& normal, double departure) {
     const double offset = deforming.offset_of(surface);
     const Vec3& p = particle.position;
     const double beyond = beyond_rim(deforming, surface, p, particle.time);
     if (beyond == 0.0) return true;
-    if (beyond > kOverRim * offset) return false;
     const Vec3 slip = velocity - dot(velocity, normal) * normal;
     const double speed = length(slip);
-    if (speed == 0.0) return true;
+    if (speed <= kStandingSlip * departure) return true;
     const Vec3 next = p + (kLookOffsets * offset / speed) * slip;
-    return beyond_rim(deforming, surface, next, particle.time) <= kOverRim * offset;
+    return beyond_rim(deforming, surface, next, particle.time) <= beyond + kOverRim * offset;
 }
 
 /// The surface as the particle touches it now; nothing when it does not.
@@ -71,7 +75,7 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
             const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
             found.contact.surface = {surface, height < 0.0 ? -normal : normal, true};
         }
-        found.is_over = is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal);
+        found.is_over = is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal, departure);
     }
     found.is_left = dot(velocity, found.contact.surface.normal) > departure;
     return found;
@@ -202,16 +206,22 @@ SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& parti
         const Vec3 change = cross(motion.turning, slip - particle.radius * turn);
         return {2.0 * dot(turn, slip) - particle.radius * dot(turn, turn), dot(change, n) * n - change};
     }
-    Vec3 along = slip - dot(slip, n) * n;
+    const Vec3 along = slip - dot(slip, n) * n;
     const auto [a, b, c] = deforming.corners_at(surface.surface, particle.time);
     const std::array<Vec3, 3> edges{b - a, c - b, a - c};
     const auto feature = static_cast<std::size_t>(closest_point_on_triangle(particle.position, a, b, c).feature);
     constexpr auto kFirstEdge = static_cast<std::size_t>(TriangleFeature::kEdgeAB);
+    if (!(particle.radius > 0.0)) return {};
+    double past = dot(along, along);
     if (feature >= kFirstEdge && feature < kFirstEdge + edges.size()) {
-        const Vec3 edge = normalized(edges[feature - kFirstEdge]);
-        along -= dot(along, edge) * edge;
+        const std::size_t k = feature - kFirstEdge;
+        const std::array<Vec3, 3> rates = deforming.corner_velocities(surface.surface, particle.time);
+        const double size = length(edges[k]);
+        const double tilting = dot(rates[(k + 1) % 3] - rates[k], n) / size;
+        const double passing = dot(along, edges[k]) / size + particle.radius * tilting;
+        past -= passing * passing;
     }
-    return {particle.radius > 0.0 ? dot(along, along) / particle.radius : 0.0, {}};
+    return {past / particle.radius, {}};
 }
 
 SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact, const Vec3& position,
@@ -233,12 +243,16 @@ SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedCo
 }
 
 double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path, double begin) {
-    const auto is_over = [&](double at) {
+    const auto beyond_all = [&](double at) {
         const Vec3 p = at < path.duration ? path.position(at) : path.end;
-        return std::any_of(contact.all.begin(), contact.all.end(), [&](SurfaceId surface) {
-            return beyond_rim(deforming, surface, p, begin + at) <= kOverRim * deforming.offset_of(surface);
-        });
+        double least = std::numeric_limits<double>::infinity();
+        for (const SurfaceId surface : contact.all) {
+            least = std::min(least, beyond_rim(deforming, surface, p, begin + at));
+        }
+        return least;
     };
+    const double most = beyond_all(0.0) + kOverRim * deforming.offset_of(contact.surface.surface);
+    const auto is_over = [&](double at) { return beyond_all(at) <= most; };
     if (is_over(path.duration)) return path.duration;
     double on = 0.0;
     double off = path.duration;

@@ -27,7 +27,8 @@ struct DeformedContact {
 /// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
 /// (HoldingSurface::bend and slip_bend). Its points are not accelerated between keys. With the normal n, which changes
 /// by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' = s relative to
-/// that changes by n . a + 2 n' . s - r |n'|^2; that to a rim by n . a + s_t^2 / r for the slip s_t across it.
+/// that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an edge of the
+/// direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
 struct SurfaceBend {
     double bend = 0.0;
     Vec3 slip_bend;
@@ -43,8 +44,8 @@ struct SurfaceHeight {
 [[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact,
                                          const Vec3& position, double time);
 
-/// s along a path that begins at a time, until which it is over one of the triangles of a contact, with a face, or its
-/// duration: a little later than that where it leaves them.
+/// s along a path that begins at a time, until which it is over one of the triangles of a contact, with a face, or no
+/// further beyond all of their rims than it begins, or its duration: a little later than that where it leaves them.
 [[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path,
                                double begin);
 

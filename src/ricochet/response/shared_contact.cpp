@@ -88,6 +88,17 @@ SharedContact::Hold SharedContact::settle(double duration) {
     }
 }
 
+/// Where it slips no faster than `most`, m/s: rounding of an impact that has stopped it. Where friction is just what
+/// holds it, nothing else would end that slip, whose direction turns at once.
+StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const HoldingSurface> surfaces,
+                                      double most) const {
+    StuckSurfaces stuck{};
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip_on(surfaces[k], motion, state_.radius)) <= most;
+    }
+    return stuck;
+}
+
 /// Plans the next interval in the frame in which none of the surfaces advances.
 SharedContact::Hold SharedContact::plan(double duration) {
     std::array<Vec3, kMostHolding> normals;
@@ -102,8 +113,10 @@ SharedContact::Hold SharedContact::plan(double duration) {
     const Vec3 forces = step_.rules().forces.acceleration(state_);
     const double reach = kTouchingOffsets * contact_offset(state_.position);
     const Grip grip{1.0, step_.duration() / kShortestIntervals, reach};
-    interval_ = plan_interval({state_.velocity - shift_, particle_.spin}, state_.radius, forces,
-                              std::span(surfaces).first(count_), grip, duration);
+    const Motion motion{state_.velocity - shift_, particle_.spin};
+    const std::span<const HoldingSurface> holding_it(surfaces.data(), count_);
+    interval_ = plan_interval(motion, state_.radius, forces, holding_it, grip, duration,
+                              sticking(motion, holding_it, kNegligibleSpeed * duration * length(forces)));
     std::optional<BodyId> holder;
     bool is_shared = false;
     for (std::size_t k = 0; k < count_; ++k) {

@@ -52,6 +52,8 @@ private:
     [[nodiscard]] Hold settle(double duration);
     [[nodiscard]] double departure_from(const Touched& touched) const;
     [[nodiscard]] Hold plan(double duration);
+    [[nodiscard]] StuckSurfaces sticking(const Motion& motion, std::span<const HoldingSurface> surfaces,
+                                         double most) const;
     [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
     [[nodiscard]] double longest() const;
     [[nodiscard]] std::optional<double> next_jump() const;

@@ -29,7 +29,7 @@ constexpr int kShallowRoot = 3;
 
 /// Halvings of the time after which a search takes for free what has a gap at both ends and in the middle, where that
 /// shows all: certificates see what bends in between.
-constexpr int kSampledSearch = 10;
+constexpr int kSampledSearch = 6;
 
 /// Of the contact offset: a gap that is no contact.
 constexpr double kLeastGap = 0.25;
@@ -281,12 +281,31 @@ private:
     [[nodiscard]] bool is_free_of_degree(double s, double t) const {
         const double middle = s + 0.5 * (t - s);
         const ClosestPointOnTriangle nearest = nearest_at(position(middle), triangle_, middle);
+        if (is_too_far_to_come<Degree>(s, t, std::sqrt(nearest.distance_squared))) return true;
         const auto& [a, b, c] = triangle_.corners;
         const Vector<double, Degree> w = offset_from<Degree>(a, s, t);
         const Vector<double, 1> u = offset_on<double>(a, b, s, t);
         const Vector<double, 1> v = offset_on<double>(a, c, s, t);
         Piece<double, Degree> piece(w, u, v, radius_);
         return piece.is_free_along(nearest.offset) || piece.is_free_of(nearest.feature);
+    }
+    /// The distance in the middle of a piece is more than what it moves by relative to any of the corners, and so of
+    /// the triangle's points, until its ends.
+    template <std::size_t Degree>
+    [[nodiscard]] bool is_too_far_to_come(double s, double t, double distance) const {
+        const double spare = distance - radius_ - kLeastGap * offset();
+        if (!(spare > 0.0)) return false;
+        const std::array<Vec3, Degree + 1> piece = piece_of<Degree>(s, t);
+        const double middle = s + 0.5 * (t - s);
+        const Vec3 here = position(middle);
+        for (const MovingPoint& corner : triangle_.corners) {
+            const Vec3 arm = here - corner.at(middle);
+            for (std::size_t k = 0; k <= Degree; ++k) {
+                const double part = static_cast<double>(k) / static_cast<double>(Degree);
+                if (!(length(piece[k] - corner.at(s + (t - s) * part) - arm) < spare)) return false;
+            }
+        }
+        return true;
     }
     /// Of a sphere from the triangle; of a point above its plane.
     [[nodiscard]] double gap(double s) const {

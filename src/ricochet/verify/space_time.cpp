@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
+#include <utility>
 
 namespace ricochet::verify {
 namespace {
@@ -15,7 +15,11 @@ namespace {
 constexpr int kDeepest = 50;
 constexpr int kMostPieces = 2000;
 
-using Digits = boost::multiprecision::cpp_bin_float_100;
+/// Numbers of 113 bits tell nearly all that doubles leave in doubt, at a third of what a hundred digits cost.
+using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
+                                           boost::multiprecision::et_off>;
+using Digits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_100::backend_type,
+                                             boost::multiprecision::et_off>;
 
 /// What a sum of some hundred rounded products may err by, relative to the sum of magnitudes.
 template <class Real>
@@ -31,16 +35,26 @@ struct Signs {
     bool any_negative = false;
 };
 
+/// Of a factor, and of a product.
+constexpr std::size_t kMostDegree = 3;
+constexpr std::size_t kMostValues = kMostDegree + 2;
+
 /// Values of a polynomial in time that is bounded by them (its Bernstein coefficients), each with the sum of magnitudes
 /// that it was made from.
 template <class Real>
 struct Bounded {
-    std::vector<Real> values;
-    std::vector<Real> sizes;
+    std::array<Real, kMostValues> values{};
+    std::array<Real, kMostValues> sizes{};
+    std::size_t count = 0;
+
+    void add(const Real& value, const Real& size) {
+        values[count] = value;
+        sizes[count++] = size;
+    }
 
     [[nodiscard]] Signs signs() const {
         Signs found{true, true, false, false};
-        for (std::size_t k = 0; k < values.size(); ++k) {
+        for (std::size_t k = 0; k < count; ++k) {
             const Real bound = error_of<Real>() * sizes[k];
             const bool is_known = bound > Real(1e-280);
             const bool is_positive = is_known && values[k] > bound;
@@ -66,7 +80,6 @@ double choose(std::size_t n, std::size_t k) {
 }
 
 /// Of the products of values of two polynomials of degrees m and n, up to kMostDegree, in that of theirs.
-constexpr std::size_t kMostDegree = 3;
 template <class Real>
 class Weights {
 public:
@@ -91,10 +104,11 @@ private:
 /// The product: each value is the mean, with weights, of all products of two that it may come from.
 template <class Real>
 Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
-    const std::size_t m = a.values.size() - 1;
-    const std::size_t n = b.values.size() - 1;
+    const std::size_t m = a.count - 1;
+    const std::size_t n = b.count - 1;
     static const Weights<Real> weights;
-    Bounded<Real> product{std::vector<Real>(m + n + 1, Real(0)), std::vector<Real>(m + n + 1, Real(0))};
+    Bounded<Real> product;
+    for (std::size_t k = 0; k <= m + n; ++k) product.add(Real(0), Real(0));
     for (std::size_t i = 0; i <= m; ++i) {
         for (std::size_t j = 0; j <= n; ++j) {
             const Real& weight = weights.of(m, n, i, j);
@@ -107,7 +121,7 @@ Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
 
 template <class Real>
 Bounded<Real> combined(Bounded<Real> a, const Bounded<Real>& b, int sign) {
-    for (std::size_t k = 0; k < a.values.size(); ++k) {
+    for (std::size_t k = 0; k < a.count; ++k) {
         a.values[k] += sign * b.values[k];
         a.sizes[k] += b.sizes[k];
     }
@@ -138,8 +152,7 @@ Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end)
         Bounded<Real>& bounded = offset[static_cast<std::size_t>(axis)];
         for (const double at : {begin, end}) {
             const Real part(at);
-            bounded.values.push_back((1 - part) * first + part * last);
-            bounded.sizes.push_back((1 - part) * size_of(first) + part * size_of(last));
+            bounded.add((1 - part) * first + part * last, (1 - part) * size_of(first) + part * size_of(last));
         }
     }
     return offset;
@@ -170,6 +183,7 @@ public:
     bool is_apart(double begin, double end, int depth) {
         bool is_in_doubt = false;
         if (is_apart_in<double>(begin, end, is_in_doubt)) return true;
+        if (std::exchange(is_in_doubt, false) && is_apart_in<Quad>(begin, end, is_in_doubt)) return true;
         if (is_in_doubt && is_apart_in<Digits>(begin, end, is_in_doubt)) return true;
         if (depth == 0 || ++pieces_ > kMostPieces) return false;
         const double middle = 0.5 * (begin + end);
@@ -216,7 +230,7 @@ private:
         return std::any_of(directions.begin(), directions.end(), [&](const Vec3& n) {
             Offset<Real> direction;
             for (int axis = 0; axis < 3; ++axis) {
-                direction[static_cast<std::size_t>(axis)] = {{Real(n[axis])}, {Real(std::fabs(n[axis]))}};
+                direction[static_cast<std::size_t>(axis)].add(Real(n[axis]), Real(std::fabs(n[axis])));
             }
             bool is_beyond = true;
             for (const Offset<Real>& offset : to_point) {

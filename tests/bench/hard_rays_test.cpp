@@ -28,7 +28,7 @@ struct Wrong {
 
 constexpr int kBlock = 20'000;
 
-Wrong count_wrong(const TriangleMesh& mesh, double scale, std::uint64_t block) {
+Wrong count_wrong(const TriangleMesh& mesh, double scale, std::uint32_t block) {
     RandomSequence random(23, block, 0);
     std::vector<Vec3> origins;
     std::vector<Vec3> directions;
@@ -59,17 +59,17 @@ Wrong count_wrong(const TriangleMesh& mesh, double scale, std::uint64_t block) {
 
 /// Blocks of rays for each mesh: one, in a long run 125, which are 10^7 rays in all, or as many times that as
 /// RICOCHET_HARD_RAYS says.
-std::uint64_t blocks_of_each() {
+std::uint32_t blocks_of_each() {
     const char* times = std::getenv("RICOCHET_HARD_RAYS");  // NOLINT(concurrency-mt-unsafe): nothing sets it
-    const auto factor = static_cast<std::uint64_t>(times == nullptr ? 1 : std::max(1, std::atoi(times)));
+    const auto factor = static_cast<std::uint32_t>(times == nullptr ? 1 : std::max(1, std::atoi(times)));
     return test::is_long_run() ? 125 * factor : 1;
 }
 
 void expect_none_wrong(const std::string& name, double shift, double scale) {
     const TriangleMesh mesh = testing::lattice_ball({shift, -shift, 0.5 * shift}, scale, 2);
     Wrong wrong;
-    const std::uint64_t blocks = blocks_of_each();
-    for (std::uint64_t block = 0; block < blocks; ++block) {
+    const std::uint32_t blocks = blocks_of_each();
+    for (std::uint32_t block = 0; block < blocks; ++block) {
         const Wrong more = count_wrong(mesh, scale, block);
         wrong.embree += more.embree;
         wrong.ours += more.ours;

@@ -171,7 +171,6 @@ TEST(ParticlesForces, AreRefusedWithOneLineWhereTheyCannotAct) {
     expect_refused("attribute: found charge",
                    [](SimulationSetup& s) { s.particles_forces = {{make_coulomb_force({})}}; });
     expect_refused("emitter", [](SimulationSetup& s) { s.particles_forces[0].emitters = {0}; });
-    expect_refused("spheres that meet", [](SimulationSetup& s) { s.options.particle_contacts.emplace(); });
     expect_refused("flow", [](SimulationSetup& s) {
         s.options.flow = make_wind({1, 0, 0});
         s.options.integrator = IntegratorKind::rk4;

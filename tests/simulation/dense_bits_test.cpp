@@ -11,6 +11,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
+#include "ricochet/dynamics/pair_forces.h"
 #include "ricochet/simulation.h"
 #include "support/simulations.h"
 
@@ -116,6 +117,45 @@ SimulationSetup moving_wall(std::uint64_t seed) {
     return setup;
 }
 
+/// Grains that stick, and are pulled together.
+SimulationSetup cohesive_pouring(std::uint64_t seed) {
+    SimulationSetup setup = pouring(seed);
+    setup.options.integrator = IntegratorKind::velocity_verlet;
+    setup.options.duration = 0.08;
+    GravitySettings gravity;
+    gravity.constant = 1e-2;
+    setup.particles_forces = {{make_cohesion({.stiffness = 200.0, .range = 1e-3, .damping = 0.05})},
+                              {make_mutual_gravity(gravity)}};
+    return setup;
+}
+
+/// Two of the pile stick, and do not sleep; all others do.
+SimulationSetup pile_with_two_that_stick(std::uint64_t seed) {
+    SimulationSetup setup = sleeping_pile(seed);
+    setup.options.integrator = IntegratorKind::velocity_verlet;
+    setup.particles_forces = {{make_cohesion({.stiffness = 100.0, .range = 2e-4, .damping = 0.01}), {0, 1}}};
+    return setup;
+}
+
+/// Onto a net that hangs on its corners; some of what falls is pulled at by nothing.
+SimulationSetup pouring_onto_a_net(std::uint64_t seed) {
+    SimulationSetup setup = empty_scene(seed, 0.08);
+    setup.options.integrator = IntegratorKind::velocity_verlet;
+    add_box(setup, 6.0 * kRadius);
+    constexpr int kSide = 5;
+    for (int k = 0; k < kSide * kSide; ++k) {
+        const Vec3 place = (2.5 * kRadius) * Vec3{k % kSide - 2.0, k / kSide - 2.0, 1.5};
+        setup.particles.push_back(particle_of(place, {}, kRadius));
+        setup.particles.back().mass = 1e-3;
+        setup.particles.back().pinned = (k % kSide) % 4 == 0 && (k / kSide) % 4 == 0;
+        const auto id = static_cast<std::uint64_t>(k);
+        if (k % kSide > 0) setup.springs.push_back({id - 1, id, 2.5 * kRadius, 200.0, 0.05});
+        if (k >= kSide) setup.springs.push_back({id - kSide, id, 2.5 * kRadius, 200.0, 0.05});
+    }
+    add_spheres(setup, seed, 18, {-2.8 * kRadius, -2.8 * kRadius, 6.5 * kRadius}, 2.8);
+    return setup;
+}
+
 using Scene = std::function<SimulationSetup(std::uint64_t)>;
 
 struct Named {
@@ -128,7 +168,10 @@ const std::vector<Named>& scenes() {
                                            {"pouring of two materials", pouring_of_two_materials},
                                            {"sleeping pile", sleeping_pile},
                                            {"drum", drum},
-                                           {"moving wall", moving_wall}};
+                                           {"moving wall", moving_wall},
+                                           {"cohesive pouring", cohesive_pouring},
+                                           {"pile with two that stick", pile_with_two_that_stick},
+                                           {"pouring onto a net", pouring_onto_a_net}};
     return all;
 }
 

@@ -95,7 +95,10 @@ Vec3 CoupledMember::acceleration(const ForceInput& input) const {
 void Departures::reset(std::size_t members, IntegratorKind kind) {
     kind_ = kind;
     entries_.resize(members);
-    for (Entry& entry : entries_) entry.flown.clear();
+    for (Entry& entry : entries_) {
+        entry.flown.clear();
+        entry.keeps_start = false;
+    }
 }
 
 void Departures::record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed) {
@@ -103,9 +106,14 @@ void Departures::record(std::size_t member, std::span<const FlownPiece> flown, c
     entries_[member].pushed = pushed;
 }
 
+void Departures::record_at_start(std::size_t member, const Vec3& pushed) {
+    entries_[member].keeps_start = true;
+    entries_[member].pushed = pushed;
+}
+
 void Departures::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
                          const std::vector<std::uint8_t>& moves, std::vector<Vec3>& velocities) const {
-    const auto left = [](const Entry& entry) { return !entry.flown.empty(); };
+    const auto left = [](const Entry& entry) { return entry.keeps_start || !entry.flown.empty(); };
     if (std::none_of(entries_.begin(), entries_.end(), left)) return;
     const std::vector<Vec3> given = momentum_changes(system, plans);
     const std::vector<Vec3> mutual = mutual_changes(system, plans);
@@ -147,9 +155,26 @@ std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const
     return changes;
 }
 
-/// The integrals, over the step, of what a member's position and velocity are beyond its plan, m s and m.
+/// In pieces; the plan itself where nothing else is noted.
+std::span<const FlownPiece> Departures::flown_by(std::size_t member, const FlownPiece& plan) const {
+    return entries_[member].flown.empty() ? std::span<const FlownPiece>(&plan, 1) : entries_[member].flown;
+}
+
+/// As forces see it at a time, s, on a piece that it has flown.
+PhaseState Departures::state_of(std::size_t member, const FlownPiece& piece, const Flight& plan, double time) const {
+    if (entries_[member].keeps_start) return {plan.start.position, plan.start.velocity};
+    return piece.at(time);
+}
+
+/// The integrals, over the step, of what a member's position and velocity are beyond its plan, m s and m. Of what stays
+/// at its start as much as takes away the second half of the forces' change along a plan.
 PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
+    if (entries_[member].keeps_start) {
+        const double half = 0.5 * plan.path.duration;
+        return {half * (plan.start.position - plan.path.position(plan.path.duration)),
+                half * (plan.start.velocity - plan.end_velocity)};
+    }
     const std::span<const FlownPiece> flown(entries_[member].flown);
     PhaseState sum;
     for (const TimeInterval& part : parts_between(flown, {}, planned)) {
@@ -182,24 +207,21 @@ std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, con
 Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
                                 const std::vector<Flight>& plans) const {
     const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
-    const auto flown_by = [&](std::size_t member, const FlownPiece& plan) {
-        return has_left(member) ? std::span<const FlownPiece>(entries_[member].flown)
-                                : std::span<const FlownPiece>(&plan, 1);
-    };
     const auto first = flown_by(bond.first, planned[0]);
     const auto second = flown_by(bond.second, planned[1]);
     const Spring& spring = system.spring_of(bond);
-    const auto force = [&](const FlownPiece& a, const FlownPiece& b, double t) {
-        const PhaseState one = a.at(t);
-        const PhaseState other = b.at(t);
+    const auto force = [&](const PhaseState& one, const PhaseState& other) {
         return spring_force(spring, one.position, one.velocity, other.position, other.velocity);
     };
     Vec3 sum;
     for (const TimeInterval& part : parts_between(first, second, planned[0])) {
         const FlownPiece& a = piece_at(first, part.middle());
         const FlownPiece& b = piece_at(second, part.middle());
-        sum +=
-            integral(rule_of(kind_), part, [&](double t) { return force(a, b, t) - force(planned[0], planned[1], t); });
+        sum += integral(rule_of(kind_), part, [&](double t) {
+            return force(state_of(bond.first, a, plans[bond.first], t),
+                         state_of(bond.second, b, plans[bond.second], t)) -
+                   force(planned[0].at(t), planned[1].at(t));
+        });
     }
     return sum;
 }
@@ -208,16 +230,18 @@ Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSyst
 Vec3 Departures::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
     if (system.has_uniform_forces()) return {};
     const FlownPiece planned = piece_of(plan);
-    const auto acceleration = [&](const FlownPiece& piece, double t) {
-        const PhaseState state = piece.at(t);
+    const bool keeps_start = entries_[member].keeps_start;
+    const auto acceleration = [&](const PhaseState& state, double t) {
         return system.own_acceleration(member, t, state.position, state.velocity);
     };
-    const std::span<const FlownPiece> flown(entries_[member].flown);
+    const std::span<const FlownPiece> flown = flown_by(member, planned);
     Vec3 sum;
     for (const TimeInterval& part : parts_between(flown, {}, planned)) {
         const FlownPiece& piece = piece_at(flown, part.middle());
-        sum +=
-            integral(rule_of(kind_), part, [&](double t) { return acceleration(piece, t) - acceleration(planned, t); });
+        sum += integral(rule_of(kind_), part, [&](double t) {
+            const double seen = keeps_start ? plan.start.time : t;
+            return acceleration(state_of(member, piece, plan, t), seen) - acceleration(planned.at(t), t);
+        });
     }
     return sum;
 }

@@ -71,6 +71,10 @@ private:
 /// Forces between members that know no pairs do the same all at once: they are evaluated where the plan ends, and with
 /// each member that has left it moved by the mean of its departure; the difference goes to all. In it momentum is kept
 /// as well as the forces keep it, and it is exact to first order in the departures, so that it is of third order too.
+///
+/// Members whose forces have been balanced by contacts as both were at the step's start keep them as they were there,
+/// in what others are given too: forces that turn with a pair that rolls on itself, beside pushes that do not, would
+/// brake it. That is of first order in the step.
 class Departures {
 public:
     /// Forgets all. members: how many there are; kind: the method that has planned.
@@ -78,12 +82,16 @@ public:
     /// Notes what a member has flown instead of its plan, and what surfaces have given it meanwhile, m/s; several
     /// threads may do so for different members.
     void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed);
+    /// The same of a member whose forces are those of the step's start.
+    void record_at_start(std::size_t member, const Vec3& pushed);
     /// Makes of the velocities of the members at the end of the step, m/s, those that all forces and surfaces have
     /// given them. moves: those that forces move; others keep theirs.
     void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
                  std::vector<Vec3>& velocities) const;
     /// True when something else than the plan is noted of it.
-    [[nodiscard]] bool has_left(std::size_t member) const { return !entries_[member].flown.empty(); }
+    [[nodiscard]] bool has_left(std::size_t member) const {
+        return entries_[member].keeps_start || !entries_[member].flown.empty();
+    }
 
 private:
     [[nodiscard]] std::vector<Vec3> momentum_changes(const ParticleSystem& system,
@@ -91,6 +99,9 @@ private:
     [[nodiscard]] std::vector<Vec3> mutual_changes(const ParticleSystem& system,
                                                    const std::vector<Flight>& plans) const;
     [[nodiscard]] PhaseState summed_departure(std::size_t member, const Flight& plan) const;
+    [[nodiscard]] std::span<const FlownPiece> flown_by(std::size_t member, const FlownPiece& plan) const;
+    [[nodiscard]] PhaseState state_of(std::size_t member, const FlownPiece& piece, const Flight& plan,
+                                      double time) const;
     [[nodiscard]] Vec3 impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
                                       const std::vector<Flight>& plans) const;
     [[nodiscard]] Vec3 own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const;
@@ -98,6 +109,7 @@ private:
     struct Entry {
         std::vector<FlownPiece> flown;  // empty: as planned
         Vec3 pushed;                    // m/s
+        bool keeps_start = false;       // its forces are those of the start
     };
     std::vector<Entry> entries_;  // of every member
     IntegratorKind kind_ = IntegratorKind::ballistic;

@@ -83,7 +83,7 @@ void PairIsland::predict(std::size_t m) {
         boxes_[m] = {};
         return;
     }
-    const double duration = member.end - member.moving.state.time;
+    const double duration = member.time_left();
     if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) {
         stay(m);
         return;
@@ -149,7 +149,7 @@ bool PairIsland::bounces_at(std::size_t m, double time) const {
 void PairIsland::go_to(std::size_t m, double time) {
     IslandMember& member = (*members_)[m];
     MovingParticle& moving = member.moving;
-    const double duration = time - moving.state.time;
+    const double duration = time == member.end ? member.time_left() : time - moving.state.time;
     if (!(duration > 0.0)) return;
     scratch_->flown.clear();
     if (member.is_free && !scratch_->record_segments) {
@@ -160,6 +160,7 @@ void PairIsland::go_to(std::size_t m, double time) {
         add(member.outcome, response_.move(moving, duration, *scratch_));
         moving.beyond = 0.0;
     }
+    moving.planned = nullptr;
     member.is_free = false;
     if (!member.is_gone()) moving.state.time = time;
     MoveLists lists;
@@ -192,11 +193,12 @@ void PairIsland::commit(std::size_t m) {
     IslandMember& member = (*members_)[m];
     Prediction& prediction = predictions_[m];
     member.swept.include(boxes_[m]);
-    member.moving.planned = nullptr;
-    if (member.impacts > 0) append_to(member.way, prediction.flown);
+    const bool has_left_plan = member.impacts > 0;
+    if (has_left_plan) member.moving.planned = nullptr;
+    if (has_left_plan || member.moving.state.coupling != nullptr) append_to(member.way, prediction.flown);
     if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
     member.moving = prediction.moved;
-    member.moving.planned = nullptr;
+    if (has_left_plan) member.moving.planned = nullptr;
     add(member.outcome, prediction.outcome);
     member.lists.append(prediction.lists);
 }
@@ -365,7 +367,9 @@ void PairIsland::take_over(std::size_t m, const PairBody& body) {
     member.is_free = false;  // also where it is hit at the begin of the step, and has not been brought anywhere
     MovingParticle& moving = member.moving;
     const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
+    member.pair_push += body.velocity - moving.state.velocity;
     moving.state.velocity = body.velocity;
+    moving.planned = nullptr;
     if (moving.state.radius > 0.0) moving.spin = (member.radius() / moving.state.radius) * body.spin;
     moving.contact = {};
     moving.ridden.reset();

@@ -39,14 +39,21 @@ struct IslandMember {
     MoveOutcome outcome{};
     MoveLists lists{};
     std::uint32_t impacts = 0;  ///< on other members
+    Vec3 pair_push{};           ///< m/s, that others have given it by impacts and contact
+    bool is_planned = false;    ///< by the problem of all contacts of its island
     bool is_bound = false;      ///< some of its way was along walls, in arcs
     bool is_cut_off = false;    ///< it has spent its budget
     Box3 swept{};               ///< of the whole sphere on all of its way
-    /// All of its way, where it has met others.
+    /// All of its way, where it has met others, or others act on it from afar.
     std::vector<FlownPiece> way{};
 
     /// It has ended before the step.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
+    /// s, that its part of the step has left: as long as its planned flight to the last bit, where it sets out on that.
+    [[nodiscard]] double time_left() const {
+        const bool begins_flight = moving.planned != nullptr && moving.planned->start.time == moving.state.time;
+        return begins_flight ? moving.planned->path.duration : end - moving.state.time;
+    }
     /// m, as others meet it: that of the whole sphere also where it collides with walls as a core.
     [[nodiscard]] double radius() const {
         return moving.state.whole_radius > 0.0 ? moving.state.whole_radius : moving.state.radius;

@@ -58,28 +58,6 @@ bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
     return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
 
-/// Responses that do not say what a particle has flown are taken to have led it smoothly from where it was to where it
-/// is.
-void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
-    if (!flown.empty()) return;
-    const ForceInput& from = plan.start;
-    const double duration = plan.path.duration;
-    const Path path = hermite_path(from.position, from.velocity, moved.state.position, moved.state.velocity, duration);
-    flown.push_back({path, from.time, duration, from.velocity, moved.state.velocity, moved.contact.count == 0});
-}
-
-bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<const FlownPiece> flown) {
-    const bool is_free = std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
-    return is_free && moved.state.position == plan.path.end && moved.state.velocity == plan.end_velocity;
-}
-
-/// N s, that surfaces have given a particle with the hits from this one on.
-Vec3 pushed_since(std::size_t first_hit, const MoveScratch& scratch) {
-    Vec3 sum;
-    for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) sum -= scratch.hits[k].impulse;
-    return sum;
-}
-
 }  // namespace
 
 void ActiveMover::move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -134,17 +112,6 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     take_over(i, particle, outcome, life.end, record);
 }
 
-/// pushed: N s, that surfaces have given it.
-void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                                 std::vector<FlownPiece>& flown, const Vec3& pushed) {
-    if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
-    const Flight& plan = *parts_.coupled.flight_of(i);
-    note_flown(plan, moved, flown);
-    if (moved.planned == nullptr || outcome.bounces > 0 || !is_as_planned(plan, moved, flown)) {
-        parts_.coupled.record_departure(i, flown, pushed / moved.state.mass);
-    }
-}
-
 /// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces, as
 /// they are at the time of its position.
 void ActiveMover::grow_core(std::size_t i, double time) {
@@ -170,6 +137,7 @@ std::optional<IslandMember> ActiveMover::member_of(std::size_t i, const TimeSpan
     IslandMember member;
     member.particle = i;
     member.moving = load(i, life.begin);
+    if (life.begin != step.begin || life.end != step.end) member.moving.planned = nullptr;
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
     member.is_free = parts_.schedule.is_in_free_flight(i);
@@ -195,6 +163,8 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
     MoveScratch scratch;
     member.lists.put_into(scratch);
     record_lists(scratch, record);
+    if (!member.is_fixed && life.begin == step.begin && life.end == step.end) note_departure(member, scratch);
+    if (i < bounces_.size()) bounces_[i] += member.outcome.bounces;
     if (member.is_fixed) {
         parts_.schedule.leave_alone(i);
         return;

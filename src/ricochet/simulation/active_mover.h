@@ -139,6 +139,8 @@ private:
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
     void note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                         std::vector<FlownPiece>& flown, const Vec3& pushed);
+    void note_departure(IslandMember& member, const MoveScratch& scratch);
+    [[nodiscard]] static Vec3 pushed_since(std::size_t first_hit, const MoveScratch& scratch);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,

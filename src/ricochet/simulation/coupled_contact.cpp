@@ -1,4 +1,6 @@
-// Particles that act on each other and are in contact: what is planned with, and what they are owed.
+// Particles that act on each other and meet something: what is planned with, what becomes of the plan, and what they
+// are owed.
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -7,6 +9,56 @@
 #include "ricochet/simulation/active_mover.h"
 
 namespace ricochet {
+namespace {
+
+/// Responses that do not say what a particle has flown are taken to have led it smoothly from where it was to where it
+/// is.
+void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
+    if (!flown.empty()) return;
+    const ForceInput& from = plan.start;
+    const double duration = plan.path.duration;
+    const Path path = hermite_path(from.position, from.velocity, moved.state.position, moved.state.velocity, duration);
+    flown.push_back({path, from.time, duration, from.velocity, moved.state.velocity, moved.contact.count == 0});
+}
+
+bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<const FlownPiece> flown) {
+    const bool is_free = std::all_of(flown.begin(), flown.end(), [](const FlownPiece& piece) { return piece.is_free; });
+    return is_free && moved.state.position == plan.path.end && moved.state.velocity == plan.end_velocity;
+}
+
+}  // namespace
+
+/// N s, that surfaces have given a particle with the hits from this one on.
+Vec3 ActiveMover::pushed_since(std::size_t first_hit, const MoveScratch& scratch) {
+    Vec3 sum;
+    for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) sum -= scratch.hits[k].impulse;
+    return sum;
+}
+
+/// pushed: N s, that surfaces have given it.
+void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                 std::vector<FlownPiece>& flown, const Vec3& pushed) {
+    if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
+    const Flight& plan = *parts_.coupled.flight_of(i);
+    note_flown(plan, moved, flown);
+    if (moved.planned == nullptr || outcome.bounces > 0 || !is_as_planned(plan, moved, flown)) {
+        parts_.coupled.record_departure(i, flown, pushed / moved.state.mass);
+    }
+}
+
+/// scratch: with what its moves have left.
+void ActiveMover::note_departure(IslandMember& member, const MoveScratch& scratch) {
+    const std::size_t i = member.particle;
+    if (!parts_.coupled.wants_departure_of(i)) return;
+    const MovingParticle& moving = member.moving;
+    const Vec3 pushed = pushed_since(0, scratch) + moving.state.mass * member.pair_push;
+    const bool is_there = !member.is_gone() && member.outcome.unsimulated_time == 0.0;
+    if (!member.is_planned) {
+        note_departure(i, moving, member.outcome, member.way, pushed);
+    } else if (is_there) {
+        parts_.coupled.record_planned_contact(i, pushed / moving.state.mass);
+    }
+}
 
 Vec3 ActiveMover::held_acceleration(std::size_t i, double time, const Vec3& pull) {
     MovingParticle particle = parts_.store.load(i, time, !parts_.schedule.is_without_contact(i));

@@ -65,6 +65,9 @@ public:
         departures_.record(slots_[i], flown, pushed);
     }
 
+    /// The same of a member that has been planned together with what it presses on, with its forces at the start.
+    void record_planned_contact(std::size_t i, const Vec3& pushed) { departures_.record_at_start(slots_[i], pushed); }
+
     /// A change of velocity that is owed to a particle in contact, m/s.
     struct Owed {
         std::uint32_t particle = 0;

@@ -127,6 +127,9 @@ void DenseIslands::move(std::vector<IslandMember>& members, Work& work, const De
             IslandMember& member = members[i];
             own.flown.clear();
             const ForceInput from = member.moving.state;
+            if (from.coupling != nullptr) member.pair_push = work.network.given_by_others(i, work.members[i]);
+            member.moving.planned = nullptr;
+            member.is_planned = true;
             work.network.move(i, work.members[i], own);
             member.outcome = work.members[i].outcome;
             const bool falls_asleep = std::binary_search(falling.begin(), falling.end(), member.moving.id);

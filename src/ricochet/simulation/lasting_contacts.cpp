@@ -114,6 +114,19 @@ const PairTraces& LastingContacts::find_traces() {
     return traces_;
 }
 
+std::vector<std::uint8_t> LastingContacts::pressing() const {
+    std::vector<std::uint8_t> pressing(parts_.store.size(), 0);
+    const auto mark = [&](std::uint64_t particle) {
+        if (const std::optional<std::size_t> i = index_of(particle)) pressing[*i] = 1;
+    };
+    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+        if (entry.rebounds) continue;
+        mark(entry.key.particle);
+        if (!entry.key.is_wall()) mark(entry.key.other);
+    }
+    return pressing;
+}
+
 /// Slow ones that only press it onto what holds it do not: their contacts say how much. hitting, sleeping: indices.
 bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const {
     const Particles& particles = parts_.store.particles();
@@ -174,7 +187,9 @@ bool LastingContacts::is_carried_by_material(const NetworkIsland& network, std::
 
 /// It lives through the whole step, and nothing that moves is near.
 bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step) const {
-    if (member.is_fixed || member.is_squeezed || member.duration != step.end - step.begin) return false;
+    const bool is_acted_on = member.moving->state.coupling != nullptr;  // from afar, by what may move
+    const bool is_moved = !member.is_fixed && !member.is_squeezed && member.duration == step.end - step.begin;
+    if (is_acted_on || !is_moved) return false;
     const MovingColliders* const bodies = parts_.response.rules().bodies;
     const Box3 near = ball_box(member.moving->state.position, (1.0 + kWakingFall) * member.radius);
     return bodies == nullptr || bodies->all_stay_out(near);

@@ -47,6 +47,8 @@ public:
                                          const TimeSpan& step);
     /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
+    /// Of each particle: contacts of the last step's dense islands have held it, and have not thrown it off.
+    [[nodiscard]] std::vector<std::uint8_t> pressing() const;
     /// Of the contacts of the last step's dense islands.
     [[nodiscard]] const NetworkMemory& memory() const { return memory_; }
 

@@ -18,7 +18,7 @@ verify::PairBooks books_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
     verify::PairBooks books{settings.restitution, settings.friction, settings.rolling_friction,
-                            rules.settings.resting_speed, rules.forces.is_uniform()};
+                            rules.settings.resting_speed, rules.forces.is_uniform() && !parts.coupled.is_active()};
     const std::vector<std::string>& names = settings.materials;
     books.materials = names.size();
     books.by_materials.assign(names.size() * names.size(),

@@ -47,6 +47,9 @@ public:
     /// Its attribute is the number of a material, or there are none.
     [[nodiscard]] bool has_material(std::size_t particle) const;
 
+    /// Of each particle: others, or walls together with others, have held it in the last step.
+    [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
+
     /// Wakes all spheres that sleep on others, at a time, s: what holds them may change.
     void wake_all(double time) { contacts_.wake_all(time); }
 

@@ -9,6 +9,7 @@
 #include "ricochet/response/pair_materials.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
 
@@ -20,6 +21,7 @@ struct PairParts {
     QuerySchedule& schedule;
     ActiveMover& mover;
     const Response& response;
+    const CoupledMotion& coupled;
     const PairContactSettings& settings;
     PairMaterials materials;                          ///< of the settings
     std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; none where all are of one

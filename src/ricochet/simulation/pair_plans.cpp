@@ -115,7 +115,7 @@ bool PairPlans::moves(std::uint32_t k) const {
 bool PairPlans::is_bounded() const {
     const ResponseRules& rules = parts_.response.rules();
     const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
-    return rules.forces.is_uniform() && rules.bodies == nullptr &&
+    return rules.forces.is_uniform() && rules.bodies == nullptr && !parts_.coupled.is_active() &&
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
 }
 
@@ -125,8 +125,9 @@ double PairPlans::reach(std::size_t i, double duration) const {
     const Particles& particles = parts_.store.particles();
     const double turning = particles.radius[i] * length(particles.spin[i]);
     const double speed = std::sqrt(length_squared(particles.velocity[i]) + 0.4 * turning * turning);
-    const double change =
-        duration * length(parts_.response.rules().forces.acceleration(parts_.store.force_input(i, 0.0)));
+    ForceInput state = parts_.store.force_input(i, parts_.coupled.is_active() ? step_.begin : 0.0);
+    state.coupling = parts_.coupled.coupling_of(i);
+    const double change = duration * length(parts_.response.rules().forces.acceleration(state));
     return kPairBoxSlack * duration * (speed + change);
 }
 
@@ -144,6 +145,7 @@ Box3 PairPlans::reachable_box(std::uint32_t k) const {
 }
 
 FlownPiece PairPlans::way_of_free(std::uint32_t k) const {
+    if (const Flight* const planned = parts_.coupled.flight_of(first_ + k)) return piece_of(*planned);
     return free_way(parts_.response.rules(), parts_.store.force_input(first_ + k, step_.begin), step_.end);
 }
 
@@ -176,7 +178,7 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     moving.step_end = member->end;
     scratch.segments.clear();
     scratch.records.clear();
-    const MoveOutcome outcome = parts_.response.move(moving, member->end - moving.state.time, scratch);
+    const MoveOutcome outcome = parts_.response.move(moving, member->time_left(), scratch);
     scratch.hits.clear();
     scratch.loads.clear();
     scratch.motions.clear();

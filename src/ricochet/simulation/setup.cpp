@@ -139,10 +139,10 @@ std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, 
 
 /// Null where spheres do not meet.
 std::unique_ptr<PairMotion> make_pairs(const SimulationOptions& options, ParticleStore& store, QuerySchedule& schedule,
-                                       ActiveMover& mover, const Response& response) {
+                                       ActiveMover& mover, const Response& response, const CoupledMotion& coupled) {
     if (!options.particle_contacts) return nullptr;
     const PairContactSettings& settings = *options.particle_contacts;
-    PairParts parts{store, schedule, mover, response, settings, PairMaterials(settings)};
+    PairParts parts{store, schedule, mover, response, coupled, settings, PairMaterials(settings)};
     if (!settings.materials.empty()) parts.material_column = store.particles().attributes.find(kMaterialAttribute);
     return std::make_unique<PairMotion>(parts);
 }
@@ -273,7 +273,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
              heat ? heat->meter() : nullptr}),
-      pairs(make_pairs(options, store, schedule, mover, *response)),
+      pairs(make_pairs(options, store, schedule, mover, *response, coupled)),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
     if (bodies) {

@@ -186,7 +186,12 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
     if (!coupled.is_active() || batch.begin != 0) return rest;
     const double whole = rest.end - rest.begin;
-    const auto hold = [&](std::size_t i, const Vec3& pull) { return mover.held_acceleration(i, rest.begin, pull); };
+    // What others press on is expected to go on as it does, as what walls hold is.
+    const std::vector<std::uint8_t> pressing = pairs ? pairs->pressing() : std::vector<std::uint8_t>();
+    const auto hold = [&](std::size_t i, const Vec3& pull) {
+        if (!pressing.empty() && pressing[i] != 0) return Vec3{};
+        return mover.held_acceleration(i, rest.begin, pull);
+    };
     const double planned =
         coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};

@@ -9,6 +9,7 @@
 #include "ricochet/response/pair_materials.h"
 #include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
+#include "ricochet/verify/sphere_overlaps.h"
 
 namespace ricochet {
 namespace {
@@ -83,14 +84,42 @@ void validate_column(const SimulationSetup& setup, const Subject& subject) {
     }
 }
 
+/// Contacts would part what springs hold together, and stretch them, step after step.
+void validate_joined(const SimulationSetup& setup, const Subject& subject) {
+    for (const Spring& spring : setup.springs) {
+        if (std::max(spring.first, spring.second) >= setup.particles.size()) continue;
+        const Particle& first = setup.particles[spring.first];
+        const Particle& second = setup.particles[spring.second];
+        const double smaller = std::min(first.radius, second.radius);
+        const double distance = length(second.position - first.position);
+        const double overlap = first.radius + second.radius - distance;
+        if (smaller == 0.0 || (first.pinned && second.pinned) || !(overlap > kMostMetOverlap * smaller)) continue;
+        subject.refuse("springs",
+                       fmt::format("one between spheres {} and {}, which stand {:.3g} m in each other", spring.first,
+                                   spring.second, overlap),
+                       fmt::format("radii whose sum is at most their distance, {:.6g} m", distance));
+    }
+}
+
+/// Impact by impact nothing holds what forces drive together.
+void validate_method(const SimulationSetup& setup, const Subject& subject) {
+    const bool is_pulled = !setup.springs.empty() || !setup.particles_forces.empty();
+    if (!is_pulled || setup.options.particle_contacts->method != PairMethod::events) return;
+    subject.refuse("method", "events",
+                   "auto beside springs and forces between particles: they press spheres together, and nothing holds "
+                   "these where each impact is for itself");
+}
+
 /// What does not know spheres that meet.
 void validate_company(const SimulationSetup& setup, const Subject& subject) {
     if (setup.options.response != ResponseKind::exact) {
         subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");
     }
     if (setup.options.flow) subject.refuse("motion", "a flow", "forces: what a flow carries does not meet");
-    if (!setup.springs.empty() || setup.solver) {
-        subject.refuse("springs", "particles that act on each other", "none beside spheres that meet");
+    if (setup.solver) subject.refuse("solver", "one of the program's own", "none beside spheres that meet");
+    if (!setup.springs.empty() && setup.options.integrator.kind == IntegratorKind::implicit_euler) {
+        subject.refuse("integrator", name_of(setup.options.integrator.kind),
+                       "an explicit one where springs join spheres that meet: its equations do not know their impacts");
     }
     if (!setup.bodies.empty()) {
         subject.refuse("bodies", setup.bodies.size(), "none that impulses move beside spheres that meet");
@@ -135,6 +164,8 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     }
     if (!contacts.materials.empty()) validate_column(setup, subject);
     validate_company(setup, subject);
+    validate_method(setup, subject);
+    validate_joined(setup, subject);
 }
 
 }  // namespace ricochet

@@ -36,9 +36,6 @@ void validate_particles_forces(const SimulationSetup& setup) {
             subject.refuse("attribute", name, "the name of one of the setup's attributes");
         }
         if (setup.options.flow) subject.refuse("motion", "a flow that carries the particles", "motion by forces");
-        if (setup.options.particle_contacts) {
-            subject.refuse("particle_contacts", "spheres that meet", "none beside a force on all particles together");
-        }
         if (setup.options.integrator.kind == IntegratorKind::implicit_euler && !setup.solver) {
             subject.refuse("integrator", name_of(setup.options.integrator.kind),
                            "an explicit one: the equations of implicit_euler do not hold forces on all together");

@@ -128,10 +128,6 @@ void check_company(const SceneContext& context, const SimulationSetup& setup) {
             "the equations of the integrator implicit_euler do not hold forces between particles: expected another, "
             "for example velocity_verlet");
     }
-    if (context.root().has("particle_contacts")) {
-        refuse(
-            "beside particle_contacts there are no forces between particles: expected none, or no particle_contacts");
-    }
     if (!setup.bodies.empty()) {
         refuse("beside bodies that impulses move there are no forces between particles: expected none");
     }

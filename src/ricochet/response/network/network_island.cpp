@@ -46,6 +46,7 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
                                   std::span<const std::array<std::uint32_t, 2>> pairs, double duration,
                                   const NetworkMemory& memory, MoveScratch& scratch) {
     duration_ = duration;
+    set_part(members);
     contacts_.clear();
     keys_.clear();
     surfaces_.clear();
@@ -55,6 +56,14 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
     add_pairs(members, pairs, memory);
     add_walls(members, memory, scratch);
     return solver_.solve(bodies_, contacts_, settings(members));
+}
+
+/// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
+void NetworkIsland::set_part(std::span<const NetworkMember> members) {
+    const bool is_coupled = std::any_of(members.begin(), members.end(), [](const NetworkMember& member) {
+        return member.moving->state.coupling != nullptr;
+    });
+    part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
 
 void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
@@ -88,7 +97,7 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         const Vec3 apart = a.moving->state.position - b.moving->state.position;
         const double distance = length(apart);
         if (!(distance > 0.0)) continue;  // no direction parts them
-        contact.gap = distance - a.radius - b.radius;
+        contact.gap = parted(distance - a.radius - b.radius);
         // Between two sleepers there may be no room to part from both.
         if (a.is_asleep || b.is_asleep) contact.gap = std::max(0.0, contact.gap);
         if (contact.gap > a.reach + b.reach) continue;
@@ -133,7 +142,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     NetworkContact contact;
     contact.a = index;
     contact.normal = wall.normal;
-    contact.gap = wall.gap;
+    contact.gap = parted(wall.gap);
     contact.friction = material.friction;
     contact.rolling_friction = material.rolling_friction * state.radius;
     contact.wall_velocity = wall.carried;
@@ -208,6 +217,13 @@ void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& 
                        member.duration, pushes_of(index)};
     plan.is_clear = member.duration * length(plan.velocity) < clear_[index];
     member.outcome = move_as_planned(rules_, *member.moving, plan, scratch);
+}
+
+Vec3 NetworkIsland::given_by_others(std::size_t index, const NetworkMember& member) const {
+    if (member.stays()) return {};
+    Vec3 given = bodies_[index].velocity - velocity_in_flight(member);
+    for (const WallPush& push : pushes_of(index)) given -= push.velocity_change;
+    return given;
 }
 
 std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {

@@ -54,6 +54,8 @@ public:
     [[nodiscard]] const NetworkBody& planned(std::size_t index) const { return bodies_[index]; }
     /// Plans instead that it stays where it is, without spin.
     void let_rest(std::size_t index) { bodies_[index].velocity = bodies_[index].spin = Vec3{}; }
+    /// m/s, that other spheres give it in the step.
+    [[nodiscard]] Vec3 given_by_others(std::size_t index, const NetworkMember& member) const;
     /// What walls do to it in the step.
     [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
@@ -65,6 +67,8 @@ public:
     bool reach_farther(std::span<NetworkMember> members) const;
 
 private:
+    void set_part(std::span<const NetworkMember> members);
+    [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
     void add_bodies(std::span<const NetworkMember> members);
     void add_pairs(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
                    const NetworkMemory& memory);
@@ -81,6 +85,7 @@ private:
     const ResponseRules& rules_;
     const PairMaterials& materials_;
     double duration_ = 0.0;
+    double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
     std::vector<NetworkContact> contacts_;
     std::vector<NetworkKey> keys_;  // of the contacts

@@ -291,6 +291,7 @@ inline constexpr double kLargestCoordinate = 1e75;
 /// Largest coefficient of a path, m/s^k, that is followed. Reason: a cubic between two places that are left in next to
 /// no time has ones of their distance over the cube of that; sums of their squares must not overflow in the narrow
 /// phase. Larger: a sphere's way has no roots among numbers that are none, and is left to the certificate alone.
+/// Smaller (from 1e40 on): short arcs that can be followed are not.
 inline constexpr double kLargestPathCoefficient = 1e120;
 
 /// Least mass of a particle, kg, fragments included. Reason: inertia (0.4 m r^2), momentum and kinetic energy of what

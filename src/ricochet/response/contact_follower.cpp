@@ -12,9 +12,6 @@ namespace ricochet {
 
 namespace {
 
-/// Arcs up to a contact that is found on one. Each brings the cubic nearer to the arc by its fourth power.
-constexpr int kMostCloserLooks = 12;
-
 /// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong, once it is
 /// little: three left 1e-11 of the radius where a sphere had gathered speed on a long arc.
 constexpr int kMostTurningPoints = 8;
@@ -299,12 +296,10 @@ double ContactFollower::time_on_pieces(const Path& path) const {
 
 /// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
 std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc& arc) {
-    int closer_looks = 0;
+    CloserLooks looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
         const Vec3 there = arc.at(time).position;
-        const double off = length(there - tried.position(time));
-        if (!(off > kTouchingOffsets * step_.geometry().contact_offset(there)) || ++closer_looks > kMostCloserLooks)
-            return {};
+        if (!looks.may_improve(tried.position(time), there, step_.geometry().contact_offset(there))) return {};
         way.leaves_surface = way.jams = false;
         lead_until(time, arc, way);
         keep_to_pieces(arc, way);

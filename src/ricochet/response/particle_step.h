@@ -18,6 +18,20 @@
 
 namespace ricochet {
 
+/// Whether a contact that was found on an approximate path deserves a path that ends there. Each brings that nearer to
+/// the way that it stands for, by its fourth power where it is a cubic between two states of that.
+class CloserLooks {
+public:
+    /// tried: where the contact is on the path; there: where the way is at that time, whose contact offset is given.
+    [[nodiscard]] bool may_improve(const Vec3& tried, const Vec3& there, double offset) {
+        return length(there - tried) > kTouchingOffsets * offset && ++looks_ <= kMost;
+    }
+
+private:
+    static constexpr int kMost = 12;
+    int looks_ = 0;
+};
+
 /// A particle's state within a step, the time that is left of it, and the outcome so far. It moves the particle along
 /// paths in certified segments, and nothing else does. The state is given in the world, or in the frame of a body that
 /// the particle rides on; what is stored is its position in the world.

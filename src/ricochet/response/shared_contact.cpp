@@ -14,9 +14,6 @@ namespace {
 /// Intervals of a step before the particle is set free again.
 constexpr int kMostIntervals = 64;
 
-/// Paths up to a contact that is found on one.
-constexpr int kMostCloserLooks = 12;
-
 /// Corrections of an interval's end; each leaves the square of what was wrong.
 constexpr int kCorrections = 3;
 
@@ -210,6 +207,52 @@ bool SharedContact::rests() const {
     return is_held;
 }
 
+/// The same, to where a surface ends: `duration`, s, is shortened to that.
+Path SharedContact::way_until_rim(double& duration) const {
+    Path path = way(duration);
+    if (const double on = until_rim(path); on < duration) {
+        duration = on;
+        path = way(duration);
+    }
+    return path;
+}
+
+/// Follows the interval that is planned, of at most so long, s.
+SharedContact::Followed SharedContact::follow_interval(double most) {
+    step_.log().note_impact();
+    const double before = step_.remaining();
+    const Vec3 forces = step_.rules().forces.acceleration(state_);
+    const Vec3 velocity = interval_.motion.velocity + shift_;
+    // What ends at once has ended after the shortest interval.
+    const double shortest = std::min(before, step_.duration() / kShortestIntervals);
+    Followed followed;
+    followed.duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
+    const Path path = way_until_rim(followed.duration);
+    // Between its ends the path is beside surfaces that turn; up to a contact it ends on them as well.
+    CloserLooks looks;
+    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+        if (!(time > 0.0)) return {};
+        Path next = way(time);
+        if (!looks.may_improve(tried.position(time), next.end, contact_offset(next.end))) return {};
+        followed.duration = time;
+        return next;
+    };
+    followed.contact = step_.follow(path, held(), closer);
+    const double elapsed = before - step_.remaining();
+    const bool has_arrived = !followed.contact;
+    // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
+    if (has_arrived || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;
+    for (std::size_t k = 0; k < count_; ++k) {
+        const Vec3 push = push_of(k, elapsed, has_arrived);
+        if (has_arrived) state_.velocity += push - elapsed * interval_.push[k];
+        if (push != Vec3{}) step_.impact().push(touched_[k].surface.surface, push, false);
+    }
+    particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
+    step_.impact().note_driven();
+    step_.log().note_contact(forces, path, true);
+    return followed;
+}
+
 std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
     bool has_jumped = false;
@@ -229,46 +272,13 @@ std::optional<Contact> SharedContact::follow() {
         const Hold hold = settle(most);
         if (hold == Hold::single) particle_.contact = kept();
         if (hold != Hold::shared) return std::nullopt;
-        step_.log().note_impact();
-        const double before = step_.remaining();
-        const double before_time = state_.time;
-        const Vec3 forces = step_.rules().forces.acceleration(state_);
-        const Vec3 velocity = interval_.motion.velocity + shift_;
-        // What ends at once has ended after the shortest interval.
-        const double shortest = std::min(before, step_.duration() / kShortestIntervals);
-        double duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
-        Path path = way(duration);
-        if (const double on = until_rim(path); on < duration) {
-            duration = on;
-            path = way(duration);
+        const double begin = state_.time;
+        Followed followed = follow_interval(most);
+        if (followed.contact) {
+            take_part_in(*followed.contact);
+            return followed.contact;
         }
-        // Between its ends the path is beside surfaces that turn; up to a contact it ends on them as well.
-        int closer_looks = 0;
-        const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
-            if (!(time > 0.0) || ++closer_looks > kMostCloserLooks) return {};
-            Path next = way(time);
-            const double off = length(next.end - tried.position(time));
-            if (!(off > kTouchingOffsets * contact_offset(next.end))) return {};
-            duration = time;
-            return next;
-        };
-        std::optional<Contact> contact = step_.follow(path, held(), closer);
-        const double elapsed = before - step_.remaining();
-        // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
-        if (!contact || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Vec3 push = push_of(k, elapsed, !contact);
-            if (!contact) state_.velocity += push - elapsed * interval_.push[k];
-            if (push != Vec3{}) step_.impact().push(touched_[k].surface.surface, push, false);
-        }
-        particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
-        step_.impact().note_driven();
-        step_.log().note_contact(forces, path, true);
-        if (contact) {
-            take_part_in(*contact);
-            return contact;
-        }
-        has_jumped = jump && duration >= *jump - before_time;
+        has_jumped = jump && followed.duration >= *jump - begin;
         if (has_jumped) break;
     }
     // At a jump a body goes on with another velocity, and the particle with its own.

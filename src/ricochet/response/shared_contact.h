@@ -57,7 +57,14 @@ private:
     [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
     [[nodiscard]] double longest() const;
     [[nodiscard]] std::optional<double> next_jump() const;
+    /// How long the path of an interval was, s, and what ended it.
+    struct Followed {
+        double duration = 0.0;
+        std::optional<Contact> contact;
+    };
+    [[nodiscard]] Followed follow_interval(double most);
     [[nodiscard]] Path way(double duration) const;
+    [[nodiscard]] Path way_until_rim(double& duration) const;
     [[nodiscard]] double until_rim(const Path& path) const;
     [[nodiscard]] Vec3 push_of(std::size_t k, double elapsed, bool has_arrived) const;
     /// Of a surface, from a position at a time.

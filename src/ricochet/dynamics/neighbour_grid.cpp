@@ -1,9 +1,11 @@
 #include "ricochet/dynamics/neighbour_grid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
@@ -18,6 +20,7 @@ constexpr unsigned kMostAxisBits = 19;
 constexpr unsigned kFinestLevel = 31;
 /// Boxes whose places say where most are.
 constexpr std::size_t kSample = 1024;
+constexpr std::memory_order kUnordered = std::memory_order_relaxed;
 
 double extent_of(const Box3& box) {
     const Vec3 size = box.size();
@@ -31,6 +34,22 @@ class NeighbourGrid::Search {
 public:
     Search(const NeighbourGrid& grid, std::vector<NeighbourPair>& found)
         : grid_(grid), mask_((std::uint64_t{1} << grid.bits_[0]) - 1), found_(found) {}
+
+    /// Of all rows that begin among the boxes from begin to end.
+    void search_rows(std::size_t begin, std::size_t end) {
+        const std::vector<Row>& rows = grid_.rows_;
+        auto row =
+            std::lower_bound(rows.begin(), rows.end(), begin, [](const Row& r, std::size_t k) { return r.begin < k; });
+        for (; row != rows.end() && row->begin < end; ++row) search_row(static_cast<std::size_t>(row - rows.begin()));
+        found_.resize(count_);
+    }
+
+private:
+    /// Cells from first to last.
+    struct Range {
+        std::uint32_t first;
+        std::uint32_t last;
+    };
 
     void search_row(std::size_t row) {
         const Cell cell = grid_.cell_of(grid_.sorted_[grid_.rows_[row].begin].key);
@@ -47,13 +66,6 @@ public:
         }
     }
 
-private:
-    /// Cells from first to last.
-    struct Range {
-        std::uint32_t first;
-        std::uint32_t last;
-    };
-
     /// Along an axis: where the lower corners of coarser boxes lie that one may meet whose own lies in cell `at`.
     [[nodiscard]] static Range coarse(std::uint32_t at, unsigned shift) {
         const std::uint32_t own = at >> shift;
@@ -63,11 +75,13 @@ private:
         return static_cast<std::uint32_t>(grid_.sorted_[k].key & mask_);
     }
 
+    /// Writes every pair, and keeps those that overlap: which ones do is chance, and a branch would guess it.
     void test(std::size_t a, std::size_t b) {
-        if (!overlap(grid_.boxes_[a], grid_.boxes_[b])) return;
+        if (count_ == found_.size()) found_.resize(std::max(kBlock, 2 * count_));
         const std::uint32_t i = grid_.sorted_[a].index;
         const std::uint32_t j = grid_.sorted_[b].index;
-        found_.push_back({std::min(i, j), std::max(i, j)});
+        found_[count_] = {std::min(i, j), std::max(i, j)};
+        count_ += static_cast<std::size_t>(overlap(grid_.boxes_[a], grid_.boxes_[b]));
     }
 
     void search_own() {
@@ -103,6 +117,7 @@ private:
     const NeighbourGrid& grid_;
     std::uint64_t mask_;
     std::vector<NeighbourPair>& found_;
+    std::size_t count_ = 0;  // of found_, pairs that overlap
     Block source_{};
 };
 
@@ -116,16 +131,7 @@ const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3
     find_rows();
     std::vector<std::vector<NeighbourPair>> found;
     collect(found);
-    packed_.clear();
-    for (std::vector<NeighbourPair>& block : found) {
-        for (const NeighbourPair& pair : block) packed_.push_back(std::uint64_t{pair.first} << 32U | pair.second);
-        std::vector<NeighbourPair>().swap(block);
-    }
-    parallel_sort(packed_);
-    pairs_.reserve(packed_.size());
-    for (const std::uint64_t pair : packed_) {
-        pairs_.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
-    }
+    arrange(found, boxes.size());
     return pairs_;
 }
 
@@ -264,11 +270,30 @@ std::size_t NeighbourGrid::row_end(std::size_t row) const {
 void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
     found.resize((sorted_.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Search search(*this, found[block]);
-        auto row = std::lower_bound(rows_.begin(), rows_.end(), begin,
-                                    [](const Row& r, std::size_t k) { return r.begin < k; });
-        for (; row != rows_.end() && row->begin < end; ++row) {
-            search.search_row(static_cast<std::size_t>(row - rows_.begin()));
+        Search(*this, found[block]).search_rows(begin, end);
+    });
+}
+
+/// The pairs of all blocks, ascending. Each box has a place for the pairs in which it is the first; where in that place
+/// a pair lands depends on the threads, until each place is sorted.
+void NeighbourGrid::arrange(const std::vector<std::vector<NeighbourPair>>& found, std::size_t boxes) {
+    ends_.assign(boxes + 1, 0);
+    const auto for_all_pairs = [&](auto&& visit) {
+        parallel_for_blocks(found.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
+            for (const NeighbourPair& pair : found[block]) visit(pair, std::atomic_ref(ends_[pair.first]));
+        });
+    };
+    for_all_pairs([](const NeighbourPair&, std::atomic_ref<std::size_t> count) { count.fetch_add(1, kUnordered); });
+    std::exclusive_scan(ends_.begin(), ends_.end(), ends_.begin(), std::size_t{0});
+    pairs_.resize(ends_.back());
+    for_all_pairs([&](const NeighbourPair& pair, std::atomic_ref<std::size_t> end) {
+        pairs_[end.fetch_add(1, kUnordered)] = pair;
+    });
+    parallel_for_blocks(boxes, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto first = pairs_.begin() + static_cast<std::ptrdiff_t>(k == 0 ? 0 : ends_[k - 1]);
+            std::sort(first, pairs_.begin() + static_cast<std::ptrdiff_t>(ends_[k]),
+                      [](const NeighbourPair& a, const NeighbourPair& b) { return a.second < b.second; });
         }
     });
 }
@@ -310,7 +335,7 @@ void NeighbourGrid::find_in_row(std::size_t row, const std::array<std::uint32_t,
 std::size_t NeighbourGrid::memory_bytes() const {
     return (sorted_.capacity() + spare_.capacity()) * sizeof(KeyedIndex) + boxes_.capacity() * sizeof(Box3) +
            rows_.capacity() * sizeof(Row) + level_begin_.capacity() * sizeof(std::uint32_t) +
-           pairs_.capacity() * sizeof(NeighbourPair) + packed_.capacity() * sizeof(std::uint64_t);
+           pairs_.capacity() * sizeof(NeighbourPair) + ends_.capacity() * sizeof(std::size_t);
 }
 
 }  // namespace ricochet

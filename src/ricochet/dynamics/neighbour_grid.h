@@ -33,7 +33,7 @@ struct NeighbourPair {
 class NeighbourGrid {
 public:
     /// Bytes that a search takes at most for each box, besides kBytesPerPair for each pair that it finds.
-    static constexpr double kBytesPerBox = 100.0;
+    static constexpr double kBytesPerBox = 108.0;
     static constexpr double kBytesPerPair = 24.0;
 
     /// All pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty (lower >
@@ -74,6 +74,7 @@ private:
     void sort(std::span<const Box3> boxes);
     void find_rows();
     void collect(std::vector<std::vector<NeighbourPair>>& found);
+    void arrange(const std::vector<std::vector<NeighbourPair>>& found, std::size_t boxes);
     [[nodiscard]] std::size_t row_end(std::size_t row) const;
     void find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
                      std::vector<std::uint32_t>& found) const;
@@ -89,7 +90,7 @@ private:
     std::vector<Row> rows_;
     std::vector<std::uint32_t> level_begin_;  // the first row of each level, and the end
     std::vector<NeighbourPair> pairs_;
-    std::vector<std::uint64_t> packed_;  // pairs, to be sorted
+    std::vector<std::size_t> ends_;  // of each box, where in pairs_ those end in which it is the first
 };
 
 }  // namespace ricochet

@@ -139,7 +139,8 @@ void render(const RenderArguments& arguments) {
     PictureOptions options;
     options.width = size.width;
     options.height = size.height;
-    options.samples = arguments.samples;
+    options.samples = rays_a_pixel(arguments);
+    options.quick = arguments.preview;
     options.exposure = arguments.exposure;
     options.filter = !arguments.no_filter;
     pictures.set_scenery(options);

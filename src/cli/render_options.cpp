@@ -152,7 +152,16 @@ void check_numbers(const RenderArguments& arguments) {
     const auto in_range = [](const char* option, double value, double low, double high) {
         if (!(value >= low && value <= high)) refuse(fmt::format("{} {}: expected {} to {}", option, value, low, high));
     };
-    in_range("--samples", arguments.samples, 1, 4096);
+    in_range("--samples", rays_a_pixel(arguments), 1, 4096);
+    const char* const finer = arguments.samples         ? "--samples"
+                              : arguments.no_filter     ? "--no-filter"
+                              : !arguments.lens.empty() ? "--lens"
+                                                        : nullptr;
+    if (arguments.preview && finer != nullptr) {
+        refuse(fmt::format(
+            "{}: found beside --preview, which has one ray a pixel, no noise and no blur, expected one of them",
+            finer));
+    }
     in_range("--fps", film_rate(arguments), 1, 240);
     in_range("--exposure", arguments.exposure, 0.01, 100);
     in_range("--speed", film_speed(arguments), 1e-6, 1e6);
@@ -160,6 +169,8 @@ void check_numbers(const RenderArguments& arguments) {
     if (arguments.black_body != 0.0) in_range("--black-body", arguments.black_body, 500, 20000);
     in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
 }
+
+int rays_a_pixel(const RenderArguments& arguments) { return arguments.samples.value_or(16); }
 
 int film_rate(const RenderArguments& arguments) { return arguments.frames_per_second.value_or(30); }
 
@@ -206,7 +217,9 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)").one_value_each();
     command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)").one_value_each();
     command.add_option("--particle-radius", a.particle_radius, "Radius drawn, m (default: the particles' own)");
-    command.add_option("--samples", a.samples, "Rays a pixel").show_default();
+    command.add_option("--samples", a.samples, "Rays a pixel (default: 16)");
+    command.add_flag("--preview", a.preview,
+                     "Draft: one ray a pixel, hard shadows, no light between surfaces, no blur");
     command.add_flag("--no-filter", a.no_filter, "Leave the noise of few samples in");
     command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
     command.add_option("--shutter", a.shutter, "Seconds of the run that a picture shows: what moves blurs");

@@ -33,7 +33,8 @@ struct RenderArguments {
     std::vector<std::string> hidden;
     std::vector<std::string> glass;
     double particle_radius = 0.0;
-    int samples = 16;
+    std::optional<int> samples;  // 16
+    bool preview = false;
     std::optional<int> frames_per_second;  // 30
     double exposure = 1.0;
     std::optional<double> speed;                             // 1
@@ -55,6 +56,7 @@ void add_render_options(cli::Command command, RenderArguments& arguments);
 void check_numbers(const RenderArguments& arguments);
 /// What has a meaning for films alone is refused for pictures.
 void check_film_options(const RenderArguments& arguments, bool film);
+[[nodiscard]] int rays_a_pixel(const RenderArguments& arguments);
 [[nodiscard]] int film_rate(const RenderArguments& arguments);
 [[nodiscard]] double film_speed(const RenderArguments& arguments);
 

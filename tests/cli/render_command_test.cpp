@@ -37,8 +37,10 @@ struct RunFolderFiles {
     [[nodiscard]] std::string path(const std::string& name) const { return folder.path(name).string(); }
     [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder.path(name)); }
     [[nodiscard]] ProgramResult render(const std::string& output, std::vector<std::string> more = {}) const {
-        more.insert(more.begin(), {"render", path(""), "--output", path(output), "--samples", "1"});
-        if (std::find(more.begin(), more.end(), "--size") == more.end()) more.insert(more.end(), {"--size", "48x32"});
+        const auto has = [&](const char* option) { return std::find(more.begin(), more.end(), option) != more.end(); };
+        if (!has("--size")) more.insert(more.end(), {"--size", "48x32"});
+        if (!has("--samples") && !has("--preview")) more.insert(more.end(), {"--samples", "1"});
+        more.insert(more.begin(), {"render", path(""), "--output", path(output)});
         return run_ricochet(more);
     }
 };
@@ -112,6 +114,7 @@ TEST(RenderCommand, EveryOptionChangesThePicture) {
                                                            {"--ground", "auto"},
                                                            {"--lens", "2"},
                                                            {"--no-filter"},
+                                                           {"--preview"},
                                                            {"--shutter", "0.3"},
                                                            {"--draw", "glow"},
                                                            {"--collider-color", "impulse/area"},
@@ -121,6 +124,21 @@ TEST(RenderCommand, EveryOptionChangesThePicture) {
         const ProgramResult result = files.render("other.png", option);
         EXPECT_EQ(result.exit_code, 0) << result.errors;
         EXPECT_TRUE(files.folder.read("other.png") != files.folder.read("plain.png")) << option.front();
+    }
+}
+
+TEST(RenderCommand, ADraftIsNotAskedForWhatItHasNot) {
+    const RunFolderFiles files;
+    const std::vector<std::vector<std::string>> finer = {{"--samples", "16"}, {"--no-filter"}, {"--lens", "2"}};
+    for (std::vector<std::string> options : finer) {
+        const std::string name = options.front();
+        options.emplace_back("--preview");
+        const ProgramResult both = files.render("both.png", options);
+        EXPECT_EQ(both.exit_code, 2);
+        EXPECT_EQ(both.errors,
+                  "ricochet: " + name +
+                      ": found beside --preview, which has one ray a pixel, no noise and no blur, expected "
+                      "one of them\n");
     }
 }
 

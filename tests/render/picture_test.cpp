@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "ricochet/core/parallel.h"
@@ -109,6 +110,32 @@ TEST(Picture, MoreSamplesMakeLessNoiseAroundTheSamePicture) {
     const double fine = difference(32);
     EXPECT_LT(fine, 0.5 * rough);
     EXPECT_LT(fine, 2.0);
+}
+
+// Their brightness differs where light comes from other surfaces, and at edges, through which one ray goes or not.
+TEST(Picture, ADraftShowsTheSameThingsInTheSamePlaces) {
+    PictureOptions options = small_picture();
+    const Image fine = render_picture(ball_on_floor(), front_camera(), options);
+    options.quick = true;
+    const Image draft = render_picture(ball_on_floor(), front_camera(), options);
+    double difference = 0.0;
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < kSize; ++x) difference += std::abs(brightness(fine, x, y) - brightness(draft, x, y)) / 3.0;
+    }
+    EXPECT_LT(difference / (kSize * kSize), 8.0);
+    const auto [red, green, blue] = draft.pixel(kSize / 2 - 3, kSize / 2 - 3);
+    EXPECT_GT(red, 2 * green);
+}
+
+TEST(Picture, ADraftHasOneRayAPixelWhateverTheSamplesAndHardShadows) {
+    PictureOptions options = small_picture();
+    options.quick = true;
+    const Image draft = render_picture(ball_on_floor(), front_camera(), options);
+    options.samples = 1;
+    options.filter = false;
+    EXPECT_EQ(render_picture(ball_on_floor(), front_camera(), options).rgb, draft.rgb);
+    const ThreadLimit one(1);
+    EXPECT_EQ(render_picture(ball_on_floor(), front_camera(), options).rgb, draft.rgb);
 }
 
 TEST(Picture, ReportsProgressUpToTheEnd) {

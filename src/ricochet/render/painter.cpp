@@ -83,6 +83,21 @@ PixelLight Painter::pixel(int x, int y) const {
     return sum.mean(options_.samples);
 }
 
+PixelLight Painter::quick_pixel(int x, int y) const {
+    PreviewRay ray = camera_ray(x + 0.5, y + 0.5, {});
+    ray.time = 1.0;
+    const std::optional<PreviewHit> hit = preview_.trace(ray);
+    const bool open = options_.transparent && !hit;
+    Vec3 light;
+    if (hit) light = quick_light(ray, *hit);
+    if (!hit && !open) light = behind_everything(ray.direction);
+    const Seen shown = through_glass(ray, hit ? hit->distance : kNothing, light);
+    PixelLight pixel;
+    pixel.light = tone_mapped(options_.exposure * shown.light);
+    pixel.alpha = open ? shown.cover : 1.0;
+    return pixel;
+}
+
 PreviewRay Painter::camera_ray(double x, double y, const SamplePair& lens) const {
     const double aspect = static_cast<double>(options_.width) / options_.height;
     const double across = (2.0 * x / options_.width - 1.0) * aspect * tangent_;
@@ -141,6 +156,14 @@ Vec3 Painter::solid_light(const PreviewRay& ray, const std::optional<PreviewHit>
     if (!lamps_.empty()) light += times(color, lamp_light(*hit, samples.get(s, SamplePurpose::lamp)));
     if (hit->roughness < 1.0) light += gloss(*hit, ray);
     return hit->kind == PreviewHit::Kind::plane ? faded(light, *hit, ray) : light;
+}
+
+// Without rays but the one to the sun.
+Vec3 Painter::quick_light(const PreviewRay& ray, const PreviewHit& hit) const {
+    constexpr double kOpenSky = 0.7;  // the part of the sky that is seen from a surface among others
+    const Vec3 color = surface_color(hit);
+    const Vec3 light = hit.emission + times(color, sun_light(hit, {}) + kOpenSky * light_.sky(hit.normal));
+    return hit.kind == PreviewHit::Kind::plane ? faded(light, hit, ray) : light;
 }
 
 // Light of the sun on a surface, unless something stands in between.

@@ -33,6 +33,8 @@ public:
     Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps = {});
 
     [[nodiscard]] PixelLight pixel(int x, int y) const;
+    /// As PictureOptions::quick has it: light and alpha alone.
+    [[nodiscard]] PixelLight quick_pixel(int x, int y) const;
 
 private:
     // What one ray sees.
@@ -47,6 +49,7 @@ private:
     [[nodiscard]] Seen through_glass(PreviewRay ray, double distance, const Vec3& behind) const;
     [[nodiscard]] Vec3 solid_light(const PreviewRay& ray, const std::optional<PreviewHit>& hit,
                                    const PixelSamples& samples, int s) const;
+    [[nodiscard]] Vec3 quick_light(const PreviewRay& ray, const PreviewHit& hit) const;
     [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, const SamplePair& at) const;
     [[nodiscard]] Vec3 lamp_light(const PreviewHit& hit, const SamplePair& at) const;
     [[nodiscard]] Vec3 sky_light(const PreviewHit& hit, const PixelSamples& samples, int s) const;

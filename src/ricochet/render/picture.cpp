@@ -39,8 +39,9 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
     std::atomic<std::size_t> rows_done{0};
     parallel_for_blocks(rows, 1, [&](std::size_t row, std::size_t, std::size_t) {
         for (int x = 0; x < options.width; ++x) {
-            const PixelLight pixel = painter.pixel(x, static_cast<int>(row));
             const std::size_t index = row * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
+            const PixelLight pixel =
+                options.quick ? painter.quick_pixel(x, static_cast<int>(row)) : painter.pixel(x, static_cast<int>(row));
             out.picture.light[index] = single(pixel.light);
             out.picture.variance[index] = static_cast<float>(pixel.variance);
             out.picture.features[index] = {single(pixel.normal), single(pixel.albedo),
@@ -71,7 +72,7 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
     SpriteLayer layer;
     if (!sprites.empty()) layer = draw_sprites(sprites, preview, camera, options.width, options.height);
     Sampled all = sampled(preview, camera, options, sprites);
-    if (options.filter) filter_noise(all.picture);
+    if (options.filter && !options.quick) filter_noise(all.picture);
     const std::size_t pixels = pixel_count(options);
     Image image{options.width, options.height, {}, {}};
     image.rgb.resize(3 * pixels);

@@ -20,6 +20,9 @@ struct PictureOptions {
     int width = 1280;  ///< pixels, 1..16384
     int height = 720;  ///< pixels, 1..16384
     int samples = 16;  ///< rays a pixel, 1..4096
+    /// A draft: one ray through the middle of each pixel, hard shadows, the sky's light by the surface's slope alone,
+    /// no light from surface to surface, no blur. samples and filter have no part in it.
+    bool quick = false;
     double exposure = 1.0;
     Lighting lighting = Lighting::day;
     std::optional<Vec3> background;  ///< linear light behind everything, instead of the light's own

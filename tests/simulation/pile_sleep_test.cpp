@@ -8,6 +8,7 @@
 
 #include "collision/worlds.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
 #include "support/simulations.h"
 
@@ -146,6 +147,57 @@ TEST(PileSleep, WhatBeginsToMoveFallsAsleepInNoStep) {
         EXPECT_EQ(simulation.statistics().asleep, 0U) << time_step;
         EXPECT_LT(simulation.particles().position[3].z, 0.24) << time_step;
     }
+}
+
+/// What all colliders have been given, N s.
+Vec3 given_to_colliders(const Simulation& simulation, std::size_t colliders) {
+    Vec3 sum;
+    for (std::size_t c = 0; c < colliders; ++c) {
+        for (const Vec3& impulse : simulation.triangle_totals(c).impulse) sum += impulse;
+    }
+    return sum;
+}
+
+Vec3 momentum_of(const Simulation& simulation) {
+    const Particles& particles = simulation.particles();
+    Vec3 sum;
+    for (std::size_t i = 0; i < particles.size(); ++i) sum += particles.mass[i] * particles.velocity[i];
+    return sum;
+}
+
+// Of spheres without rolling friction some go on rolling on those that sleep.
+TEST(PileSleep, WhatRollsOnSleepersWeighsOnTheFloorThroughThem) {
+    SimulationSetup setup = setup_of(1e-3, 10.0, {"", 0.3, 0.5}, {0, 0, -9.81});
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
+                       {"left", PlaneShape{{-0.03, 0, 0}, {1, 0, 0}}},
+                       {"right", PlaneShape{{0.03, 0, 0}, {-1, 0, 0}}},
+                       {"front", PlaneShape{{0, -0.03, 0}, {0, 1, 0}}},
+                       {"back", PlaneShape{{0, 0.03, 0}, {0, -1, 0}}}};
+    setup.options.particle_contacts =
+        PairContactSettings{.restitution = 0.3, .friction = 0.5, .method = PairMethod::contacts};
+    RandomSequence random(11, 3, 0);
+    double weight = 0.0;  // N
+    for (int k = 0; k < 100; ++k) {
+        const double radius = kRadius * (0.8 + 0.4 * random.uniform());
+        const Vec3 place{0.0125 * (k % 4 - 1.5), 0.0125 * (k / 4 % 4 - 1.5), 0.007 + 0.0125 * (k / 16)};
+        setup.particles.push_back(particle_of(place + 5e-5 * random.unit_vector(), {}, radius));
+        setup.particles.back().mass = 1e4 * radius * radius * radius;
+        weight += 9.81 * setup.particles.back().mass;
+    }
+    Simulation simulation(std::move(setup));
+    std::uint64_t together = 0;  // steps in which some slept and others did not
+    for (int part = 0; part < 30; ++part) {
+        const Vec3 given = given_to_colliders(simulation, 5);
+        const Vec3 before = momentum_of(simulation);
+        const std::uint64_t asleep = simulation.statistics().asleep;
+        advance(simulation, 50);
+        if (asleep > 0 && simulation.statistics().asleep < 100) together += 50;
+        const double time = 0.05;
+        const Vec3 missing =
+            given_to_colliders(simulation, 5) - given + momentum_of(simulation) - before + Vec3{0, 0, weight * time};
+        EXPECT_LT(length(missing), 1e-7 * weight * time) << part << ", " << asleep << " asleep";
+    }
+    EXPECT_GT(together, 500U);
 }
 
 }  // namespace

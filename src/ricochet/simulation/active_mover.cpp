@@ -308,6 +308,11 @@ std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) 
     return totals.add(hits);
 }
 
+void ActiveMover::press(std::span<const SurfaceHit> hits) {
+    SurfaceTotals& totals = parts_.recorder.totals();
+    if (!totals.empty()) parts_.recorder.statistics().lost_impulses += totals.add(hits);
+}
+
 void ActiveMover::wake(std::size_t i, double time) {
     parts_.recorder.statistics().lost_impulses += add_weight(i, time, 1.0);
     parts_.store.wake(i);

@@ -125,6 +125,8 @@ public:
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight since it was last moved, until a
     /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
+    /// Adds impulses to the totals of surfaces.
+    void press(std::span<const SurfaceHit> hits);
     /// Whose sleepers' weights are theirs; it must outlive the mover.
     void set_piles(const SleepingPiles* piles) { piles_ = piles; }
     /// A sphere that has slept on others takes part from a time on, s. Before the pile has forgotten it.

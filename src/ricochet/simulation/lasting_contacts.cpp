@@ -50,17 +50,39 @@ std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
 }
 
-}  // namespace
-
-std::optional<std::size_t> LastingContacts::index_of(std::uint64_t particle) const {
-    const std::vector<std::uint64_t>& ids = parts_.store.particles().id;
-    if (ids.empty() || particle < ids.front()) return std::nullopt;
-    const std::size_t guess = particle - ids.front();  // while nobody has gone
-    if (guess < ids.size() && ids[guess] == particle) return guess;
-    const auto at = std::lower_bound(ids.begin(), ids.end(), particle);
-    if (at == ids.end() || *at != particle) return std::nullopt;
-    return static_cast<std::size_t>(at - ids.begin());
+/// Leaves of those that would fall asleep those that surfaces hold, or what lies still: one that lies on others that
+/// stay awake would weigh on nobody. number_of: of a member, by its id.
+template <class NumberOf>
+void keep_those_held(std::vector<std::uint8_t>& falls, std::span<const NetworkMember> members,
+                     const NetworkIsland& network, std::span<const NetworkMemory::Entry> pressed,
+                     const NumberOf& number_of) {
+    std::vector<std::vector<std::size_t>> touching(members.size());
+    for (const NetworkMemory::Entry& entry : pressed) {
+        if (entry.key.is_wall()) continue;
+        const std::size_t a = number_of(entry.key.particle);
+        const std::size_t b = number_of(entry.key.other);
+        if (falls[a] == 0 || falls[b] == 0) continue;
+        touching[a].push_back(b);
+        touching[b].push_back(a);
+    }
+    std::vector<std::uint8_t> held(members.size(), 0);
+    std::vector<std::size_t> open;
+    const auto hold = [&](std::size_t i) {
+        if (held[i] == 0) open.push_back(i);
+        held[i] = 1;
+    };
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (falls[i] != 0 && (members[i].is_fixed || !network.pushes_of(i).empty())) hold(i);
+    }
+    while (!open.empty()) {
+        const std::size_t i = open.back();
+        open.pop_back();
+        for (const std::size_t next : touching[i]) hold(next);
+    }
+    falls = std::move(held);
 }
+
+}  // namespace
 
 void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
@@ -69,7 +91,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     std::vector<std::uint64_t> disturbed;
     const MovingColliders* const bodies = parts_.response.rules().bodies;
     for (const std::uint64_t particle : piles_.particles()) {
-        const std::optional<std::size_t> i = index_of(particle);
+        const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i || parts_.store.is_fixed(*i)) {
             disturbed.push_back(particle);
             continue;
@@ -87,7 +109,7 @@ void LastingContacts::wake_pile(std::uint64_t particle, double time) {
     const std::vector<std::uint64_t> pile = piles_.pile_of(particle);
     if (pile.empty()) return;
     for (const std::uint64_t member : pile) {
-        const std::optional<std::size_t> i = index_of(member);
+        const std::optional<std::size_t> i = parts_.store.index_of(member);
         if (!i) continue;
         parts_.mover.wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
@@ -104,7 +126,7 @@ const PairTraces& LastingContacts::find_traces() {
     traces_.version = piles_.version();
     traces_.presses.assign(size, 0);
     const auto mark = [&](std::uint64_t particle) {
-        const std::optional<std::size_t> i = index_of(particle);
+        const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (i && *i >= first_ && *i - first_ < size) traces_.presses[*i - first_] = 1;
     };
     for (const NetworkMemory::Entry& entry : memory_.entries()) {
@@ -117,7 +139,7 @@ const PairTraces& LastingContacts::find_traces() {
 std::vector<std::uint8_t> LastingContacts::pressing() const {
     std::vector<std::uint8_t> pressing(parts_.store.size(), 0);
     const auto mark = [&](std::uint64_t particle) {
-        if (const std::optional<std::size_t> i = index_of(particle)) pressing[*i] = 1;
+        if (const std::optional<std::size_t> i = parts_.store.index_of(particle)) pressing[*i] = 1;
     };
     for (const NetworkMemory::Entry& entry : memory_.entries()) {
         if (entry.rebounds) continue;
@@ -227,10 +249,12 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
         if (sleepy[a] == 0) falls[b] = 0;
         if (sleepy[b] == 0) falls[a] = 0;
     }
+    keep_those_held(falls, members, network, trace.pressed, number_of);
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (falls[i] == 0 || members[i].is_fixed) continue;
-        network.let_rest(i);
         const std::uint64_t id = members[i].moving->id;
+        trace.stopped.push_back({id, members[i].moving->state.mass * network.planned(i).velocity});
+        network.let_rest(i);
         trace.falling_asleep.push_back(id);
         for (const WallPush& push : network.pushes_of(i)) {
             const double mass = members[i].moving->state.mass;
@@ -240,14 +264,36 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
     std::sort(trace.falling_asleep.begin(), trace.falling_asleep.end());
 }
 
-void LastingContacts::end(std::span<const DenseTrace* const> traces, const TimeSpan& step) {
+void LastingContacts::end(std::span<const DenseTrace* const> traces, std::span<const PairImpactRecord> impacts,
+                          const TimeSpan& step) {
+    if (first_ == 0) loads_.pass_on(piles_, pushes_on_sleepers(traces, impacts), step);
     std::vector<NetworkMemory::Entry> pressed;
     for (const DenseTrace* const trace : traces) {
         pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
     }
     if (first_ == 0) memory_.replace({});
     memory_.add(pressed);
-    if (first_ == 0) put_to_sleep(traces, step);
+    if (first_ != 0) return;
+    put_to_sleep(traces, step);
+    std::vector<SleeperPush> stopped;
+    for (const DenseTrace* const trace : traces) {
+        stopped.insert(stopped.end(), trace->stopped.begin(), trace->stopped.end());
+    }
+    loads_.stop(piles_, stopped, step);
+}
+
+std::vector<SleeperPush> LastingContacts::pushes_on_sleepers(std::span<const DenseTrace* const> traces,
+                                                             std::span<const PairImpactRecord> impacts) const {
+    std::vector<SleeperPush> pushes;
+    if (piles_.empty()) return pushes;
+    for (const DenseTrace* const trace : traces) {
+        pushes.insert(pushes.end(), trace->onto_sleepers.begin(), trace->onto_sleepers.end());
+    }
+    for (const PairImpactRecord& impact : impacts) {
+        if (piles_.has(impact.first)) pushes.push_back({impact.first, -impact.impulse});
+        if (piles_.has(impact.second)) pushes.push_back({impact.second, impact.impulse});
+    }
+    return pushes;
 }
 
 void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step) {
@@ -288,14 +334,15 @@ bool LastingContacts::is_at_edge_of_sleep(const NetworkKey& key) const {
 
 bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
     if (!is_at_edge_of_sleep(entry.key)) return false;
-    const std::optional<std::size_t> i = index_of(sleeper_of(entry.key));
+    const std::optional<std::size_t> i = parts_.store.index_of(sleeper_of(entry.key));
     if (!i) return false;
     const NetworkImpulse* const before = piles_.contacts().find(entry.key);
     const ForceInput state = parts_.store.force_input(*i, step.begin);
     const double weight =
         state.mass * length(parts_.response.rules().forces.acceleration(state)) * (step.end - step.begin);
     const double held = before != nullptr ? before->normal : 0.0;
-    const std::optional<std::size_t> other = index_of(entry.key.particle + entry.key.other - sleeper_of(entry.key));
+    const std::optional<std::size_t> other =
+        parts_.store.index_of(entry.key.particle + entry.key.other - sleeper_of(entry.key));
     const std::vector<Vec3>& position = parts_.store.particles().position;
     if (other && is_aside(*i, position[*i] - position[*other], step.begin))
         return entry.impulse.normal > kMorePressed * held + kWeightsAside * weight;
@@ -305,8 +352,8 @@ bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const T
 /// The one of two that does not sleep has gone, or there is a gap between them.
 bool LastingContacts::has_parted(const NetworkKey& key) const {
     if (!is_at_edge_of_sleep(key)) return false;
-    const std::optional<std::size_t> i = index_of(key.particle);
-    const std::optional<std::size_t> k = index_of(key.other);
+    const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
+    const std::optional<std::size_t> k = parts_.store.index_of(key.other);
     if (!i || !k) return true;
     const Particles& p = parts_.store.particles();
     const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];

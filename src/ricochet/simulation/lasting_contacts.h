@@ -16,6 +16,7 @@
 #include "ricochet/response/pair_record.h"
 #include "ricochet/simulation/pair_parts.h"
 #include "ricochet/simulation/pair_plans.h"
+#include "ricochet/simulation/pile_loads.h"
 #include "ricochet/simulation/sleeping_piles.h"
 
 namespace ricochet {
@@ -26,13 +27,15 @@ struct DenseTrace {
     std::vector<SleepingPiles::Still> still;     ///< those that have not moved
     std::vector<std::uint64_t> falling_asleep;   ///< ids, ascending
     std::vector<SleepingPiles::Weight> weights;  ///< of those
+    std::vector<SleeperPush> onto_sleepers;      ///< by those that are awake
+    std::vector<SleeperPush> stopped;            ///< momentum with which those fall asleep
     std::vector<NetworkKey> touching;            ///< where some do, pairs that touch, whether they press or not
     bool is_unsolved = false;                    ///< the sweeps did not come to the tolerance
 };
 
 class LastingContacts {
 public:
-    explicit LastingContacts(const PairParts& parts) : parts_(parts) { parts_.mover.set_piles(&piles_); }
+    explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) { parts_.mover.set_piles(&piles_); }
 
     /// A step begins for the particles of a range: says who sleeps; wakes piles that have lost a sphere, and those that
     /// colliders come near.
@@ -57,8 +60,9 @@ public:
     void let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                  DenseTrace& trace) const;
 
-    /// A step has ended, with these dense islands.
-    void end(std::span<const DenseTrace* const> traces, const TimeSpan& step);
+    /// A step has ended, with these dense islands and impacts.
+    void end(std::span<const DenseTrace* const> traces, std::span<const PairImpactRecord> impacts,
+             const TimeSpan& step);
     /// Shows the verifier, where there is one, that sleepers have stayed where they are.
     void check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const;
     /// Wakes all that sleep, at a time, s.
@@ -73,7 +77,8 @@ public:
 
 private:
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
-    [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t particle) const;
+    [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const DenseTrace* const> traces,
+                                                              std::span<const PairImpactRecord> impacts) const;
     void wake_pile(std::uint64_t particle, double time);
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
@@ -91,6 +96,7 @@ private:
     PairTraces traces_;
     NetworkMemory memory_;
     SleepingPiles piles_;
+    PileLoads loads_;
 };
 
 }  // namespace ricochet

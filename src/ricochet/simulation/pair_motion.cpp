@@ -90,7 +90,7 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
         unsolved_ += island.trace.is_unsolved ? 1 : 0;
     }
     contacts_.check_sleepers(step, blocks);
-    contacts_.end(traces, step);
+    contacts_.end(traces, impacts_, step);
     counts_ = {impacts_.size(), 0.0};
     measure_overlaps();
     islands.clear();

@@ -162,4 +162,14 @@ void ParticleStore::prefetch(std::size_t i) const {
     __builtin_prefetch(&particles_.contacts[i], 1);
 }
 
+std::optional<std::size_t> ParticleStore::index_of(std::uint64_t id) const {
+    const std::vector<std::uint64_t>& ids = particles_.id;
+    if (ids.empty() || id < ids.front()) return std::nullopt;
+    const std::size_t guess = id - ids.front();  // while nobody has gone
+    if (guess < ids.size() && ids[guess] == id) return guess;
+    const auto at = std::lower_bound(ids.begin(), ids.end(), id);
+    if (at == ids.end() || *at != id) return std::nullopt;
+    return static_cast<std::size_t>(at - ids.begin());
+}
+
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,8 @@ public:
     void set_may_sleep(bool may_sleep) { may_sleep_ = may_sleep; }
     /// What has held it need not hold it any longer.
     void wake(std::size_t i) { particles_.held[i] = 0; }
+    /// The number of the particle with an id; none where it is gone.
+    [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t id) const;
     /// What forces see of it at a time, s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,

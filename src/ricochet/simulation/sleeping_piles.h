@@ -33,6 +33,10 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
     /// Changes whenever sleepers do.
     [[nodiscard]] std::uint64_t version() const { return version_; }
+    /// The number of a sleeper's pile: the lowest particle that was in it when it was joined.
+    [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->pile; }
+    /// What sleepers do to surfaces, ascending by particle.
+    [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
     /// Contacts of sleepers, as they were when they fell asleep.
     [[nodiscard]] const NetworkMemory& contacts() const { return contacts_; }
 
@@ -65,7 +69,7 @@ public:
 private:
     struct Sleeper {
         std::uint64_t particle = 0;
-        std::uint64_t pile = 0;  ///< the lowest particle that was in it when it was joined
+        std::uint64_t pile = 0;  ///< number_of()
     };
     [[nodiscard]] const Sleeper* find(std::uint64_t particle) const;
     void join(std::uint64_t first, std::uint64_t second);

@@ -240,6 +240,20 @@ std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
     return pushes;
 }
 
+std::vector<SleeperPush> NetworkIsland::pushes_on_sleepers(std::span<const NetworkMember> members) const {
+    std::vector<SleeperPush> pushes;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        const NetworkContact& contact = contacts_[i];
+        const NetworkImpulse& impulse = solver_.impulses()[i];
+        if (keys_[i].is_wall() || impulse.normal == 0.0) continue;
+        const bool is_first = members[contact.a].is_asleep;
+        if (is_first == members[contact.b].is_asleep) continue;
+        const Vec3 onto_first = impulse.normal * contact.normal + impulse.tangential;
+        pushes.push_back({members[is_first ? contact.a : contact.b].moving->id, is_first ? onto_first : -onto_first});
+    }
+    return pushes;
+}
+
 std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
     std::vector<NetworkMemory::Entry> entries;
     for (std::size_t i = 0; i < keys_.size(); ++i) {

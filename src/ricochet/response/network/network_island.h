@@ -33,6 +33,12 @@ struct NetworkMember {
     [[nodiscard]] bool stays() const { return is_fixed || is_squeezed; }
 };
 
+/// What one that is awake does to one that sleeps in a step.
+struct SleeperPush {
+    std::uint64_t particle = 0;  ///< id of the sleeper
+    Vec3 impulse;                ///< N s
+};
+
 /// Plans with the velocities that forces give the spheres within the step (symplectic Euler's), finds their contacts
 /// with each other and with walls, solves them, and moves each sphere along its plan. Keeps its memory from one island
 /// to the next.
@@ -60,6 +66,8 @@ public:
     [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
     [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
+    /// By others that do not sleep, contact by contact.
+    [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const NetworkMember> members) const;
     /// Pairs that hardly leave a gap between them, whether they press or not.
     [[nodiscard]] std::vector<NetworkKey> touching() const;
     /// Lets members that others push farther than their contacts have been looked for reach as far; false where there

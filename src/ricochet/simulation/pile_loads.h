@@ -1,0 +1,49 @@
+/// \file
+/// Private to the simulation: what sleeping piles pass on to the surfaces that they lie on.
+///
+/// A sleeper presses on surfaces with what it pressed with when it fell asleep. Spheres beside it that are awake press
+/// on it otherwise in every step, and for them it is a wall: what changes so would be lost. A pile at rest passes on
+/// its weight and all that others push it with, however that is shared out inside.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ricochet/response/network/network_island.h"
+#include "ricochet/simulation/pair_parts.h"
+#include "ricochet/simulation/query_schedule.h"
+#include "ricochet/simulation/sleeping_piles.h"
+
+namespace ricochet {
+
+class PileLoads {
+public:
+    explicit PileLoads(const PairParts& parts) : parts_(parts) {}
+
+    /// Enters, for a step, what piles do to surfaces beyond the weights of their sleepers. pushes: of those that are
+    /// awake in the step, in the order in which they are added up.
+    void pass_on(const SleepingPiles& piles, std::span<const SleeperPush> pushes, const TimeSpan& step);
+
+    /// Enters the momentum with which particles fall asleep at the end of a step: what holds them has taken it.
+    void stop(const SleepingPiles& piles, std::span<const SleeperPush> stopped, const TimeSpan& step);
+
+private:
+    /// Of a pile without pushes.
+    struct Balance {
+        Vec3 missing;        ///< N, its weight, and what pinned spheres do to it, less what its sleepers press with
+        double held = 0.0;   ///< N, sum of the strengths with which its sleepers press on surfaces
+        bool leans = false;  ///< when it fell asleep others that are awake touched it
+    };
+    void find_balances(const SleepingPiles& piles, const TimeSpan& step);
+    void share_out(const SleepingPiles& piles, const std::map<std::uint64_t, Vec3>& totals);
+    void add_contacts(const SleepingPiles& piles, const TimeSpan& step);
+
+    PairParts parts_;
+    std::uint64_t version_ = ~std::uint64_t{0};  // of the piles of which balances are
+    std::map<std::uint64_t, Balance> balances_;  // by the number of the pile
+};
+
+}  // namespace ricochet

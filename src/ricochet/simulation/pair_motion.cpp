@@ -92,13 +92,15 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     contacts_.check_sleepers(step, blocks);
     contacts_.end(traces, impacts_, step);
     counts_ = {impacts_.size(), 0.0};
-    measure_overlaps();
+    measure_overlaps(step.end);
     islands.clear();
 }
 
-void PairMotion::measure_overlaps() {
+/// Of those that are there at the end of a step.
+void PairMotion::measure_overlaps(double time) {
     const Particles& particles = parts_.store.particles();
     const auto measure = [&](std::size_t i, std::size_t j) {
+        if (parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
         const double distance = length(particles.position[i] - particles.position[j]);
         const double overlap = particles.radius[i] + particles.radius[j] - distance;
         const double smaller = std::min(particles.radius[i], particles.radius[j]);

@@ -62,7 +62,7 @@ public:
 
 private:
     [[nodiscard]] bool wake_those_pushed(const TimeSpan& step);
-    void measure_overlaps();
+    void measure_overlaps(double time);
 
     PairParts parts_;
     std::size_t first_ = 0;  // of the range

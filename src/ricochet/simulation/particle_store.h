@@ -62,6 +62,10 @@ public:
     void wake(std::size_t i) { particles_.held[i] = 0; }
     /// The number of the particle with an id; none where it is gone.
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t id) const;
+    /// Its life is over, or a surface has absorbed or shattered it, by a time, s.
+    [[nodiscard]] bool has_ended(std::size_t i, double time) const {
+        return particles_.absorbed[i] != 0 || particles_.birth_time[i] + particles_.lifetime[i] <= time;
+    }
     /// What forces see of it at a time, s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,

@@ -12,7 +12,8 @@
 /// u is the velocity of a relative to b (or to the wall's material) at the contact, at the end of the step. A contact
 /// that is not closed yet takes part with what is left of its gap, so that nothing overlaps at the end. Where spheres
 /// overlap (sweeps end before the last digit) they part by kNetworkPushOut of that: gaps are measured anew in every
-/// step, so that errors do not add up.
+/// step, so that errors do not add up. They keep the speed with which they part, and so that is limited: deep overlaps
+/// part slowly, however short steps are.
 ///
 /// Restitution: contacts with P_n > 0 join spheres to connected impacts. Each has one restitution e, the smallest of
 /// its approaching contacts, 0 for those that touched before (they press, and are no impacts); its contacts then leave
@@ -27,6 +28,7 @@
 /// "Adaptive restart for accelerated gradient schemes", Found. Comput. Math. 15 (2015), for their acceleration.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -66,8 +68,10 @@ struct NetworkContact {
     double friction = 0.0;          ///< Coulomb's coefficient
     double rolling_friction = 0.0;  ///< m, moment over normal force
     double restitution = 0.0;       ///< 0..1
-    bool touched = false;           ///< it was closed at the begin of the step already
-    NetworkImpulse start;           ///< what it did in the last step, to begin with
+    double most_parting =
+        INFINITY;          ///< m/s, speed with which what overlaps is parted at most, beside what sweeps leave
+    bool touched = false;  ///< it was closed at the begin of the step already
+    NetworkImpulse start;  ///< what it did in the last step, to begin with
 };
 
 /// When the solver ends: when the conditions are met to the tolerance; or after `sweeps` of them, when they are met to

@@ -95,6 +95,7 @@ private:
     double duration_ = 0.0;
     double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
+    std::vector<double> falls_;  // m^2/s^2, of each member: what forces pull it with, times its radius
     std::vector<NetworkContact> contacts_;
     std::vector<NetworkKey> keys_;  // of the contacts
     std::vector<WallContact> walls_;

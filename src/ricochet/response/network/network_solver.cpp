@@ -72,6 +72,7 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
     const double radius =
         is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
     row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
+    row.parting = std::min(row.parting, contact.most_parting);
     row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
     row.friction = contact.friction;
     const NetworkState& a = before_[row.a];

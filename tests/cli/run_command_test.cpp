@@ -67,6 +67,28 @@ TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
     EXPECT_EQ(summary["frames"].get<int>(), summary["steps"].get<int>() + 1);
 }
 
+// They are born where their parent hits, bounce together, and are so near to each other that a half of a step throws
+// them.
+TEST(RunCommand, FragmentsThatTheirOwnGravityThrowsEndTheRun) {
+    const TemporaryFolder folder;
+    const std::string scene = folder
+                                  .write("fragments.json", R"({
+      "ricochet": 1,
+      "simulation": {"time_step": 0.001, "duration": 0.6, "integrator": "velocity_verlet"},
+      "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
+      "particle_forces": [{"type": "gravity"}],
+      "materials": {"floor": {"restitution": 0.2, "friction": 0.5}},
+      "colliders": [{"type": "plane", "normal": [0, 0, 1], "material": "floor"}],
+      "emitters": [
+        {"type": "point", "name": "whole", "center": [0, 0, 0.2], "burst": 1, "particle_radius": 0.05, "mass": 1},
+        {"type": "child", "parent": "whole", "on": "impact", "count": 6, "speed": 0}]
+    })")
+                                  .string();
+    const ProgramResult result = run_ricochet({"run", scene, "--output", folder.path("out").string()});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.errors.find("beyond the speed of light"), std::string::npos) << result.errors;
+}
+
 // A sheet so stiff that what friction holds of one point decides what it holds of the next, down to the shortest step.
 TEST(RunCommand, SaysHowManyImplicitStepsWereNotSolved) {
     const TemporaryFolder folder;

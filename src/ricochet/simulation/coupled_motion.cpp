@@ -338,9 +338,9 @@ void CoupledMotion::report_divergence(const SystemStep& step) const {
                     system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain));
 }
 
-std::vector<CoupledMotion::Owed> CoupledMotion::correct_velocities(Particles& particles) {
-    std::vector<Owed> owed;
-    if (system_.size() == 0) return owed;
+CoupledMotion::Correction CoupledMotion::correct_velocities(Particles& particles) {
+    Correction correction;
+    if (system_.size() == 0) return correction;
     std::vector<Vec3> velocities(system_.size());
     std::vector<std::uint8_t> moves(system_.size());
     for (std::size_t k = 0; k < system_.size(); ++k) {
@@ -354,13 +354,15 @@ std::vector<CoupledMotion::Owed> CoupledMotion::correct_velocities(Particles& pa
     for (std::size_t k = 0; k < system_.size(); ++k) {
         const std::uint32_t i = system_.members()[k];
         if (velocities[k] == particles.velocity[i]) continue;
+        const bool is_runaway = length(velocities[k]) > kMaxSpeed && length(particles.velocity[i]) <= kMaxSpeed;
+        if (is_runaway && !correction.runaway) correction.runaway = i;
         if (is_in_contact(particles, i)) {
-            owed.push_back({i, velocities[k] - particles.velocity[i]});
+            correction.owed.push_back({i, velocities[k] - particles.velocity[i]});
         } else {
             particles.velocity[i] = velocities[k];
         }
     }
-    return owed;
+    return correction;
 }
 
 std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, double time) const {

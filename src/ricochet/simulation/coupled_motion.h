@@ -73,9 +73,13 @@ public:
         std::uint32_t particle = 0;
         Vec3 change;
     };
+    struct Correction {
+        std::vector<Owed> owed;                ///< to those in contact
+        std::optional<std::uint32_t> runaway;  ///< the first particle that it has brought beyond kMaxSpeed
+    };
     /// After the move of what was planned: gives members in flight what their springs and forces have given them
-    /// beyond what they have seen of it, and returns what those in contact are owed.
-    [[nodiscard]] std::vector<Owed> correct_velocities(Particles& particles);
+    /// beyond what they have seen of it.
+    [[nodiscard]] Correction correct_velocities(Particles& particles);
     /// After the step: counts it where a part of it was not solved, and breaks what is overstretched.
     void settle(const Particles& particles);
 

@@ -111,10 +111,12 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         std::vector<BlockRecord> blocks;
         wake_sleepers(part);
         move_part(batch, part, blocks);
-        stop_runaways(blocks, step.end);
         if (coupled.is_active() && batch.begin == 0) {
-            mover.take_up(coupled.correct_velocities(store.particles()), part, blocks);
+            const CoupledMotion::Correction correction = coupled.correct_velocities(store.particles());
+            mover.take_up(correction.owed, part, blocks);
+            if (correction.runaway) blocks.emplace_back().note_runaway(*correction.runaway, false);
         }
+        stop_runaways(blocks, step.end);
         record_part(batch, blocks);
         for (const BlockRecord& block : blocks) gains.insert(gains.end(), block.heat.begin(), block.heat.end());
         now = part.end;
